@@ -1,0 +1,267 @@
+"""Types of the compiled core (irsim/core): arrays in, arrays out; knows no YAML and no Python objects.
+
+N objects per world, W worlds, R = N * W rows; row w * N + i is object i of world w. All arrays returned as properties
+are writable views of the core's own memory (no copy), float64 unless said otherwise.
+"""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.uint8]
+
+class _Options:
+    """Every options class: keyword-only constructor that wants every field, `fields` in declaration order."""
+
+    fields: ClassVar[tuple[str, ...]]
+
+# kinematics (one header each in core/kinematics/)
+class DiffOptions(_Options):
+    def __init__(self, *, noise: bool, alpha: Sequence[float]) -> None: ...
+
+class OmniOptions(_Options):
+    def __init__(self, *, noise: bool, alpha: Sequence[float]) -> None: ...
+
+class OmniAngularOptions(_Options):
+    def __init__(self, *, noise: bool, alpha: Sequence[float]) -> None: ...
+
+class AckerOptions(_Options):
+    def __init__(self, *, noise: bool, alpha: Sequence[float], mode: str, wheelbase: float, psi_max: float) -> None: ...
+
+# behaviors (core/behaviors/)
+class DashOptions(_Options):
+    def __init__(self, *, angle_tolerance: float) -> None: ...
+
+# sensors (core/sensors/)
+class Lidar2dOptions(_Options):
+    def __init__(
+        self,
+        *,
+        range_min: float,
+        range_max: float,
+        angle_range: float,
+        number: int,
+        noise: bool,
+        std: float,
+        angle_std: float,
+        offset: Sequence[float],
+        has_velocity: bool,
+    ) -> None: ...
+
+# shapes (core/shapes/): body frame
+class Circle:
+    def __init__(self, *, radius: float, center: Sequence[float]) -> None: ...
+
+class Polygon:
+    """Closed and filled; convex or not; simple."""
+
+    def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
+
+class Linestring:
+    """Open polyline without thickness."""
+
+    def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
+
+class RandomCircle:
+    """Radius drawn per scene."""
+
+    def __init__(self, *, radius_range: Sequence[float], center: Sequence[float]) -> None: ...
+
+class RandomPolygon:
+    """Vertices drawn per scene (reference/dynamics.md section 10); `closed` False gives an open polyline."""
+
+    def __init__(
+        self,
+        *,
+        center_range: Sequence[float],
+        avg_radius_range: Sequence[float],
+        irregularity_range: Sequence[float],
+        spikeyness_range: Sequence[float],
+        num_vertices_range: Sequence[int],
+        closed: bool,
+    ) -> None: ...
+
+Part = Circle | Polygon | Linestring | RandomCircle | RandomPolygon
+
+class ObjectSpec:
+    """One object of the template world. All keyword arguments are required.
+
+    Args:
+        role: 0 robot, 1 obstacle.
+        group: Group id.
+        drive: Kinematics options, or None for an object that never moves.
+        parts: Shape; more than one part = compound (their union).
+        static, unobstructed, wander, loop: Flags.
+        pose: x, y, theta. Ignored for objects of a random placement.
+        extra: Extra state rows (steering angle first for acker); may be empty.
+        control: Initial control, padded to 3.
+        vel_min, vel_max, acce: Limits, padded to 3.
+        angle_range: Interval of the heading.
+        goals: Queue of goals, 2 or 3 numbers each; may be empty.
+        goal_threshold: Arrival distance [m].
+        arrive_mode: 0 position, 1 state.
+        range_low, range_high: Box of wander goals (3 each).
+        target_roles: 0 all, 1 robots, 2 obstacles.
+        behavior: Options of a native behavior, or None.
+        sensors: Options of the native sensors, in order.
+    """
+
+    def __init__(
+        self,
+        *,
+        role: int,
+        group: int,
+        drive: _Options | None,
+        parts: Sequence[Part],
+        static: bool,
+        unobstructed: bool,
+        wander: bool,
+        loop: bool,
+        pose: Sequence[float],
+        extra: Sequence[float],
+        control: Sequence[float],
+        vel_min: Sequence[float],
+        vel_max: Sequence[float],
+        acce: Sequence[float],
+        angle_range: Sequence[float],
+        goals: Sequence[Sequence[float]],
+        goal_threshold: float,
+        arrive_mode: int,
+        range_low: Sequence[float],
+        range_high: Sequence[float],
+        target_roles: int,
+        behavior: _Options | None,
+        sensors: Sequence[_Options],
+    ) -> None: ...
+
+class RandomPlacement:
+    """Objects of one `random` distribution: states, then goals, drawn per scene (D7)."""
+
+    def __init__(
+        self,
+        *,
+        objects: Sequence[int],
+        range_low: Sequence[float],
+        range_high: Sequence[float],
+        min_distance: float,
+        attempts: int,
+    ) -> None: ...
+
+class World:
+    """What never changes during an episode: shapes, drives, limits, options; `copies` worlds of one template."""
+
+    def __init__(
+        self,
+        *,
+        step_time: float,
+        collision_mode: int,
+        objects: Sequence[ObjectSpec],
+        placements: Sequence[RandomPlacement],
+        copies: int,
+    ) -> None: ...
+    # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles
+    copies: int
+    objects: int  # N
+    step_time: float
+    collision_mode: int  # may be set at run time
+    def scans(self) -> list[tuple[int, int, int]]:
+        """(object, first beam, beams) of each native sensor of one world, in order; beams of world w follow at
+        w * beams_per_world."""
+    beams_per_world: int
+
+class State:
+    """What changes: poses, controls, goals, flags, scans, counters, random keys.
+
+    Constructing draws scene 0 of every world and evaluates collisions, arrival and sensors (D12).
+    """
+
+    def __init__(self, world: World, seeds: NDArray[np.uint64], history: bool) -> None: ...
+    pose: Floats  # (R, 3) x, y, theta
+    extra: Floats  # (R, E) extra state rows, E >= 1
+    control: Floats  # (R, 3) executed control without noise
+    twist: Floats  # (R, 3) true vx, vy (world frame), yaw rate of the last step
+    command: Floats  # (R, 3) control wanted for the next step
+    given: Flags  # (R,) 1: `command` comes from outside, behaviors leave the row alone; cleared by every step
+    arrived: Flags  # (R,)
+    collided: Flags  # (R,)
+    stopped: Flags  # (R,)
+    radius: Floats  # (R,) minimum bounding circle radius of the body
+    goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
+    ranges: Floats  # (W * beams_per_world,)
+    hits: NDArray[np.int32]  # same length: object hit by each beam within its world, -1 none
+    beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
+    count: NDArray[np.int64]  # (W,) executed steps of the episode
+    scene: NDArray[np.uint32]  # (W,)
+    noise: NDArray[np.uint32]  # (W,)
+    seed: NDArray[np.uint64]  # (W,)
+    event_count: int  # events so far in this state, for a cheap "anything new?"
+    failed_placement: NDArray[np.int32]  # (W,) object that found no room, -1 if all did
+    def reset(self, mask: NDArray[np.uint8], next_scene: bool) -> None:
+        """Reset the worlds where mask is 1. next_scene False: initial poses, noise + 1. True: scene + 1, noise 0,
+        shapes, placements and goals drawn anew. Then collisions, arrival and sensors are evaluated."""
+    def reseed(self, seeds: NDArray[np.uint64], mask: NDArray[np.uint8]) -> None:
+        """New seeds; the next reset of these worlds, of either kind, draws scene 0, noise 0."""
+    def refresh(self) -> None:
+        """Re-evaluate geometry, collisions, arrival-free status and sensors after poses were written from outside."""
+    def events(self, world: int) -> list[tuple[str, int, int, int, float, float]]:
+        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision"; since the last reset."""
+    def collision_pairs(self, world: int) -> NDArray[np.int32]:
+        """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
+    def goals(self, row: int) -> list[list[float]]: ...
+    def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
+    def set_initial(self, row: int) -> None:
+        """Make the row's present pose, extra and control those that reset() returns to."""
+    def vertices(self, row: int, part: int, world_frame: bool) -> Floats:
+        """(M, 2) vertices of a polygon or linestring part; (0, 2) for a circle."""
+    def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:
+        """Centre x, y and radius of a circle part."""
+    def parts(self, row: int) -> list[str]:
+        """Kinds of the parts: "circle", "polygon", "linestring"."""
+    def trajectory(self, row: int) -> Floats:
+        """(K, 3 + E) state after each executed step since the last reset (history=True only); steps in which the
+        object was static or stopped are left out."""
+
+class Trace:
+    """Everything that happened, step by step: arrays of shape (steps executed, R, …)."""
+
+    pose: Floats
+    control: Floats
+    arrived: Flags
+    collided: Flags
+    steps: NDArray[np.int64]  # (W,) steps executed by each world
+    ranges: Floats
+
+def advance(
+    world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
+) -> int:
+    """Run `steps` periods of every world; rows with `given` use `command` in the first one. until_done: a world rests
+    once every robot is stopped or arrived. external: poses are set by the caller, only collide … sense run.
+    Releases the GIL. Returns the largest number of steps executed by a world."""
+
+def rollout(
+    world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, ranges: bool = False
+) -> Trace:
+    """Like `advance`, recording."""
+
+# The phases of one step, for worlds in which Python code takes part. `advance(1)` is the sequence of all of them.
+def decide(world: World, state: State) -> None:
+    """Renew goals (wander, loop), then let native behaviors fill `command` of rows not `given`; rows without any
+    behavior get zero."""
+
+def limit(world: World, state: State) -> None: ...
+def integrate(world: World, state: State) -> None: ...
+def collide(world: World, state: State) -> None: ...
+def arrive(world: World, state: State) -> None: ...
+def sense(world: World, state: State) -> None: ...
+def finish(world: World, state: State) -> None:
+    """Count the step, append the history, clear `given`. (Runs before arrive and sense log their step number.)"""
+
+# Used by the Python API and by tests
+def intersects(parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]) -> bool: ...
+def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
+    """The Philox4x64-10 block of a key: key (seed, scene << 32 | noise), counter (draw, object, stream, 0)."""
+
+STREAMS: dict[str, int]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user

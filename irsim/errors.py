@@ -1,0 +1,42 @@
+"""Exceptions of irsim. Everything a user can mend derives from :class:`IrsimError` and says what to change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from irsim.diagnostics import Diagnostic
+
+__all__ = ["IrsimError", "NotSimulatedError", "PlacementError", "ScenarioError", "ScenarioNotFoundError"]
+
+
+class IrsimError(Exception):
+    """Base of all errors that irsim raises on purpose."""
+
+
+class ScenarioError(IrsimError, ValueError):
+    """A scenario that cannot be used, with every problem found.
+
+    Attributes:
+        diagnostics: All findings, errors first; warnings are included.
+    """
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], source: str | None = None) -> None:
+        from irsim.scenario.report import format_diagnostics
+
+        self.diagnostics = list(diagnostics)
+        self.source = source
+        super().__init__("\n" + format_diagnostics(self.diagnostics, source))
+
+
+class NotSimulatedError(ScenarioError):
+    """The scenario is valid but uses something this version does not simulate."""
+
+
+class PlacementError(ScenarioError):
+    """Random placement found no room for an object."""
+
+
+class ScenarioNotFoundError(IrsimError, FileNotFoundError):
+    """No scenario file of that name; the message names the places searched and near matches."""

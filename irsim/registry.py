@@ -1,0 +1,141 @@
+"""One registry per kind of feature: YAML name → options model, and what computes it.
+
+Built-in features are modules of a package, found by file name and imported when first asked for, so that a scenario
+pays only for what it uses. Plug-ins come through decorators or the entry-point group of the registry.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import BaseModel
+
+__all__ = [
+    "BEHAVIORS",
+    "DISTRIBUTIONS",
+    "KINEMATICS",
+    "MAPS",
+    "PLANNERS",
+    "REGISTRIES",
+    "SENSORS",
+    "SHAPES",
+    "Feature",
+    "Registry",
+]
+
+
+@dataclass(frozen=True)
+class Feature:
+    """A registered feature.
+
+    Attributes:
+        name: Its name in YAML.
+        options: pydantic model of its keys; the docstring and field docstrings are its documentation.
+        kernel: Class of the core that holds the same options for the native kernel, or None.
+        function: Python function that computes it, or None.
+        origin: ``"built-in"`` or the plug-in that brought it.
+    """
+
+    name: str
+    options: type[BaseModel]
+    kernel: type[Any] | None = None
+    function: Callable[..., Any] | None = None
+    origin: str = "built-in"
+
+    @property
+    def simulated(self) -> bool:
+        """Whether this version computes it."""
+        return self.kernel is not None or self.function is not None
+
+
+class Registry:
+    """Features of one kind, by YAML name.
+
+    Args:
+        kind: Singular word for messages: ``behavior``.
+        package: Package whose modules are the built-in features, one module per name.
+        group: Entry-point group of third-party features.
+    """
+
+    def __init__(self, kind: str, package: str, group: str) -> None:
+        self.kind, self.package, self.group = kind, package, group
+        self._features: dict[str, Feature] = {}
+        self._plugins: dict[str, Any] | None = None
+
+    def register(
+        self, options: type[BaseModel], *, kernel: type[Any] | None = None, function: Callable[..., Any] | None = None
+    ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+        """Register an options model under the default of its ``name`` field.
+
+        With neither ``kernel`` nor ``function`` the feature is part of the language but not simulated; the returned
+        decorator then adds the Python function that computes it.
+
+        Raises:
+            ValueError: The name is taken by another model.
+        """
+        name = str(options.model_fields["name"].default)
+        known = self._features.get(name)
+        if known is not None and known.options is not options:
+            raise ValueError(f"{self.kind} {name!r} is already registered by {known.options.__module__}")
+        module = options.__module__
+        origin = "built-in" if module.startswith("irsim.") else module
+        self._features[name] = Feature(name, options, kernel, function, origin)
+
+        def add(computed_by: Callable[..., Any]) -> Callable[..., Any]:
+            self._features[name] = replace(self._features[name], function=computed_by)
+            return computed_by
+
+        return add
+
+    def names(self) -> list[str]:
+        """All names, sorted: built-in, registered, and offered by installed plug-ins."""
+        builtin = (
+            info.name
+            for info in pkgutil.iter_modules(importlib.import_module(self.package).__path__)
+            if not info.name.startswith("_")
+        )
+        return sorted({*builtin, *self._features, *self._plugin_entries()})
+
+    def get(self, name: str) -> Feature | None:
+        """The feature, imported on first use; None when there is none of that name."""
+        if name in self._features:
+            return self._features[name]
+        if name.isidentifier() and not name.startswith("_"):
+            module = f"{self.package}.{name}"
+            try:
+                importlib.import_module(module)
+            except ModuleNotFoundError as error:
+                if error.name != module:
+                    raise
+        if name not in self._features and name in self._plugin_entries():
+            self._plugin_entries()[name].load()
+        return self._features.get(name)
+
+    def features(self) -> list[Feature]:
+        """Every feature, sorted by name (imports all of them)."""
+        return [feature for name in self.names() if (feature := self.get(name)) is not None]
+
+    def _plugin_entries(self) -> dict[str, Any]:
+        if self._plugins is None:
+            from importlib.metadata import entry_points
+
+            self._plugins = {entry.name: entry for entry in entry_points(group=self.group)}
+        return self._plugins
+
+
+BEHAVIORS = Registry("behavior", "irsim.behaviors", "irsim.behaviors")
+DISTRIBUTIONS = Registry("distribution", "irsim.distributions", "irsim.distributions")
+KINEMATICS = Registry("kinematics", "irsim.kinematics", "irsim.kinematics")
+MAPS = Registry("map", "irsim.maps", "irsim.maps")
+PLANNERS = Registry("planner", "irsim.planners", "irsim.planners")
+SENSORS = Registry("sensor", "irsim.sensors", "irsim.sensors")
+SHAPES = Registry("shape", "irsim.shapes", "irsim.shapes")
+
+REGISTRIES = {
+    registry.kind: registry
+    for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
+}

@@ -1,0 +1,97 @@
+"""The scenario with everything spread, defaulted and resolved: one record per object, ready to build or describe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from irsim.diagnostics import Path
+    from irsim.scenario.model import Gui, ObjectPlot, WorldModel
+
+__all__ = ["ObjectRecord", "Placement", "ResolvedScenario"]
+
+
+@dataclass(slots=True)
+class ObjectRecord:
+    """One object with all defaults applied (frames and units as in YAML).
+
+    ``state`` has ``state_dim`` numbers, limits have ``vel_dim`` numbers. ``kinematics``, ``shape``, ``behavior``,
+    ``group_behavior`` and ``sensors`` are validated options models of the registries; ``kinematics`` is None for an
+    object that never moves by itself. ``behavior`` may be a :class:`irsim.behaviors._options.CustomOptions`.
+    """
+
+    id: int
+    role: Literal["robot", "obstacle"]
+    name: str
+    group: int
+    group_name: str
+    path: Path  # of the entry: ("robot", 0) or ("robot",)
+    index: int  # among the objects of its entry
+    kinematics: BaseModel | None
+    shape: BaseModel
+    state: list[float]
+    goals: list[list[float]]
+    velocity: list[float]
+    vel_min: list[float]
+    vel_max: list[float]
+    acce: list[float]
+    state_dim: int
+    vel_dim: int
+    angle_range: tuple[float, float]
+    goal_threshold: float
+    arrive_mode: Literal["position", "state"]
+    static: bool  # effective: also true without kinematics
+    unobstructed: bool
+    behavior: BaseModel | None
+    group_behavior: BaseModel | None
+    wander: bool
+    loop: bool
+    range_low: list[float]
+    range_high: list[float]
+    target_roles: Literal["all", "robot", "obstacle"]
+    sensors: list[BaseModel]
+    plot: ObjectPlot
+    color: str | tuple[float, ...]
+    description: str | None
+    fov: float | None  # effective: from the lidar when not given
+    fov_radius: float | None
+    wheelbase: float | None  # effective: kinematics first, then shape
+    mass: float
+    friction: float
+    inertia: float | None
+    restitution: float
+    tags: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class Placement:
+    """The objects of one entry with ``distribution: random``."""
+
+    objects: list[int]
+    range_low: list[float]
+    range_high: list[float]
+    min_distance: float
+    path: Path
+
+
+@dataclass(slots=True)
+class ResolvedScenario:
+    """A whole scenario, resolved."""
+
+    name: str
+    world: WorldModel
+    objects: list[ObjectRecord]
+    placements: list[Placement]
+    gui: Gui
+    custom: Any
+    document: dict[str, Any] = field(default_factory=dict)  # as parsed, for env.config
+    source: str | None = None  # path of the file
+    text: str | None = None
+
+    def robots(self) -> Sequence[ObjectRecord]:
+        """The robots, in id order."""
+        return [o for o in self.objects if o.role == "robot"]
