@@ -1,0 +1,57 @@
+"""The check for PyPI's ``ir-sim``, whose files and ours cannot live in one environment.
+
+Both distributions provide the import package ``irsim``: pip lets them overwrite each other's files without a word.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+
+__all__ = ["ConflictError", "find_conflicts", "refuse_conflicts"]
+
+
+class ConflictError(ImportError):
+    """The distribution ``ir-sim`` is installed beside ``irsim-mcp``."""
+
+
+def find_conflicts(path: Iterable[str]) -> list[str]:
+    """Metadata directories of an installed ``ir-sim``.
+
+    Reads one directory listing per entry: no file is opened and ``importlib.metadata`` (15 ms) stays unloaded.
+
+    Args:
+        path: Import path entries, as in ``sys.path``.
+
+    Returns:
+        Paths such as ``…/site-packages/ir_sim-2.12.0.dist-info``, in the order of ``path``.
+    """
+    found = []
+    for entry in dict.fromkeys(path):
+        try:
+            names = os.listdir(entry or ".")
+        except OSError:  # zip files, folders that do not exist
+            continue
+        found += [os.path.join(entry, name) for name in names if name.endswith("-info") and _is_upstream(name)]
+    return found
+
+
+def refuse_conflicts() -> None:
+    """Raise unless ours is the only ``irsim`` of this interpreter.
+
+    Raises:
+        ConflictError: ``ir-sim`` is installed; the message says where, and what to uninstall.
+    """
+    found = find_conflicts(sys.path)
+    if found:
+        raise ConflictError(
+            f"the package 'ir-sim' is installed too ({found[0]}). It and 'irsim-mcp' both provide the Python package "
+            "'irsim' and overwrite each other's files. Use separate environments, or remove both and install one "
+            "again: pip uninstall -y ir-sim irsim-mcp"
+        )
+
+
+def _is_upstream(name: str) -> bool:
+    """Whether ``….dist-info`` or ``….egg-info`` belongs to a distribution called ``ir-sim``."""
+    return name[:6] in ("ir_sim", "ir-sim", "ir.sim") and name[6:7] in ("-", ".")

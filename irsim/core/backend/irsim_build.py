@@ -1,0 +1,214 @@
+"""Build backend: scikit-build-core, with a C++ compiler from PyPI where the machine has none.
+
+pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each hands on to
+scikit-build-core, which brings CMake and ninja when they are missing. A missing C++ compiler is answered here: the
+package ``ziglang`` is asked for, and scripts in a temporary folder make its clang look like an ordinary tool chain.
+The variables ``CXX``, ``CMAKE_TOOLCHAIN_FILE`` and ``CMAKE_ARGS`` with a compiler or tool chain in it are respected.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shlex
+import shutil
+import stat
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from scikit_build_core import build as skbuild
+from scikit_build_core.build import (
+    build_sdist,
+    get_requires_for_build_sdist,
+    prepare_metadata_for_build_editable,
+    prepare_metadata_for_build_wheel,
+)
+
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+    "prepare_metadata_for_build_wheel",
+]
+
+ConfigSettings = Mapping[str, "str | list[str]"]
+
+ZIGLANG = "ziglang>=0.13,<0.18"
+"""The compiler package; zig has no stable release yet, so only tested minor versions are allowed."""
+
+ZIG_TOOLS = {
+    # -mcpu=baseline: zig's own default is the CPU of this machine, which would make results depend on it.
+    "cc": "cc -mcpu=baseline",
+    "c++": "c++ -mcpu=baseline",
+    "ar": "ar",
+    "ranlib": "ranlib",
+}
+"""Script name → what it passes to ``zig``."""
+
+COMPILERS = ("c++", "g++", "clang++")
+"""Names looked for on PATH, after the one that Python itself was built with."""
+
+
+def get_requires_for_build_wheel(config_settings: ConfigSettings | None = None) -> list[str]:
+    """What building a wheel needs beyond ``build-system.requires``."""
+    with _zig_generator():
+        return skbuild.get_requires_for_build_wheel(_plain(config_settings)) + _compiler_requirement()
+
+
+def get_requires_for_build_editable(config_settings: ConfigSettings | None = None) -> list[str]:
+    """What an editable install needs beyond ``build-system.requires``."""
+    with _zig_generator():
+        return skbuild.get_requires_for_build_editable(_plain(config_settings)) + _compiler_requirement()
+
+
+def build_wheel(
+    wheel_directory: str, config_settings: ConfigSettings | None = None, metadata_directory: str | None = None
+) -> str:
+    """Build a wheel into ``wheel_directory``; returns its file name."""
+    with _compiler():
+        return skbuild.build_wheel(wheel_directory, _plain(config_settings), metadata_directory)
+
+
+def build_editable(
+    wheel_directory: str, config_settings: ConfigSettings | None = None, metadata_directory: str | None = None
+) -> str:
+    """Build the wheel of an editable install into ``wheel_directory``; returns its file name."""
+    with _compiler():
+        return skbuild.build_editable(wheel_directory, _plain(config_settings), metadata_directory)
+
+
+def chosen_by_user(environ: Mapping[str, str]) -> bool:
+    """Whether the environment already says which compiler CMake shall use."""
+    named = ("CXX", "CMAKE_TOOLCHAIN_FILE")
+    in_arguments = ("CMAKE_CXX_COMPILER", "CMAKE_TOOLCHAIN_FILE")
+    return any(environ.get(name) for name in named) or any(
+        name in environ.get("CMAKE_ARGS", "") for name in in_arguments
+    )
+
+
+def find_compiler() -> str | None:
+    """Path of a C++ compiler of this machine, or None.
+
+    On Windows an installed Visual Studio counts; its path is then ``""``, since CMake finds it by itself.
+    """
+    if os.name == "nt" and (shutil.which("cl") or _visual_studio()):
+        return ""
+    if sys.platform == "darwin" and not _succeeds("xcode-select", "-p"):
+        return None  # /usr/bin/c++ is then a stub that offers to install Xcode
+    built_with = shlex.split(sysconfig.get_config_var("CXX") or "")[:1]
+    paths = (shutil.which(name) for name in (*built_with, *COMPILERS))
+    return next((path for path in paths if path), None)
+
+
+@contextmanager
+def _compiler() -> Iterator[None]:
+    """Environment in which CMake finds a C++ compiler."""
+    if chosen_by_user(os.environ):
+        yield
+        return
+    found = find_compiler()
+    if found is not None:
+        # Named outright: the compiler that Python was built with, CMake's first choice, need not exist here.
+        with _environment({"CXX": found} if found else {}):
+            yield
+        return
+    zig = _zig_executable()
+    print(f"irsim: no C++ compiler found, building with {zig}", flush=True)
+    with tempfile.TemporaryDirectory(prefix="irsim-zig-") as folder, _zig_generator():
+        scripts = write_zig_scripts(Path(folder), zig)
+        arguments = [f"-DCMAKE_AR={scripts['ar']}", f"-DCMAKE_RANLIB={scripts['ranlib']}"]
+        given = os.environ.get("CMAKE_ARGS", "")
+        with _environment(
+            {
+                "CC": str(scripts["cc"]),
+                "CXX": str(scripts["c++"]),
+                "CMAKE_ARGS": " ".join(filter(None, (given, shlex.join(arguments)))),
+            }
+        ):
+            yield
+
+
+def write_zig_scripts(folder: Path, zig: str) -> dict[str, Path]:
+    """Write a script per tool into ``folder`` that runs ``zig`` under that tool's name.
+
+    Returns:
+        Tool name (``cc``, ``c++``, ``ar``, ``ranlib``) → script.
+    """
+    scripts = {}
+    for name, arguments in ZIG_TOOLS.items():
+        if os.name == "nt":
+            script, text = folder / f"{name}.bat", f'@"{zig}" {arguments} %*\r\n'
+        else:
+            script, text = folder / name, f'#!/bin/sh\nexec {shlex.quote(zig)} {arguments} "$@"\n'
+        script.write_text(text, encoding="utf-8", newline="")
+        script.chmod(script.stat().st_mode | stat.S_IXUSR)
+        scripts[name] = script
+    return scripts
+
+
+def _compiler_requirement() -> list[str]:
+    """The compiler package, if this machine needs it."""
+    return [] if chosen_by_user(os.environ) or find_compiler() is not None else [ZIGLANG]
+
+
+def _zig_executable() -> str:
+    """Path of the executable inside the ``ziglang`` package."""
+    spec = importlib.util.find_spec("ziglang")
+    if spec is None or spec.origin is None:
+        raise SystemExit(f"irsim: no C++ compiler found. Install one, set CXX, or: pip install '{ZIGLANG}'")
+    return str(Path(spec.origin).with_name("zig.exe" if os.name == "nt" else "zig"))
+
+
+@contextmanager
+def _zig_generator() -> Iterator[None]:
+    """With zig on Windows, CMake must use ninja: its default there drives Visual Studio."""
+    needed = os.name == "nt" and bool(_compiler_requirement()) and "CMAKE_GENERATOR" not in os.environ
+    with _environment({"CMAKE_GENERATOR": "Ninja"} if needed else {}):
+        yield
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """Environment variables set for a while."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _visual_studio() -> bool:
+    """Whether a Visual Studio with C++ tools is installed."""
+    programs = os.environ.get("ProgramFiles(x86)", r"C:\Program Files (x86)")
+    locator = Path(programs, "Microsoft Visual Studio", "Installer", "vswhere.exe")
+    tools = "Microsoft.VisualStudio.Component.VC.Tools.x86.x64"
+    if not locator.is_file():
+        return False
+    command = [str(locator), "-latest", "-products", "*", "-requires", tools, "-property", "installationPath"]
+    return bool(subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip())
+
+
+def _succeeds(*command: str) -> bool:
+    """Whether a command exists and returns 0."""
+    if shutil.which(command[0]) is None:
+        return False
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def _plain(config_settings: ConfigSettings | None) -> dict[str, str | list[str]] | None:
+    """The settings as scikit-build-core types them."""
+    return None if config_settings is None else dict(config_settings)
