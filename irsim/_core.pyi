@@ -192,6 +192,7 @@ class State:
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
     hits: NDArray[np.int32]  # same length: object hit by each beam within its world, -1 none
+    valid: Flags  # same length: 1 where the beam hit something and its (noisy) range lies in [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
     count: NDArray[np.int64]  # (W,) executed steps of the episode
     scene: NDArray[np.uint32]  # (W,)
@@ -214,6 +215,12 @@ class State:
     def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
     def set_initial(self, row: int) -> None:
         """Make the row's present pose, extra and control those that reset() returns to."""
+    def initial_state(self, row: int) -> Floats:
+        """(3 + E,) pose and extra rows that reset() returns to."""
+    def velocity_world(self, row: int) -> tuple[float, float]:
+        """World-frame velocity that the present control gives at the present pose."""
+    def moved(self, row: int) -> None:
+        """The row's pose was written from outside: forget geometry cached for it (flags and scans wait for a step)."""
     def vertices(self, row: int, part: int, world_frame: bool) -> Floats:
         """(M, 2) vertices of a polygon or linestring part; (0, 2) for a circle."""
     def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:

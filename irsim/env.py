@@ -1,0 +1,352 @@
+"""``irsim.make`` and the environment: the loop make / step / render / done / reset / end."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from itertools import count
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+
+from irsim.actions import assign_actions
+from irsim.diagnostics import Diagnostic, format_path
+from irsim.env_access import EnvAccess
+from irsim.env_drawing import EnvDrawing
+from irsim.errors import NotSimulatedError
+from irsim.log import Logger
+from irsim.observers.events import Event, read_events
+from irsim.observers.outcome import Outcome, outcome_of
+from irsim.observers.trace import Rollout, record_rollout
+from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
+from irsim.python_behaviors import attach_python_behaviors
+from irsim.scenario.locate import locate
+from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.read import read_or_raise
+from irsim.simulation import Simulation
+from irsim.streams import check_seed, fresh_seed, generator
+from irsim.views import ObjectView, views
+
+__all__ = ["Env", "EnvBase", "make"]
+
+_IDS = count()
+
+
+def make(
+    world_name: str | Path | None = None, projection: str | None = None, step_mode: str | None = None, **kwargs: Any
+) -> Env:
+    """Open a scenario file as an environment.
+
+    Args:
+        world_name: YAML file; searched as given, beside the script, in the current directory. Default: the name of the
+            running script with ``.yaml``.
+        projection: ``"2d"`` (default).
+        step_mode: ``"internal"`` or ``"external"``, over the file's.
+        **kwargs: Those of :class:`Env`: display, headless, save_ani, seed, strict, log_level, …
+
+    Raises:
+        ScenarioNotFoundError: No such file; names the places searched and near matches.
+        ScenarioError: The file cannot be used; holds every problem with its line and fix.
+        TypeError: Unknown keyword.
+    """
+    chosen = (projection or "2d").lower()
+    if chosen == "3d":
+        raise NotSimulatedError(
+            [Diagnostic("not-yet-simulated", "error", (), "projection='3d' is not drawn yet", fix="use projection='2d'")]
+        )
+    if chosen != "2d":
+        raise ValueError(f"unknown projection {projection!r}: choose '2d'")
+    if world_name is None:
+        world_name = Path(sys.argv[0]).name.split(".")[0] + ".yaml"
+    return Env(world_name, step_mode=step_mode, **kwargs)
+
+
+class Env(EnvAccess, EnvDrawing):
+    """One world, stepped from Python.
+
+    Args:
+        world_name: YAML file, or an already resolved scenario.
+        step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller does).
+        display: Show a window where there is a screen.
+        headless: No drawing at all; ``disable_all_plot`` is the same.
+        save_ani: Keep a frame at each sampled ``render`` and write the animation in ``end``.
+        ani_kwargs: Defaults of the animation writer.
+        full: Full-screen window.
+        log_file, log_level: Where and how much to log.
+        seed: Overrides ``world.seed``; without either, fresh entropy (``env.seed`` tells which).
+        strict: Treat what IR-SIM would ignore (misspelt keys, unknown behaviors) as errors.
+    """
+
+    def __init__(
+        self,
+        world_name: str | Path | ResolvedScenario,
+        *,
+        step_mode: str | None = None,
+        display: bool = True,
+        disable_all_plot: bool = False,
+        headless: bool = False,
+        save_ani: bool = False,
+        ani_kwargs: Mapping[str, Any] | None = None,
+        full: bool = False,
+        log_file: str | Path | None = None,
+        log_level: str = "INFO",
+        seed: int | None = None,
+        strict: bool = False,
+    ) -> None:
+        self.id = next(_IDS)
+        self.logger = Logger(log_level, log_file)
+        if isinstance(world_name, ResolvedScenario):
+            self.scenario = world_name
+        else:
+            self.scenario, warnings = read_or_raise(locate(str(world_name)), strict=strict)
+            for warning in warnings:
+                self.logger.warning(_one_line(warning))
+        self.step_mode = _step_mode(step_mode if step_mode is not None else self.scenario.world.step_mode)
+        chosen = seed if seed is not None else self.scenario.world.seed
+        self.seed = fresh_seed() if chosen is None else check_seed(chosen)
+        self.headless = headless or disable_all_plot
+        self.display = display and not self.headless
+        self.save_ani = save_ani
+        self.ani_kwargs = dict(ani_kwargs or {})
+        self.full = full
+        self._simulation = Simulation(self.scenario, [self.seed], history=True)
+        attach_python_behaviors(self._simulation)
+        self._objects = views(self._simulation)
+        self._world = WorldView(self._simulation)
+        self.world_param = WorldParam(self._simulation, self.step_mode)
+        self.env_param = EnvParam(self._objects, self.logger)
+        self.path_param = PathParam()
+        self._external = self.step_mode == "external"
+        self._events_seen = 0
+        self._label: str | None = self.scenario.world.status
+        self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
+        self.pause_flag = self.quit_flag = self.debug_flag = False
+        self.reset_flag = self.reload_flag = self.save_figure_flag = False
+        self.debug_count = 0
+        self._ended = False
+        self._start_drawing()
+        self._log_collisions()
+
+    # time ------------------------------------------------------------------------------------------------------------
+    def step(self, action: Any = None, action_id: Any = None) -> None:
+        """Advance by one period.
+
+        Args:
+            action: None lets behaviors drive. One control vector, a list of them (None inside = behavior), or a mapping
+                ``{name or id: vector}``; vectors are in the command frame of the drive.
+            action_id: Id or name of the target, or a list of them; default: the first robot, and on from there.
+
+        Raises:
+            ValueError: Unknown target, wrong number of numbers, or an action in external mode.
+            RuntimeError: The environment has ended.
+        """
+        if self.pause_flag or self.quit_flag or self.debug_flag or self._ended:
+            if self._held():
+                return
+        simulation = self._simulation
+        if self._external:
+            if action is not None:
+                raise ValueError("step_mode 'external' takes no actions: move the objects with set_state")
+            simulation.step_external()
+        else:
+            if action is not None:
+                for view, control in assign_actions(self._objects, action, action_id, self.logger.warning_once):
+                    simulation.command[view.row, : len(control)] = control
+                    simulation.given[view.row] = 1
+            simulation.step()
+        self._label = None
+        if simulation.state.event_count != self._events_seen:
+            self._log_collisions()
+
+    def _held(self) -> bool:
+        """What stands in the way of a step; True when the step is left out."""
+        if self._ended:
+            raise RuntimeError("the environment has ended: make a new one to go on")
+        if self.quit_flag:
+            self.quit()
+        if self.pause_flag:
+            return True
+        if self.debug_flag:
+            if self.debug_count <= 0:
+                return True
+            self.debug_count -= 1
+        return False
+
+    def rollout(self, steps: int, *, until_done: bool = True) -> Rollout:
+        """Let behaviors drive for up to ``steps`` periods, in one go, and return everything that happened.
+
+        The result is bit for bit what as many calls of :meth:`step` give.
+
+        Args:
+            steps: Periods at most.
+            until_done: End as soon as every robot has arrived or stopped.
+        """
+        if self._external:
+            raise ValueError("rollout needs step_mode 'internal'")
+        if self._ended:
+            raise RuntimeError("the environment has ended: make a new one to go on")
+        result = record_rollout(self._simulation, steps, until_done=until_done)
+        self._label = None
+        if self._simulation.state.event_count != self._events_seen:
+            self._log_collisions()
+        return result
+
+    def done(self, mode: str = "all") -> bool | None:
+        """Whether the robots are through: arrived, or stopped by a collision.
+
+        Args:
+            mode: ``all`` robots or ``any`` of them; another word gives None.
+        """
+        simulation = self._simulation
+        ended = (simulation.arrived | simulation.stopped)[simulation.robots]
+        if mode == "all":
+            return bool(ended.size) and bool(ended.all())
+        return bool(ended.any()) if mode == "any" else None
+
+    def reset(self, random: bool = False) -> None:
+        """Back to the start.
+
+        Args:
+            random: Draw the next scene (random shapes, poses, goals) instead of repeating this one.
+
+        Raises:
+            PlacementError: The next scene has no room for a random object.
+        """
+        if self._ended:
+            raise RuntimeError("the environment has ended: make a new one to go on")
+        self._simulation.reset(next_scene=random)
+        self.pause_flag = self.debug_flag = self.reset_flag = False
+        self.debug_count = 0
+        self._events_seen = 0
+        self._label = "Reset"
+        self._redraw()
+        self._log_collisions()
+
+    def refresh(self) -> None:
+        """Evaluate collisions and sensors anew after objects were moved; time does not advance."""
+        self._simulation.state.refresh()
+
+    def end(self, ending_time: float = 3.0, **kwargs: Any) -> None:
+        """Write the animation if there is one, close the figure and finish.
+
+        Args:
+            ending_time: Seconds a window stays open.
+            **kwargs: Options of the animation: ``ani_name``, ``suffix``, ``last_frame_duration``, ``fps``, …
+        """
+        if self._ended:
+            return
+        self._finish_drawing(ending_time, **kwargs)
+        self._ended = True
+        self.logger.info(f"{self} ended after {self.time} s")
+
+    close = end
+
+    def quit(self) -> NoReturn:
+        """End and leave the program."""
+        self.end(ending_time=1.0)
+        raise SystemExit(0)
+
+    def pause(self) -> None:
+        """Let ``step`` do nothing until ``resume``."""
+        self.pause_flag = True
+
+    def resume(self) -> None:
+        """Go on after ``pause`` or debugging."""
+        self.pause_flag = self.debug_flag = False
+
+    # what happened ---------------------------------------------------------------------------------------------------
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(int(self._simulation.count[0]) * self._world.step_time, 2)
+
+    @property
+    def sim_time(self) -> float:
+        """Simulated time, unrounded [s]."""
+        return self._simulation.time
+
+    @property
+    def events(self) -> list[Event]:
+        """Arrivals, waypoints and collisions since the last reset, in order."""
+        return read_events(self._simulation)
+
+    @property
+    def outcome(self) -> Outcome:
+        """``running``, ``success`` (all arrived, none collided before), ``collision``, or ``timeout`` past
+        ``world.time_limit``."""
+        return outcome_of(self._simulation)
+
+    @property
+    def status(self) -> str:
+        """One word for titles: Arrived, Collision, Pause, Running, …"""
+        if self.pause_flag:
+            return "Pause"
+        simulation = self._simulation
+        if simulation.robots.any():
+            if simulation.arrived[simulation.robots].all():
+                return "Arrived"
+            if simulation.collided[simulation.robots].any():
+                return "Collision"
+        if self._label is not None:
+            return self._label
+        if self.debug_flag:
+            return "Pause (Debugging)"
+        return "Running (keyboard)" if self.world_param.control_mode == "keyboard" else "Running"
+
+    def set_status(self, status: str) -> None:
+        """Label shown until the next step."""
+        self._label = str(status)
+
+    # seeds -----------------------------------------------------------------------------------------------------------
+    def set_random_seed(self, seed: int | None = None, reload: bool = False) -> None:
+        """Change the seed; the next ``reset`` starts again from its first scene.
+
+        Args:
+            seed: 0 to 2**64 - 1; None draws a fresh one.
+            reload: Reset at once.
+        """
+        self.seed = fresh_seed() if seed is None else check_seed(seed)
+        self._simulation.reseed([self.seed])
+        if reload:
+            self.reset()
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """A NumPy generator for your own code; it starts anew with every reset, from this episode's key."""
+        key = self._simulation.key()
+        if self._rng is None or self._rng[0] != key:
+            self._rng = key, generator(*key, stream="user")
+        return self._rng[1]
+
+    def _log_collisions(self) -> None:
+        events = read_events(self._simulation, start=self._events_seen)
+        self._events_seen += len(events)
+        for event in events:
+            if event.kind != "collision":
+                continue
+            pair = [event.object, event.partner]
+            for name, other in (pair, pair[::-1]):
+                view = self.get_object_by_name(str(name))
+                if view is not None and view.role == "robot" and view.collision:
+                    state = [round(float(v), 3) for v in view.state[:, 0]]
+                    self.logger.warning(f"{name} collided with {other} at state {state}")
+
+    def __str__(self) -> str:
+        return f"Environment: {self.scenario.name} (id {self.id})"
+
+
+EnvBase = Env
+
+
+def _step_mode(mode: str) -> str:
+    chosen = str(mode).strip().lower()
+    if chosen not in ("internal", "external"):
+        raise ValueError(f"unknown step_mode {mode!r}: choose internal or external")
+    return chosen
+
+
+def _one_line(finding: Diagnostic) -> str:
+    where = f"line {finding.line}: " if finding.line else ""
+    fix = f" ({finding.fix})" if finding.fix else ""
+    return f"{where}{format_path(finding.path)}: {finding.message}{fix} [{finding.code}]"

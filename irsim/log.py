@@ -1,0 +1,76 @@
+"""A logger per environment: lines ``YYYY-MM-DD HH:mm | LEVEL | message`` on standard output and, if asked, in a file."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+__all__ = ["LEVELS", "Logger"]
+
+LEVELS = {"TRACE": 5, "DEBUG": 10, "INFO": 20, "SUCCESS": 25, "WARNING": 30, "ERROR": 40, "CRITICAL": 50}
+
+
+class Logger:
+    """Writes lines of at least ``level``; two environments never share one.
+
+    Args:
+        level: Name in :data:`LEVELS`, any case.
+        file: Also append every line to this file.
+
+    Raises:
+        ValueError: Unknown level.
+    """
+
+    def __init__(self, level: str = "INFO", file: str | Path | None = None) -> None:
+        name = str(level).upper()
+        if name not in LEVELS:
+            raise ValueError(f"unknown log level {level!r}: choose one of {', '.join(LEVELS)}")
+        self.level = LEVELS[name]
+        self.file = Path(file) if file is not None else None
+        self._once: set[str] = set()
+
+    def _write(self, name: str, message: object) -> None:
+        if LEVELS[name] < self.level:
+            return
+        line = f"{time.strftime('%Y-%m-%d %H:%M')} | {name:<8} | {message}"
+        print(line, file=sys.stdout)
+        if self.file is not None:
+            with self.file.open("a", encoding="utf-8") as stream:
+                stream.write(line + "\n")
+
+    def trace(self, message: object) -> None:
+        """Log at TRACE."""
+        self._write("TRACE", message)
+
+    def debug(self, message: object) -> None:
+        """Log at DEBUG."""
+        self._write("DEBUG", message)
+
+    def info(self, message: object) -> None:
+        """Log at INFO."""
+        self._write("INFO", message)
+
+    def success(self, message: object) -> None:
+        """Log at SUCCESS."""
+        self._write("SUCCESS", message)
+
+    def warning(self, message: object) -> None:
+        """Log at WARNING."""
+        self._write("WARNING", message)
+
+    def error(self, message: object) -> None:
+        """Log at ERROR."""
+        self._write("ERROR", message)
+
+    def critical(self, message: object) -> None:
+        """Log at CRITICAL."""
+        self._write("CRITICAL", message)
+
+    def warning_once(self, message: str, key: str | None = None) -> None:
+        """Log at WARNING the first time this ``key`` (default: the message) is seen, at DEBUG after that."""
+        seen = (key or message) in self._once
+        self._once.add(key or message)
+        write: Callable[[object], None] = self.debug if seen else self.warning
+        write(message)

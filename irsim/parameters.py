@@ -1,0 +1,117 @@
+"""Parameter objects that belong to one environment: world, engine and paths, under the names scripts know."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from irsim.world.build import COLLISION_MODES
+
+if TYPE_CHECKING:
+    from irsim.log import Logger
+    from irsim.simulation import Simulation
+    from irsim.views import ObjectView
+
+__all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
+
+
+class WorldParam:
+    """Time and modes of one environment; ``control_mode`` and ``collision_mode`` may be changed at run time."""
+
+    def __init__(self, simulation: Simulation, step_mode: str) -> None:
+        self._simulation = simulation
+        world = simulation.scenario.world
+        self.step_mode = step_mode
+        self.control_mode: str = world.control_mode
+        self.step_time: float = world.step_time
+        self._collision_mode: str = world.collision_mode
+        self.gravity, self.friction = world.gravity, world.friction
+        self.restitution, self.drive_tau = world.restitution, world.drive_tau
+
+    @property
+    def count(self) -> int:
+        """Executed steps."""
+        return int(self._simulation.count[0])
+
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(self.count * self.step_time, 2)
+
+    @property
+    def collision_mode(self) -> str:
+        """What happens to objects that touch."""
+        return self._collision_mode
+
+    @collision_mode.setter
+    def collision_mode(self, mode: str) -> None:
+        if mode not in COLLISION_MODES:
+            raise ValueError(f"unknown collision mode {mode!r}: choose one of {', '.join(COLLISION_MODES)}")
+        self._collision_mode = mode
+        self._simulation.world.collision_mode = COLLISION_MODES[mode]
+
+
+class EnvParam:
+    """What belongs to the environment as a whole."""
+
+    def __init__(self, objects: list[ObjectView], logger: Logger) -> None:
+        self.objects, self.logger = objects, logger
+        self.platform_name = sys.platform
+
+
+class PathParam:
+    """Where files go: folders beside the running script."""
+
+    def __init__(self) -> None:
+        self.root_path = sys.path[0] or str(Path.cwd())
+        self.ani_buffer_path = self.root_path + "/animation_buffer"
+        self.ani_path = self.root_path + "/animation"
+        self.fig_path = self.root_path + "/figure"
+
+
+class WorldView:
+    """The world of one environment: extent, time, sampling."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        world = simulation.scenario.world
+        self.name = simulation.scenario.name
+        self.width, self.height = world.width, world.height
+        self.offset: list[float] = [float(v) for v in world.offset]
+        self.step_time: float = world.step_time
+        self.sample_time: float = world.sample_time if world.sample_time is not None else world.step_time
+        self.steps_per_sample = max(1, int(round(self.sample_time / self.step_time, 9)))
+        self.plot_parse = world.plot
+
+    @property
+    def x_range(self) -> list[float]:
+        """[xmin, xmax] of the world [m]."""
+        return [self.offset[0], self.offset[0] + self.width]
+
+    @property
+    def y_range(self) -> list[float]:
+        """[ymin, ymax] of the world [m]."""
+        return [self.offset[1], self.offset[1] + self.height]
+
+    @property
+    def count(self) -> int:
+        """Executed steps."""
+        return int(self._simulation.count[0])
+
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(self.count * self.step_time, 2)
+
+    @property
+    def sampling(self) -> bool:
+        """Whether this step is one that is drawn."""
+        return self.count % self.steps_per_sample == 0
+
+    @property
+    def grid_map(self) -> np.ndarray | None:
+        """(nx, ny) occupancy 0 to 100, None without a map."""
+        return None

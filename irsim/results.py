@@ -1,0 +1,154 @@
+"""Typed results of ``irsim.validate``, ``irsim.run`` and ``irsim.render``: what the CLI prints and ``--json`` dumps."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+__all__ = ["EventRecord", "Finding", "RenderResult", "RobotResult", "RunResult", "ValidationReport"]
+
+
+class Result(BaseModel):
+    """Base of all results: fields are documented, nothing else gets in."""
+
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+
+class Finding(Result):
+    """One diagnostic."""
+
+    code: str
+    """Name in the closed list of codes; ``irsim describe CODE`` explains it."""
+    severity: Literal["error", "warning", "hint"]
+    """``error``: will not run as asked; ``warning``: runs, but likely not what was meant; ``hint``: worth knowing."""
+    path: str
+    """Where in the document: ``robot[0].behavior.name``."""
+    line: int | None
+    """Line in the file, from 1."""
+    column: int | None
+    """Column in the line, from 1."""
+    message: str
+    """What is wrong."""
+    given: Any = None
+    """The value as written."""
+    allowed: list[str] | str | None = None
+    """What would be accepted."""
+    fix: str | None = None
+    """What to write instead."""
+    tolerated: bool = False
+    """Whether ``irsim run`` goes on in spite of it, as IR-SIM does."""
+
+
+class ValidationReport(Result):
+    """What ``irsim validate`` found in one file."""
+
+    file: str
+    """The file, or the name given to a text."""
+    valid: bool
+    """No errors."""
+    summary: str
+    """One line: what the scenario holds, or how much is wrong with it."""
+    errors: int
+    """How many errors."""
+    warnings: int
+    """How many warnings."""
+    hints: int
+    """How many hints."""
+    findings: list[Finding]
+    """All findings, errors first."""
+    counts: dict[str, int] = Field(default_factory=dict)
+    """Robots, obstacles and sensors of a valid scenario."""
+
+
+class EventRecord(Result):
+    """Something that happened in an episode."""
+
+    kind: Literal["arrival", "waypoint", "collision"]
+    """``collision`` is reported when contact begins."""
+    time: float
+    """Simulated time [s]."""
+    step: int
+    """Steps executed; 0 is the initial state."""
+    object: str
+    """Name of the object, or of the first of the two that touch."""
+    partner: str | None
+    """Name of the other one in a collision."""
+    x: float
+    """Where [m]."""
+    y: float
+    """Where [m]."""
+
+
+class RobotResult(Result):
+    """How the episode ended for one robot."""
+
+    name: str
+    outcome: Literal["success", "collision", "timeout"]
+    """Exactly one: arrived without a collision before; collided before it arrived; neither."""
+    time_to_goal: float | None
+    """Time of first arrival [s]; None when it never arrived."""
+    collision_count: int
+    """Contacts that began."""
+    path_length: float
+    """Distance travelled [m]."""
+    distance_to_goal: float | None
+    """Distance to the present goal at the end [m]; None without a goal."""
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad] at the end."""
+
+
+class RunResult(Result):
+    """What ``irsim run`` did."""
+
+    scenario: str
+    """The file."""
+    seed: int
+    """Seed that was used."""
+    outcome: Literal["success", "collision", "timeout"]
+    """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
+    summary: str
+    """One sentence: who arrived, who did not and why."""
+    steps: int
+    """Executed steps."""
+    sim_time: float
+    """Simulated time [s]."""
+    time_limit: float
+    """Horizon [s]: from the file, from ``--steps``, or max(30 s, 4 x longest way / top speed)."""
+    time_limit_from: Literal["argument", "scenario", "default"]
+    """Where the horizon comes from."""
+    robots: list[RobotResult]
+    """One entry per robot."""
+    events: list[EventRecord]
+    """The first events in order."""
+    event_count: int
+    """How many events there were."""
+    warnings: list[Finding]
+    """What is odd about the scenario."""
+    files: list[str] = Field(default_factory=list)
+    """Files written."""
+    version: str
+    """Version of irsim."""
+    reproduce: str
+    """Command that gives the same again."""
+
+
+class RenderResult(Result):
+    """What ``irsim render`` drew."""
+
+    scenario: str
+    """The file."""
+    seed: int
+    """Seed that was used."""
+    steps: int
+    """Executed steps."""
+    frames: int
+    """Pictures drawn."""
+    size: tuple[int, int]
+    """Width and height [px]."""
+    files: list[str]
+    """Files written."""
+    warnings: list[Finding]
+    """What is odd about the scenario."""
+    reproduce: str
+    """Command that gives the same again."""

@@ -1,0 +1,168 @@
+"""The only code that advances time: a scenario and its seeds as one or many worlds of the core."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim import _core as core
+from irsim.diagnostics import Diagnostic
+from irsim.errors import PlacementError
+from irsim.world.build import build_world
+
+if TYPE_CHECKING:
+    from irsim.scenario.objects import ResolvedScenario
+
+__all__ = ["PythonDecision", "Simulation"]
+
+PythonDecision = Callable[["Simulation"], None]
+"""Fills ``command`` of the rows that are its own; called between the native decisions and the motion."""
+
+
+class Simulation:
+    """``copies`` worlds of one scenario; row ``w * objects + i`` is object i of world w.
+
+    Args:
+        scenario: What to simulate.
+        seeds: (W,) one seed per world.
+        threads: Worlds are shared out over this many threads; results do not depend on it.
+        history: Keep the poses of every step, for trajectories.
+
+    Attributes:
+        world, state: The core's fixed and changing part.
+        pose: (R, 3) x, y [m], heading [rad], world frame. A writable view of the core's memory, as are all others.
+        extra: (R, E) extra state rows (steering angle of Ackermann drives first).
+        control: (R, 3) executed control in the command frame, without noise.
+        twist: (R, 3) true velocity in the world frame [m/s] and yaw rate [rad/s] of the last step.
+        command, given: (R, 3), (R,) control wanted for the next step, and which rows it is imposed on.
+        arrived, collided, stopped: (R,) flags, uint8.
+        goal: (R, 3) current goals; NaN where there is none.
+        decisions: Python behaviors, called in every step; empty in worlds that have none.
+
+    Raises:
+        PlacementError: A random object found no room.
+    """
+
+    def __init__(
+        self,
+        scenario: ResolvedScenario,
+        seeds: Sequence[int] | NDArray[np.uint64],
+        *,
+        threads: int = 1,
+        history: bool = False,
+    ) -> None:
+        self.scenario = scenario
+        self.threads = threads
+        self.copies = len(seeds)
+        self.world = build_world(scenario, self.copies)
+        self.state = core.State(self.world, np.asarray(seeds, dtype=np.uint64), history)
+        self.objects = self.world.objects
+        self.decisions: list[PythonDecision] = []
+        state = self.state
+        self.pose, self.extra, self.control, self.twist = state.pose, state.extra, state.control, state.twist
+        self.command, self.given = state.command, state.given
+        self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
+        self.goal, self.radius = state.goal, state.radius
+        self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
+        self.count = state.count
+        self._all = np.ones(self.copies, dtype=np.uint8)
+        self.robots = np.array([record.role == "robot" for record in scenario.objects], dtype=bool)
+        self._check_placement()
+
+    def step(self) -> None:
+        """Advance every world by one period."""
+        if not self.decisions:
+            core.advance(self.world, self.state, 1, threads=self.threads)
+            return
+        world, state = self.world, self.state
+        core.decide(world, state)
+        for decide in self.decisions:
+            decide(self)
+        core.limit(world, state)
+        core.integrate(world, state)
+        core.finish(world, state)
+        core.collide(world, state)
+        core.arrive(world, state)
+        core.sense(world, state)
+
+    def step_external(self) -> None:
+        """Count a period in which the caller moved the objects: collisions, arrivals and sensors are evaluated."""
+        core.advance(self.world, self.state, 1, threads=self.threads, external=True)
+
+    def advance(self, steps: int, *, until_done: bool = False) -> int:
+        """Advance by up to ``steps`` periods without coming back to Python in between where no Python takes part.
+
+        Args:
+            steps: Periods.
+            until_done: Let a world rest once each of its robots has arrived or stopped.
+
+        Returns:
+            Periods executed by the world that went on longest.
+        """
+        if not self.decisions:
+            return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
+        for done in range(steps):
+            if until_done and self.copies == 1 and bool(self.done()[0]):
+                return done
+            self.step()
+        return steps
+
+    def done(self) -> NDArray[np.bool_]:
+        """(W,) whether every robot of a world has arrived or stopped; False without robots."""
+        ended = (self.arrived | self.stopped).astype(bool).reshape(self.copies, self.objects)[:, self.robots]
+        return ended.all(axis=1) if ended.shape[1] else np.zeros(self.copies, dtype=bool)
+
+    def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
+        """Put worlds back to their start.
+
+        Args:
+            mask: (W,) which worlds; all by default.
+            next_scene: Draw the next scene (random shapes, placements, goals) instead of keeping this one.
+
+        Raises:
+            PlacementError: A random object found no room in the next scene.
+        """
+        self.state.reset(self._all if mask is None else np.asarray(mask, dtype=np.uint8), next_scene)
+        self._check_placement()
+
+    def reseed(self, seeds: Sequence[int] | NDArray[np.uint64], mask: NDArray[np.bool_] | None = None) -> None:
+        """New seeds; the next reset of these worlds begins again at their first scene."""
+        chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
+        self.state.reseed(np.asarray(seeds, dtype=np.uint64), chosen)
+
+    def key(self, world: int = 0) -> tuple[int, int, int]:
+        """(seed, scene, noise episode) of a world."""
+        return int(self.state.seed[world]), int(self.state.scene[world]), int(self.state.noise[world])
+
+    @property
+    def time(self) -> float:
+        """Simulated time of the first world, unrounded [s]."""
+        return float(self.count[0]) * self.scenario.world.step_time
+
+    def _check_placement(self) -> None:
+        failed = np.flatnonzero(self.state.failed_placement >= 0)
+        if not failed.size:
+            return
+        index = int(self.state.failed_placement[failed[0]])
+        raise PlacementError([self._crowded(index, int(self.state.seed[failed[0]]))], self.scenario.text)
+
+    def _crowded(self, index: int, seed: int) -> Diagnostic:
+        record = self.scenario.objects[index]
+        placement: Any = next(p for p in self.scenario.placements if index in p.objects)
+        low, high = placement.range_low, placement.range_high
+        area = abs((high[0] - low[0]) * (high[1] - low[1]))
+        return Diagnostic(
+            code="placement-crowded",
+            severity="error",
+            path=(*record.path, "distribution"),
+            message=(
+                f"no room for {record.name!r} (object {len(placement.objects)} of this entry compete for {area:.3g} m2) "
+                f"with seed {seed}"
+            ),
+            given=len(placement.objects),
+            fix="lower `number` or `min_distance`, make the shapes smaller, or widen range_low/range_high",
+            file=self.scenario.source,
+        )

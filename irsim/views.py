@@ -1,0 +1,448 @@
+"""Objects as scripts see them: a view holds the simulation and an id; every read is a fresh copy of its row."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.info import ObjectInfo, ObstacleInfo
+from irsim.scans import Lidar
+
+if TYPE_CHECKING:
+    from irsim.scenario.objects import ObjectRecord
+    from irsim.simulation import Simulation
+
+__all__ = ["ObjectView", "views"]
+
+Floats = NDArray[np.float64]
+_RADIUS_MARGIN = 0.1
+"""What avoidance methods of IR-SIM add to a body's radius [m]."""
+
+
+def _column(values: Any) -> Floats:
+    """(n, 1) read-only copy."""
+    column = np.array(values, dtype=np.float64).reshape(-1, 1)
+    column.setflags(write=False)
+    return column
+
+
+class ObjectView:
+    """One robot or obstacle.
+
+    Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
+    ``set_velocity`` and ``set_goal``.
+
+    Attributes:
+        id: Number in its environment; robots first.
+        record: Its resolved scenario entry.
+        world, row: World index in a batch and row in the simulation's arrays.
+        plot_kwargs: Drawing options, may be changed at any time.
+    """
+
+    def __init__(self, simulation: Simulation, object_id: int, world: int = 0) -> None:
+        self._simulation = simulation
+        self.id = object_id
+        self.world = world
+        self.row = world * simulation.objects + object_id
+        record = simulation.scenario.objects[object_id]
+        self.record: ObjectRecord = record
+        self.name, self.role, self.group, self.group_name = record.name, record.role, record.group, record.group_name
+        self.color, self.description = record.color, record.description
+        self.static, self.unobstructed = record.static, record.unobstructed
+        self.goal_threshold, self.arrive_mode = record.goal_threshold, record.arrive_mode
+        self.fov, self.fov_radius = record.fov, record.fov_radius
+        self.wander, self.loop = record.wander, record.loop
+        self.state_dim, self.vel_dim = record.state_dim, record.vel_dim
+        self.state_shape, self.vel_shape = (record.state_dim, 1), (record.vel_dim, 1)
+        self.wheelbase, self.tags = record.wheelbase, record.tags
+        self.text: str | None = None
+        self.goal_text: str | None = None
+        self._pose = simulation.pose[self.row]
+        self._state = simulation.pose[self.row, :, None]
+        self._plain = record.state_dim == 3
+        self.sensors: list[Lidar] = _sensors(simulation, self)
+        self.lidar: Lidar | None = self.sensors[0] if self.sensors else None
+
+    # state -----------------------------------------------------------------------------------------------------------
+    @property
+    def state(self) -> Floats:
+        """(3 or more, 1) x, y [m], heading [rad], then extra rows (steering angle of Ackermann drives)."""
+        if self._plain:
+            state = self._state.copy()
+        else:
+            extra = self._simulation.extra[self.row, : self.state_dim - 3]
+            state = np.concatenate([self._pose, extra])[:, None]
+        state.setflags(write=False)
+        return state
+
+    @property
+    def init_state(self) -> Floats:
+        """(state_dim, 1) the state that ``reset`` returns to."""
+        return _column(self._simulation.state.initial_state(self.row)[: self.state_dim])
+
+    @property
+    def position(self) -> Floats:
+        """(2, 1) x, y [m], world frame."""
+        return _column(self._pose[:2])
+
+    @property
+    def orientation(self) -> float:
+        """Heading of the body [rad]."""
+        return float(self._pose[2])
+
+    @property
+    def heading(self) -> float:
+        """Direction of travel of an ``omni`` drive, of the body otherwise [rad]."""
+        if self.kinematics == "omni":
+            forward, lateral = self._simulation.control[self.row, :2]
+            return math.atan2(lateral, forward) + float(self._pose[2])
+        return float(self._pose[2])
+
+    @property
+    def velocity(self) -> Floats:
+        """(vel_dim, 1) executed control, in the command frame of the drive."""
+        return _column(self._simulation.control[self.row, : self.vel_dim])
+
+    @property
+    def velocity_xy(self) -> Floats:
+        """(2, 1) velocity in the world frame [m/s] that the present control gives."""
+        return _column(self._simulation.state.velocity_world(self.row))
+
+    @property
+    def max_speed(self) -> float:
+        """Highest speed the limits allow [m/s]."""
+        top = self.record.vel_max
+        if self.kinematics in ("omni", "omni_angular"):
+            return math.hypot(top[0], top[1])
+        return float(top[0])
+
+    @property
+    def trajectory(self) -> list[Floats]:
+        """States after each executed step, (state_dim, 1) each, without the initial one."""
+        return [_column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
+
+    def set_state(self, state: Any, init: bool = False) -> None:
+        """Put the object somewhere else.
+
+        Args:
+            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows.
+            init: Also what ``reset`` returns to.
+
+        Raises:
+            ValueError: Wrong number of numbers, or not finite.
+        """
+        values = np.asarray(state, dtype=np.float64).reshape(-1)
+        if values.size != self.state_dim or not np.isfinite(values).all():
+            raise ValueError(f"the state of {self.name!r} is {self.state_dim} finite numbers, not {state!r}")
+        self._pose[:] = values[:3]
+        self._simulation.extra[self.row, : self.state_dim - 3] = values[3:]
+        if init:
+            self._simulation.state.set_initial(self.row)
+        self._simulation.state.moved(self.row)
+
+    def set_velocity(self, velocity: Any, init: bool = False) -> None:
+        """Overwrite the present control (acceleration limits start from it).
+
+        Args:
+            velocity: ``vel_dim`` numbers in the command frame.
+            init: Also what ``reset`` returns to.
+
+        Raises:
+            ValueError: Wrong number of numbers.
+        """
+        values = np.asarray(velocity, dtype=np.float64).reshape(-1)
+        if values.size != self.vel_dim:
+            raise ValueError(f"the velocity of {self.name!r} is {self.vel_dim} numbers, not {velocity!r}")
+        self._simulation.control[self.row, : self.vel_dim] = values
+        if init:
+            self._simulation.state.set_initial(self.row)
+
+    # goals -----------------------------------------------------------------------------------------------------------
+    @property
+    def goal(self) -> Floats | None:
+        """(2 or 3, 1) the present goal, None without one."""
+        goals = self._simulation.state.goals(self.row)
+        return _column(goals[0]) if goals else None
+
+    @property
+    def goals(self) -> list[Floats]:
+        """The present goal and those still to come, (2 or 3, 1) each."""
+        return [_column(goal) for goal in self._simulation.state.goals(self.row)]
+
+    def set_goal(self, goal: Any, init: bool = False) -> None:
+        """Give a new goal.
+
+        Args:
+            goal: None for no goal; 2 or 3 numbers in any shape; or a list of such for waypoints.
+            init: Also what ``reset`` returns to.
+
+        Raises:
+            ValueError: Not goals of 2 or 3 numbers.
+        """
+        self._simulation.state.set_goals(self.row, _goal_list(goal), init)
+
+    def append_goal(self, goal: Any) -> None:
+        """Add a goal behind those already there."""
+        goals = [list(map(float, g)) for g in self._simulation.state.goals(self.row)]
+        self._simulation.state.set_goals(self.row, goals + _goal_list(goal), False)
+
+    # flags -----------------------------------------------------------------------------------------------------------
+    @property
+    def arrive(self) -> bool:
+        """Whether the last goal is reached."""
+        return bool(self._simulation.arrived[self.row])
+
+    @property
+    def collision(self) -> bool:
+        """Whether the object touches something."""
+        return bool(self._simulation.collided[self.row])
+
+    @property
+    def stop_flag(self) -> bool:
+        """Whether the collision mode holds the object."""
+        return bool(self._simulation.stopped[self.row])
+
+    arrive_flag = arrive
+    collision_flag = collision
+
+    @property
+    def collision_obj(self) -> list[ObjectView]:
+        """The objects it touches, ``unobstructed`` ones left out."""
+        pairs = self._simulation.state.collision_pairs(self.world)
+        others = [int(b if a == self.id else a) for a, b in pairs if self.id in (a, b)]
+        records = self._simulation.scenario.objects
+        return [self.environment_objects[i] for i in others if not records[i].unobstructed]
+
+    def done(self) -> bool:
+        """Whether the object has arrived or stopped."""
+        return self.arrive or self.stop_flag
+
+    # others ----------------------------------------------------------------------------------------------------------
+    @property
+    def environment_objects(self) -> list[ObjectView]:
+        """All objects of its world, in id order."""
+        return views(self._simulation, self.world)
+
+    @property
+    def external_objects(self) -> list[ObjectView]:
+        """All objects of its world but itself."""
+        return [other for other in self.environment_objects if other.id != self.id]
+
+    @property
+    def ego_object(self) -> ObjectView:
+        """Itself."""
+        return self
+
+    # body ------------------------------------------------------------------------------------------------------------
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return str(getattr(self.record.shape, "name", ""))
+
+    @property
+    def kinematics(self) -> str | None:
+        """Name of the drive; None for objects that have none."""
+        return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
+
+    @property
+    def radius(self) -> float:
+        """Radius of the smallest circle round the body [m]."""
+        return float(self._simulation.radius[self.row])
+
+    @property
+    def radius_extend(self) -> float:
+        """``radius`` plus the margin that avoidance methods keep."""
+        return self.radius + _RADIUS_MARGIN
+
+    @property
+    def vertices(self) -> Floats | None:
+        """(2, M) outline in the world frame: 64 points for a circle, None for a compound."""
+        return self._outline(world_frame=True)
+
+    @property
+    def original_vertices(self) -> Floats | None:
+        """(2, M) outline in the body frame."""
+        return self._outline(world_frame=False)
+
+    @property
+    def part_vertices(self) -> list[Floats] | None:
+        """Outlines of the parts of a compound, (2, M) each, world frame; None for simple shapes."""
+        if self.shape != "compound":
+            return None
+        return [self._part(i, world_frame=True) for i in range(len(self._simulation.state.parts(self.row)))]
+
+    @property
+    def length(self) -> float:
+        """Extent of the body along its x axis [m]."""
+        return self._extent(0)
+
+    @property
+    def width(self) -> float:
+        """Extent of the body along its y axis [m]."""
+        return self._extent(1)
+
+    @property
+    def geometry(self) -> Any:
+        """The body as a shapely geometry, world frame (circles as polygons of 64 vertices)."""
+        from irsim.world.geometry import shapely_geometry
+
+        return shapely_geometry(self._simulation, self.row, world_frame=True)
+
+    @property
+    def original_geometry(self) -> Any:
+        """The body as a shapely geometry, body frame."""
+        from irsim.world.geometry import shapely_geometry
+
+        return shapely_geometry(self._simulation, self.row, world_frame=False)
+
+    @property
+    def centroid(self) -> Floats:
+        """(2, 1) centre of the body's area, world frame."""
+        point = self.geometry.centroid
+        return _column([point.x, point.y])
+
+    # limits and description ------------------------------------------------------------------------------------------
+    @property
+    def vel_min(self) -> Floats:
+        """(vel_dim, 1) lower control limits."""
+        return _column(self.record.vel_min)
+
+    @property
+    def vel_max(self) -> Floats:
+        """(vel_dim, 1) upper control limits."""
+        return _column(self.record.vel_max)
+
+    @property
+    def acce(self) -> Floats:
+        """(vel_dim, 1) limits on the change of each control per second."""
+        return _column(self.record.acce)
+
+    def get_vel_range(self) -> tuple[Floats, Floats]:
+        """(lower, upper) controls that the limits allow in the next step, (vel_dim, 1) each."""
+        change = np.asarray(self.acce) * self._simulation.scenario.world.step_time
+        now = self.velocity
+        return _column(np.maximum(self.vel_min, now - change)), _column(np.minimum(self.vel_max, now + change))
+
+    @property
+    def abbr(self) -> str:
+        """Short label: ``r0``, ``o3``."""
+        return f"{self.role[0]}{self.id}"
+
+    @property
+    def goal_abbr(self) -> str:
+        """Short label of the goal: ``G-r0``."""
+        return f"G-{self.abbr}"
+
+    @property
+    def beh_config(self) -> dict[str, Any]:
+        """The behavior's keys, or those of the group behavior."""
+        options = self.record.behavior or self.record.group_behavior
+        return {} if options is None else options.model_dump()
+
+    @property
+    def plot_kwargs(self) -> Any:
+        """Drawing options."""
+        return self.record.plot
+
+    @property
+    def info(self) -> ObjectInfo:
+        """A snapshot of what the object is."""
+        return ObjectInfo.of(self)
+
+    def get_info(self) -> ObjectInfo:
+        """Same as ``info``."""
+        return self.info
+
+    def get_obstacle_info(self) -> ObstacleInfo:
+        """Where the object is and how big."""
+        return ObstacleInfo.of(self)
+
+    def get_lidar_scan(self) -> dict[str, Any]:
+        """Scan of the first lidar; see :meth:`irsim.scans.Lidar.get_scan`."""
+        return self._first_lidar().get_scan()
+
+    def get_lidar_points(self) -> Floats | None:
+        """(2, K) points of the first lidar, sensor frame."""
+        return self._first_lidar().get_points()
+
+    def get_lidar_offset(self) -> list[float]:
+        """[x, y, theta] of the first lidar, body frame."""
+        return self._first_lidar().get_offset()
+
+    def set_laser_color(self, laser_indices: Any, laser_color: str = "cyan", alpha: float = 0.3) -> None:
+        """Draw some beams of the first lidar in another colour."""
+        self._first_lidar().set_laser_color(laser_indices, laser_color, alpha)
+
+    def set_text(self, text: str | None) -> None:
+        """Label to draw instead of ``abbr``; None restores it."""
+        self.text = text
+
+    def set_goal_text(self, text: str | None) -> None:
+        """Label of the goal; None restores it."""
+        self.goal_text = text
+
+    def __repr__(self) -> str:
+        x, y, theta = self._pose
+        return f"<{self.role} {self.name!r} at ({x:.3f}, {y:.3f}, {theta:.3f})>"
+
+    # -----------------------------------------------------------------------------------------------------------------
+    def _first_lidar(self) -> Lidar:
+        if self.lidar is None:
+            raise AttributeError(f"{self.name!r} has no lidar: add one under `sensors` in its scenario entry")
+        return self.lidar
+
+    def _part(self, part: int, *, world_frame: bool) -> Floats:
+        state = self._simulation.state
+        if state.parts(self.row)[part] == "circle":
+            x, y, radius = state.circle(self.row, part, world_frame)
+            turn = self.orientation if world_frame else 0.0
+            angles = turn - np.arange(64) * (2 * math.pi / 64)
+            return np.vstack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
+        return state.vertices(self.row, part, world_frame).T.copy()
+
+    def _outline(self, *, world_frame: bool) -> Floats | None:
+        return None if self.shape == "compound" else self._part(0, world_frame=world_frame)
+
+    def _extent(self, axis: int) -> float:
+        state = self._simulation.state
+        low, high = math.inf, -math.inf
+        for part, kind in enumerate(state.parts(self.row)):
+            if kind == "circle":
+                *centre, radius = state.circle(self.row, part, False)
+                low, high = min(low, centre[axis] - radius), max(high, centre[axis] + radius)
+            else:
+                along = state.vertices(self.row, part, False)[:, axis]
+                low, high = min(low, float(along.min())), max(high, float(along.max()))
+        return high - low
+
+
+def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
+    """The views of one world, made once per simulation."""
+    cache: dict[int, list[ObjectView]] = simulation.__dict__.setdefault("_views", {})
+    if world not in cache:
+        cache[world] = [ObjectView(simulation, i, world) for i in range(simulation.objects)]
+    return cache[world]
+
+
+def _sensors(simulation: Simulation, view: ObjectView) -> list[Lidar]:
+    mine = [index for index, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.id]
+    return [Lidar(simulation, view, options, index) for index, options in zip(mine, view.record.sensors, strict=True)]
+
+
+def _goal_list(goal: Any) -> list[list[float]]:
+    if goal is None:
+        return []
+    several = isinstance(goal, Sequence) and not isinstance(goal, str) and len(goal) > 0
+    if several and all(isinstance(g, (Sequence, np.ndarray)) and np.size(g) in (2, 3) for g in goal):
+        goals = [np.asarray(g, dtype=np.float64).reshape(-1).tolist() for g in goal]
+    elif hasattr(goal, "popleft"):
+        goals = [np.asarray(g, dtype=np.float64).reshape(-1).tolist() for g in goal]
+    else:
+        goals = [np.asarray(goal, dtype=np.float64).reshape(-1).tolist()]
+    if any(len(g) not in (2, 3) or not all(map(math.isfinite, g)) for g in goals):
+        raise ValueError(f"a goal is 2 or 3 finite numbers (x, y, theta), not {goal!r}")
+    return goals

@@ -1,0 +1,111 @@
+"""Resolved scenario → core world: every option of every object handed to the kernel that computes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from irsim import _core as core
+from irsim.registry import BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from irsim.scenario.objects import ObjectRecord, ResolvedScenario
+
+__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "padded"]
+
+COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2}
+PLACEMENT_ATTEMPTS = 1000
+_ROLES = {"robot": 0, "obstacle": 1}
+_TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
+_ARRIVE = {"position": 0, "state": 1}
+
+
+def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
+    """Three numbers: ``values`` cut or filled up with ``fill``."""
+    row = [float(v) for v in values[:3]]
+    return row + [fill] * (3 - len(row))
+
+
+def feature_of(registry: Registry, options: BaseModel) -> Feature:
+    """The registered feature an options model belongs to."""
+    feature = registry.get(str(getattr(options, "name", "")))
+    if feature is None:
+        raise LookupError(f"{type(options).__name__} is not a registered {registry.kind}")
+    return feature
+
+
+def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> Any:
+    """The core's options object for ``options``; ``resolved`` fills fields that depend on more than these options.
+
+    Returns None for features computed in Python.
+    """
+    kernel = feature_of(registry, options).kernel
+    if kernel is None:
+        return None
+    return kernel(**{name: resolved[name] if name in resolved else getattr(options, name) for name in kernel.fields})
+
+
+def build_object(record: ObjectRecord) -> core.ObjectSpec:
+    """One object of the core's template world."""
+    shape = feature_of(SHAPES, record.shape)
+    if shape.function is None:
+        raise LookupError(f"shape {shape.name!r} has no geometry")
+    drive = None
+    if record.kinematics is not None:
+        psi_max = getattr(record.kinematics, "psi_max", None)
+        drive = kernel_options(
+            KINEMATICS,
+            record.kinematics,
+            wheelbase=record.wheelbase or 1.0,
+            psi_max=float("inf") if psi_max is None else psi_max,
+        )
+    behavior = None
+    if record.behavior is not None and BEHAVIORS.get(str(getattr(record.behavior, "name", ""))) is not None:
+        behavior = kernel_options(BEHAVIORS, record.behavior)
+    return core.ObjectSpec(
+        role=_ROLES[record.role],
+        group=record.group,
+        drive=drive,
+        parts=shape.function(record.shape, record.wheelbase),
+        static=record.static,
+        unobstructed=record.unobstructed,
+        wander=record.wander,
+        loop=record.loop,
+        pose=padded(record.state),
+        extra=[float(v) for v in record.state[3:]],
+        control=padded(record.velocity),
+        vel_min=padded(record.vel_min),
+        vel_max=padded(record.vel_max),
+        acce=padded(record.acce, float("inf")),
+        angle_range=record.angle_range,
+        goals=record.goals,
+        goal_threshold=record.goal_threshold,
+        arrive_mode=_ARRIVE[record.arrive_mode],
+        range_low=padded(record.range_low),
+        range_high=padded(record.range_high),
+        target_roles=_TARGETS[record.target_roles],
+        behavior=behavior,
+        sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
+    )
+
+
+def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
+    """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
+    return core.World(
+        step_time=scenario.world.step_time,
+        collision_mode=COLLISION_MODES[scenario.world.collision_mode],
+        objects=[build_object(record) for record in scenario.objects],
+        placements=[
+            core.RandomPlacement(
+                objects=placement.objects,
+                range_low=placement.range_low,
+                range_high=placement.range_high,
+                min_distance=placement.min_distance,
+                attempts=PLACEMENT_ATTEMPTS,
+            )
+            for placement in scenario.placements
+        ],
+        copies=copies,
+    )
