@@ -1,7 +1,7 @@
 """Build backend: scikit-build-core, with a C++ compiler from PyPI where the machine has none.
 
-pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each hands on to
-scikit-build-core, which brings CMake and ninja when they are missing. A missing C++ compiler is answered here: the
+pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each hands on
+to scikit-build-core, which brings CMake and ninja when they are missing. A missing C++ compiler is answered here: the
 package ``ziglang`` is asked for, and scripts in a temporary folder make its clang look like an ordinary tool chain.
 The variables ``CXX``, ``CMAKE_TOOLCHAIN_FILE`` and ``CMAKE_ARGS`` with a compiler or tool chain in it are respected.
 """
@@ -193,7 +193,7 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
 
 def _visual_studio() -> bool:
     """Whether a Visual Studio with C++ tools is installed."""
-    programs = os.environ.get("ProgramFiles(x86)", r"C:\Program Files (x86)")
+    programs = os.environ.get("PROGRAMFILES(X86)", r"C:\Program Files (x86)")
     locator = Path(programs, "Microsoft Visual Studio", "Installer", "vswhere.exe")
     tools = "Microsoft.VisualStudio.Component.VC.Tools.x86.x64"
     if not locator.is_file():

@@ -1,0 +1,118 @@
+"""Tasks of this repository.
+
+``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
+``nox -s full`` is the whole proof: ``check`` on the oldest and the newest Python, the core under sanitizers, packages
+built and installed elsewhere, a build without a compiler, the lower bounds of the dependencies.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+import nox
+
+OLDEST, NEWEST = "3.10", "3.13"
+ROOT = Path(__file__).resolve().parent
+FULL = (f"check-{OLDEST}", f"check-{NEWEST}", "sanitize", "slow", "lowest")
+
+nox.needs_version = ">=2025.2.9"
+nox.options.sessions = ["check"]
+nox.options.error_on_missing_interpreters = True
+
+
+def find_python(version: str) -> str:
+    """An interpreter of that version, on PATH or among pyenv's, whether pyenv has it activated or not.
+
+    Args:
+        version: Such as ``3.10``.
+
+    Returns:
+        Its path; where none is found the version itself, which makes nox fail and say so.
+    """
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    patches = sorted(root.glob(f"versions/{version}.*"), key=lambda folder: folder.name.rpartition(".")[2].zfill(4))
+    names = [f"python{version}", "python3", *(str(folder / "bin" / "python") for folder in reversed(patches))]
+    for path in filter(None, map(shutil.which, names)):
+        probe = [path, "-c", "import sys; print('%d.%d' % sys.version_info[:2])"]
+        if subprocess.run(probe, capture_output=True, text=True, check=False).stdout.strip() == version:
+            return path
+    return version
+
+
+def timed(session: nox.Session, what: str, *command: str, env: Mapping[str, str] | None = None) -> None:
+    """Run a command and say how long it took."""
+    start = time.perf_counter()
+    session.run(*command, env=env)
+    session.log(f"{what}: {time.perf_counter() - start:.1f} s")
+
+
+def install(session: nox.Session, *arguments: str) -> None:
+    """Install with pip and say how long it took."""
+    timed(session, "install", "python", "-m", "pip", "install", "-q", *arguments)
+
+
+def check_all(session: nox.Session) -> None:
+    """Format, lint, strict types, generated files, quick tests."""
+    sources = [str(path) for kind in ("cpp", "hpp") for path in sorted(Path("irsim/core").rglob(f"*.{kind}"))]
+    install(session, "-e", ".[dev]")
+    timed(session, "ruff format", "ruff", "format", "--check", ".")
+    timed(session, "ruff check", "ruff", "check", ".")
+    timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", *sources)
+    timed(session, "mypy", "mypy")
+    timed(session, "schema", "irsim", "schema", "--check")
+    timed(session, "tests", "pytest", "-n", "auto", *session.posargs)
+
+
+@nox.session(reuse_venv=True)
+def check(session: nox.Session) -> None:
+    """Format, lint, strict types, generated files, quick tests, on the Python that runs nox."""
+    check_all(session)
+
+
+for _version in (OLDEST, NEWEST):
+    nox.session(name=f"check-{_version}", python=find_python(_version), reuse_venv=True)(check_all)
+
+
+@nox.session(python=False)
+def full(session: nox.Session) -> None:
+    """Everything; prints the time of each part at the end."""
+    for name in FULL:
+        session.notify(name)
+
+
+@nox.session(reuse_venv=True)
+def sanitize(session: nox.Session) -> None:
+    """Tests of the core with its address and undefined-behavior sanitizers on."""
+    install(session, "-e", ".[test]", "-C", "cmake.define.IRSIM_SANITIZE=ON")
+    library = subprocess.run(["g++", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
+    environment = {
+        "LD_PRELOAD": library.stdout.strip(),
+        "ASAN_OPTIONS": "detect_leaks=0",  # Python keeps what it allocates at start
+        "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
+    }
+    timed(session, "tests under sanitizers", "pytest", "-n", "auto", "tests/core", env=environment)
+
+
+@nox.session(reuse_venv=True)
+def slow(session: nox.Session) -> None:
+    """Tests marked slow: packages installed into empty environments, a build without a compiler, fuzzing."""
+    install(session, "-e", ".[test]")
+    timed(session, "slow tests", "pytest", "-m", "slow", "-n", "2", "--dist", "loadgroup", "--durations", "15")
+
+
+@nox.session(python=find_python(OLDEST), reuse_venv=True)
+def lowest(session: nox.Session) -> None:
+    """Quick tests with the lower bound of every dependency, on the oldest Python."""
+    project = nox.project.load_toml("pyproject.toml")["project"]
+    required = [*project["dependencies"], *project["optional-dependencies"]["test"]]
+    constraints = Path(session.create_tmp(), "lowest.txt")
+    bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
+    constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
+    install(session, "-e", ".[test]", "-c", str(constraints))
+    timed(session, "tests with the lower bounds", "pytest", "-n", "auto")
