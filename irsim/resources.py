@@ -1,0 +1,35 @@
+"""Where the data files are: templates, schema and skills, in a checkout or inside an installed package."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+__all__ = ["checkout", "schema_file", "skills_directory", "templates_directory"]
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def checkout() -> Path | None:
+    """Root of the repository the package runs from, or None for an installed package.
+
+    A checkout is looked at first, so that an editable install never serves stale copies.
+    """
+    root = _PACKAGE.parent
+    marks = (root / "pyproject.toml", root / "templates", root / "irsim" / "resources.py")
+    return root if all(mark.exists() for mark in marks) else None
+
+
+def templates_directory() -> Path:
+    """Directory with one folder per template."""
+    return (checkout() or _PACKAGE / "_bundled") / "templates"
+
+
+def schema_file() -> Path:
+    """The JSON Schema of scenario files."""
+    return (checkout() or _PACKAGE / "_bundled") / "schema" / "scenario.schema.json"
+
+
+def skills_directory() -> Path:
+    """Directory with one folder per agent skill (inside the package: where agents look)."""
+    root = checkout()
+    return root / "skills" if root else _PACKAGE / ".agents" / "skills"

@@ -1,0 +1,12 @@
+"""Scenario templates: ready-made files with named parameters.
+
+A template is a folder with two files. ``scenario.yaml`` is a complete scenario, usable as it is; ``template.yaml`` says
+what it is for, which parameters it has, and which values of the scenario follow from them (see :mod:`.metadata`).
+Filling a template replaces those values in the text and nothing else, so comments and layout survive.
+"""
+
+from irsim.templates.fill import fill
+from irsim.templates.metadata import Parameter, Template, TemplateError
+from irsim.templates.store import load, load_all, names
+
+__all__ = ["Parameter", "Template", "TemplateError", "fill", "load", "load_all", "names"]
