@@ -1,0 +1,96 @@
+"""The build backend: which compiler it finds, and what it asks for when there is none."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def backend() -> ModuleType:
+    """``irsim_build``, which is not part of the installed package."""
+    spec = importlib.util.spec_from_file_location("irsim_build", ROOT / "irsim/core/backend/irsim_build.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture
+def bare(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A machine without compilers: a PATH with one empty folder in it, which is returned."""
+    for name in ("CC", "CXX", "CMAKE_ARGS", "CMAKE_TOOLCHAIN_FILE", "CMAKE_GENERATOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("PROGRAMFILES(X86)", str(tmp_path))
+    monkeypatch.chdir(ROOT)
+    return tmp_path
+
+
+def tool(folder: Path, name: str) -> Path:
+    """An executable that does nothing."""
+    path = folder / (f"{name}.exe" if os.name == "nt" else name)
+    path.write_text("#!/bin/sh\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+@pytest.mark.parametrize("hook", ["get_requires_for_build_wheel", "get_requires_for_build_editable"])
+def test_asks_for_everything_on_a_bare_machine(backend: ModuleType, bare: Path, hook: str) -> None:
+    names = {requirement.partition(">")[0] for requirement in getattr(backend, hook)()}
+    assert names == {"cmake", "ninja", "ziglang"}
+
+
+@pytest.mark.parametrize(
+    ("variable", "value"),
+    [
+        ("CXX", "my-c++"),
+        ("CMAKE_TOOLCHAIN_FILE", "arm.cmake"),
+        ("CMAKE_ARGS", "-DCMAKE_CXX_COMPILER=my-c++"),
+    ],
+)
+def test_a_compiler_that_the_user_names_is_respected(
+    backend: ModuleType, bare: Path, monkeypatch: pytest.MonkeyPatch, variable: str, value: str
+) -> None:
+    monkeypatch.setenv(variable, value)
+    assert not any("ziglang" in requirement for requirement in backend.get_requires_for_build_wheel())
+
+
+@pytest.mark.parametrize("name", ["c++", "g++", "clang++"])
+def test_any_usual_compiler_on_path_will_do(
+    backend: ModuleType, bare: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setattr(backend, "_succeeds", lambda *command: True)  # Xcode, on macOS
+    found = tool(bare, name)
+    assert backend.find_compiler() == str(found)
+    assert not any("ziglang" in requirement for requirement in backend.get_requires_for_build_wheel())
+
+
+def test_source_distributions_need_no_compiler(backend: ModuleType, bare: Path) -> None:
+    assert backend.get_requires_for_build_sdist() == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the stand-in for zig is a shell script")
+def test_scripts_pass_their_arguments_on(backend: ModuleType, tmp_path: Path) -> None:
+    zig = tmp_path / "a folder" / "zig"
+    zig.parent.mkdir()
+    zig.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n', encoding="utf-8")
+    zig.chmod(0o755)
+    scripts = backend.write_zig_scripts(tmp_path, str(zig))
+    done = subprocess.run([scripts["c++"], "-O2", "two words.cpp"], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["c++", "-mcpu=baseline", "-O2", "two words.cpp"]
+
+
+def test_a_missing_compiler_package_is_named(backend: ModuleType, bare: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ziglang", None)
+    with pytest.raises(SystemExit, match="ziglang"):
+        backend.build_wheel(str(bare))
