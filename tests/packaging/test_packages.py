@@ -152,8 +152,8 @@ def test_ir_sim_installed_on_top_is_refused(wheel: Path, new_environment: Callab
         )
         archive.writestr("ir_sim-2.12.0.dist-info/RECORD", "")
     environment.pip("install", "-q", "--no-deps", "--no-index", stranger)
-    for package in ("irsim_mcp", "irsim.cli"):
-        code = (
-            f"try:\n    import {package}\nexcept ImportError as error:\n    print(error)\nelse:\n    print('accepted')"
+    for code in ("import irsim_mcp", "from irsim.cli import main; main()"):
+        refusal = environment.run(
+            "python", "-c", f"try:\n    {code}\nexcept (ImportError, SystemExit) as e:\n    print(e)"
         )
-        assert "pip uninstall -y ir-sim irsim-mcp" in environment.run("python", "-c", code)
+        assert "pip uninstall -y ir-sim irsim-mcp" in refusal
