@@ -5,8 +5,19 @@ what it is for, which parameters it has, and which values of the scenario follow
 Filling a template replaces those values in the text and nothing else, so comments and layout survive.
 """
 
-from irsim.templates.fill import fill
+from irsim.templates.fill import fill, parse_settings
 from irsim.templates.metadata import Parameter, Template, TemplateError
-from irsim.templates.store import load, load_all, names
+from irsim.templates.store import find, load, load_all, names, scenario_file
 
-__all__ = ["Parameter", "Template", "TemplateError", "fill", "load", "load_all", "names"]
+__all__ = [
+    "Parameter",
+    "Template",
+    "TemplateError",
+    "fill",
+    "find",
+    "load",
+    "load_all",
+    "names",
+    "parse_settings",
+    "scenario_file",
+]

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import yaml
 
 from irsim.diagnostics import Path
 from irsim.templates.expressions import evaluate
-from irsim.templates.metadata import Template
+from irsim.templates.metadata import Template, TemplateError
 
-__all__ = ["fill", "format_value", "parse_path", "replace_values"]
+__all__ = ["fill", "format_value", "parse_path", "parse_settings", "replace_values"]
 
 
 def fill(template: Template, given: Mapping[str, Any] | None = None) -> str:
@@ -45,6 +45,21 @@ def replace_values(text: str, changes: Mapping[Path, Any]) -> str:
     for start, end, new in sorted(pieces, reverse=True):
         text = _splice(text, start, end, new)
     return text
+
+
+def parse_settings(settings: Iterable[str]) -> dict[str, str]:
+    """``["width=1.6"]`` as ``{"width": "1.6"}``.
+
+    Raises:
+        TemplateError: One of them is not of the form ``KEY=VALUE``.
+    """
+    given = {}
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not (key.strip() and equals and value.strip()):
+            raise TemplateError("bad-parameter", f"{setting!r} is not a setting.", "write KEY=VALUE, as in width=1.6.")
+        given[key.strip()] = value.strip()
+    return given
 
 
 def parse_path(path: str) -> Path:

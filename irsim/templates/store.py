@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
+
 import yaml
 
 from irsim import resources
 from irsim.diagnostics import nearest
 from irsim.templates.metadata import Template, TemplateError
 
-__all__ = ["load", "load_all", "names"]
+__all__ = ["find", "load", "load_all", "names", "scenario_file"]
 
 
 def names() -> list[str]:
@@ -30,12 +33,35 @@ def load(name: str) -> Template:
             f"there is no template {name!r}; there are {', '.join(known)}.",
             f"did you mean {near}?" if near else None,
         )
-    folder = resources.templates_directory() / name
-    described = yaml.safe_load((folder / "template.yaml").read_text(encoding="utf-8"))
-    text = (folder / "scenario.yaml").read_text(encoding="utf-8")
+    file = scenario_file(name)
+    described = yaml.safe_load(file.with_name("template.yaml").read_text(encoding="utf-8"))
+    text = file.read_text(encoding="utf-8")
     return Template.model_validate({"name": name, "text": text, **described})
 
 
 def load_all() -> list[Template]:
     """All templates, by name."""
     return [load(name) for name in names()]
+
+
+def find(words: Iterable[str]) -> list[Template]:
+    """The templates that are about some words: those whose name, title, purpose or tags hold the most of them.
+
+    Without words: all of them.
+    """
+    wanted = [word.lower() for phrase in words for word in phrase.split()]
+    templates = load_all()
+    if not wanted:
+        return templates
+    scores = {template.name: sum(word in _searched(template) for word in wanted) for template in templates}
+    best = max(scores.values(), default=0)
+    return [template for template in templates if best and scores[template.name] == best]
+
+
+def scenario_file(name: str) -> Path:
+    """Path of a template's scenario."""
+    return resources.templates_directory() / name / "scenario.yaml"
+
+
+def _searched(template: Template) -> str:
+    return " ".join((template.name, template.title, template.purpose, *template.tags)).lower()

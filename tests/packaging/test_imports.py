@@ -19,7 +19,7 @@ LAYERS = (
     "scenario",
     "world simulation",
     "actions batch env env_access env_drawing info observers parameters policies python_behaviors render scans views",
-    "api benchmark bridges config learning lib results templates testing util",
+    "api benchmark bridges config files learning lib lookup modeline results templates testing util",
     "cli __main__",
     "irsim_mcp",
 )

@@ -1,0 +1,5 @@
+"""``python -m irsim``: the command line."""
+
+from irsim.cli import main
+
+main()

@@ -1,0 +1,52 @@
+"""The application: its verbs in the order of ``irsim --help``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from irsim.cli import demo, describe, new, render, run, schema, templates, validate
+from irsim.cli.guard import guarded
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    name="irsim",
+    help="Simulate 2D robot navigation: scenarios are YAML files.",
+    epilog="First steps: irsim demo, irsim new corridor-passing, irsim run corridor-passing.yaml",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from irsim import __version__
+
+        typer.echo(f"irsim {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Simulate 2D robot navigation: scenarios are YAML files."""
+
+
+for _verb in (
+    demo.demo,
+    templates.templates,
+    new.new,
+    validate.validate,
+    run.run,
+    render.render,
+    describe.describe,
+    schema.schema,
+):
+    app.command()(guarded(_verb))

@@ -1,0 +1,40 @@
+"""``irsim demo``: something to look at within seconds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["demo"]
+
+_TEMPLATE = "crossing"
+_SEED = 7
+
+
+def demo(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation to write.")] = Path("irsim-demo.gif"),
+    seed: Annotated[int, typer.Option(min=0, help="Seed of all randomness.")] = _SEED,
+    json_output: Json = False,
+) -> None:
+    """Simulate a bundled scenario and leave an animation of it in the current directory."""
+    from rich.text import Text
+
+    from irsim import templates
+    from irsim.cli.output import console, print_json, progress
+    from irsim.cli.run import show_result
+
+    with progress("simulating and drawing") as report:
+        from irsim import api
+
+        result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
+    if json_output:
+        print_json(result)
+        return
+    shown = console()
+    shown.print(templates.load(_TEMPLATE).purpose)
+    show_result(result, shown, again=f"irsim demo --seed {seed}")
+    shown.print(Text.assemble("yours: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")))

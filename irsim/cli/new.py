@@ -1,0 +1,51 @@
+"""``irsim new``: a scenario file from a template."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.cli.guard import INVALID
+
+__all__ = ["new"]
+
+
+def new(
+    name: Annotated[str, typer.Argument(help="Template; irsim templates lists them.", show_default=False)],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="File to write; default NAME.yaml; - prints it.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A parameter, such as width=1.6. Repeatable."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the file.")] = False,
+) -> None:
+    """Write a new scenario from a template and its parameters.
+
+    irsim describe NAME shows what a template's parameters are.
+    """
+    from rich.text import Text
+
+    from irsim import api, templates
+    from irsim.cli.findings import print_findings
+    from irsim.cli.output import console
+    from irsim.files import write_new
+    from irsim.modeline import with_modeline
+
+    template = templates.load(name)
+    text = templates.fill(template, templates.parse_settings(settings or ()))
+    report = api.validate(text=text)
+    print_findings(report.findings, str(out or name), text=text, stderr=True)
+    if not report.valid:
+        raise typer.Exit(INVALID)
+    if str(out) == "-":
+        typer.echo(text, nl=False)
+        return
+    target = out or Path(f"{name}.yaml")
+    write_new(target, with_modeline(text, target), overwrite=force)
+    shown = console()
+    shown.print(Text.assemble("wrote ", (str(target), "bold"), f": {template.purpose}"))
+    shown.print(Text.assemble("next: ", (f"irsim run {target}", "cyan")))

@@ -1,0 +1,120 @@
+"""What the verbs print with: consoles, JSON, a progress bar that only shows up when it is worth it."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+    from rich.console import Console
+    from rich.progress import Progress
+
+__all__ = ["clean", "console", "is_terminal", "prepare_streams", "print_json", "progress", "silence_stdout"]
+
+_PATIENCE = 1.0  # s before a progress bar appears
+
+
+def prepare_streams() -> None:
+    """Make printing safe: what the terminal's encoding lacks is escaped instead of raising."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, ValueError):
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+
+
+def console(*, stderr: bool = False) -> Console:
+    """A rich console on standard output or standard error, without markup, highlighting or wrapping."""
+    from rich.console import Console
+
+    return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=True)
+
+
+def is_terminal(*, stderr: bool = False) -> bool:
+    """Whether a person is looking at the stream."""
+    stream = sys.stderr if stderr else sys.stdout
+    return stream.isatty()
+
+
+def print_json(model: BaseModel, indent: int | None = 2) -> None:
+    """One JSON document on standard output."""
+    sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
+
+
+def clean(text: object, longest: int = 80) -> str:
+    """A name from a file, fit for a terminal: no control characters, not endless."""
+    shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
+    return shown if len(shown) <= longest else shown[: longest - 3] + "..."
+
+
+def silence_stdout() -> None:
+    """After a broken pipe: keep the interpreter from complaining when it flushes at exit."""
+    with suppress(OSError, ValueError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+@contextmanager
+def progress(label: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on standard error, if that is a terminal and the work takes longer than a second.
+
+    Args:
+        label: What is going on: ``simulating``.
+
+    Yields:
+        Function to call with (done, total).
+    """
+    if not is_terminal(stderr=True):
+        yield lambda done, total: None
+        return
+    bar = _Bar(label)
+    timer = threading.Timer(_PATIENCE, bar.show)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield bar.update
+    finally:
+        timer.cancel()
+        bar.close()
+
+
+class _Bar:
+    """A rich progress bar that one thread may show while another closes it."""
+
+    def __init__(self, label: str) -> None:
+        self._label = label
+        self._lock = threading.Lock()
+        self._state: tuple[int, int | None] = (0, None)
+        self._bar: Progress | None = None
+        self._closed = False
+
+    def show(self) -> None:
+        from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+        with self._lock:
+            if self._closed:
+                return
+            self._bar = Progress(
+                SpinnerColumn("line"),
+                TextColumn("{task.description}"),
+                BarColumn(),
+                TaskProgressColumn(),
+                TimeElapsedColumn(),
+                console=console(stderr=True),
+                transient=True,
+            )
+            self._bar.add_task(self._label, completed=self._state[0], total=self._state[1])
+            self._bar.start()
+
+    def update(self, done: int, total: int) -> None:
+        self._state = (done, total)
+        if self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], completed=done, total=total)
+
+    def close(self) -> None:
+        with self._lock:
+            self._closed = True
+            if self._bar is not None:
+                self._bar.stop()

@@ -1,0 +1,65 @@
+"""``irsim render``: a picture or an animation of a scenario."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Strict
+
+__all__ = ["render"]
+
+
+def render(
+    file: File,
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="OUT", help="File to write: .png, .svg, .pdf, or .gif, .mp4, .apng.")
+    ],
+    seed: Seed = None,
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="A picture shows the scene after so many steps (default 0: the start); an animation ends there at the latest.",
+            show_default=False,
+        ),
+    ] = None,
+    size: Annotated[int | None, typer.Option(min=64, max=8192, help="Longer side of the picture in pixels.")] = None,
+    json_output: Json = False,
+    strict: Strict = False,
+    imports: Imports = None,
+    max_objects: MaxObjects = None,
+) -> None:
+    """Draw a scenario: the suffix of the file says whether it becomes a picture or an animation."""
+    from rich.text import Text
+
+    from irsim.cli.findings import import_user_modules, limits_for, print_findings
+    from irsim.cli.output import console, print_json, progress
+
+    import_user_modules(imports)
+    with progress("drawing") as report:
+        from irsim import api
+
+        result = api.render(
+            file,
+            out,
+            seed=seed,
+            steps=steps,
+            size=size,
+            strict=strict,
+            imports=imports or (),
+            limits=limits_for(max_objects),
+            progress=report,
+        )
+    if json_output:
+        print_json(result)
+        return
+    print_findings(result.warnings, file, stderr=True)
+    shown = console()
+    frames = f", {result.frames} frames" if result.frames > 1 else ""
+    width, height = result.size
+    for written in result.files:
+        shown.print(Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})"))
+    shown.print(Text.assemble("again: ", (result.reproduce, "cyan")))

@@ -1,0 +1,113 @@
+"""``irsim run``: simulate one episode."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.guard import FAILED
+from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Strict
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from irsim.results import RunResult
+
+__all__ = ["run", "show_result"]
+
+_MANY = 12  # robots listed one by one
+_COLORS = {"success": "green", "collision": "red", "timeout": "yellow"}
+
+
+def run(
+    file: File,
+    seed: Seed = None,
+    steps: Steps = None,
+    json_output: Json = False,
+    save_gif: Annotated[
+        Path | None, typer.Option(metavar="PATH", help="Also write an animation: .gif, .mp4 or .apng.")
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="Watch it live in a window.")] = False,
+    strict: Strict = False,
+    imports: Imports = None,
+    require_success: Annotated[
+        bool, typer.Option("--require-success", help="Exit with 1 unless every robot reaches its goal.")
+    ] = False,
+    max_objects: MaxObjects = None,
+) -> None:
+    """Simulate a scenario until every robot has arrived or collided, or time is up.
+
+    A collision or a time-out is a result like any other: the exit code is 0 unless --require-success is given.
+    """
+    from irsim.cli.findings import import_user_modules, limits_for, print_findings
+    from irsim.cli.output import console, print_json, progress
+
+    import_user_modules(imports)
+    with progress("simulating" if save_gif is None else "simulating and drawing") as report:
+        from irsim import api
+
+        result = api.run(
+            file,
+            seed=seed,
+            steps=steps,
+            strict=strict,
+            imports=imports or (),
+            save=save_gif,
+            show=show,
+            limits=limits_for(max_objects),
+            progress=report,
+        )
+    if json_output:
+        print_json(result)
+    else:
+        print_findings(result.warnings, file, stderr=True)
+        show_result(result, console())
+    if require_success and result.outcome != "success":
+        raise typer.Exit(FAILED)
+
+
+def show_result(result: RunResult, out: Console, again: str | None = None) -> None:
+    """Print how an episode ended.
+
+    Args:
+        result: From :func:`irsim.run`.
+        out: Where to.
+        again: Command that repeats it, if another than the result's own.
+    """
+    from rich.text import Text
+
+    if result.robots:
+        out.print(_table(result))
+    if len(result.robots) > _MANY:
+        out.print(f"... and {len(result.robots) - _MANY} robots more (--json has all)")
+    out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", result.summary))
+    limit = {"argument": "--steps", "scenario": "the scenario", "default": "default: set world.time_limit"}
+    out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {result.time_limit:.1f} s ({limit[result.time_limit_from]})")
+    for written in result.files:
+        out.print(Text.assemble("wrote ", (written, "bold")))
+    out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")))
+
+
+def _table(result: RunResult) -> object:
+    from rich.table import Table
+    from rich.text import Text
+
+    from irsim.cli.output import clean
+
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for heading in ("robot", "outcome"):
+        table.add_column(heading)
+    for heading in ("arrived", "travelled", "to goal", "collisions"):
+        table.add_column(heading, justify="right")
+    for robot in result.robots[:_MANY]:
+        table.add_row(
+            clean(robot.name, 24),
+            Text(robot.outcome, style=_COLORS[robot.outcome]),
+            "-" if robot.time_to_goal is None else f"{robot.time_to_goal:.1f} s",
+            f"{robot.path_length:.1f} m",
+            "-" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m",
+            str(robot.collision_count),
+        )
+    return table

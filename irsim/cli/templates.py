@@ -1,0 +1,41 @@
+"""``irsim templates``: the scenarios one can start from."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["templates"]
+
+
+def templates(
+    words: Annotated[list[str] | None, typer.Argument(help="Only templates about these words.", show_default=False)] = None,
+    json_output: Json = False,
+) -> None:
+    """List the bundled scenarios to start from."""
+    from irsim.templates import find
+
+    found = find(words or ())
+    if json_output:
+        listed = [template.model_dump(mode="json", exclude={"text", "sets"}) for template in found]
+        typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
+        return
+    from rich.table import Table
+
+    from irsim.cli.output import console
+
+    out = console()
+    if not found:
+        out.print(f"no template is about {' '.join(words or ())}; irsim templates lists all")
+        return
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column(style="bold cyan", no_wrap=True)
+    table.add_column()
+    for template in found:
+        table.add_row(template.name, template.purpose)
+    out.print(table, soft_wrap=False)
+    out.print("\nirsim describe NAME shows the parameters, irsim new NAME writes the file.")

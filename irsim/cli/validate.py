@@ -1,0 +1,59 @@
+"""``irsim validate``: everything that is wrong with scenario files, at once."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.guard import INVALID
+from irsim.cli.options import Imports, Json, MaxObjects
+
+if TYPE_CHECKING:
+    from irsim.results import ValidationReport
+
+__all__ = ["validate"]
+
+
+def validate(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Scenario files; - is standard input.")],
+    json_output: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object per file, one per line, and nothing else.")
+    ] = False,
+    lenient: Annotated[
+        bool, typer.Option("--lenient", help="Only warn where IR-SIM would carry on, as irsim run does.")
+    ] = False,
+    imports: Imports = None,
+    max_objects: MaxObjects = None,
+) -> None:
+    """Check scenario files without running them. Exits with 2 if any is invalid."""
+    from irsim import api
+    from irsim.cli.findings import import_user_modules, limits_for
+    from irsim.cli.output import print_json
+
+    import_user_modules(imports)
+    valid = True
+    for file in files:
+        text = sys.stdin.read() if file == "-" else None
+        report = api.validate(
+            None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
+        )
+        valid &= report.valid
+        if json_output:
+            print_json(report, indent=None)
+        else:
+            _show(report, file, text)
+    if not valid:
+        raise typer.Exit(INVALID)
+
+
+def _show(report: ValidationReport, file: str, text: str | None) -> None:
+    from rich.text import Text
+
+    from irsim.cli.findings import print_findings
+    from irsim.cli.output import console
+
+    print_findings(report.findings, file, text=text)
+    style = "bold green" if report.valid else "bold red"
+    console().print(Text.assemble((report.file, "bold"), ": ", (report.summary, style)))

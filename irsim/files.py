@@ -1,0 +1,68 @@
+"""Writing files so that nobody ever sees half of one, and nothing is overwritten by accident."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+from irsim.errors import IrsimError
+
+__all__ = ["TargetExistsError", "write_atomically", "write_new"]
+
+
+class TargetExistsError(IrsimError, FileExistsError):
+    """The file to write is there already.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+    """
+
+    code = "file-exists"
+
+
+def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
+    """Write a text file, all at once.
+
+    Args:
+        target: Where to; its directory must exist.
+        text: What to write.
+        overwrite: Replace a file that exists.
+
+    Raises:
+        TargetExistsError: There is one and ``overwrite`` is not set.
+    """
+    if not overwrite:
+        try:
+            target.open("x").close()  # claims the name, also against another process
+        except FileExistsError:
+            raise TargetExistsError(f"{target} exists; --force overwrites it, -o names another file") from None
+    try:
+        write_atomically(target, text)
+    except BaseException:
+        if not overwrite:
+            with suppress(OSError):
+                target.unlink()
+        raise
+
+
+def write_atomically(target: Path, text: str) -> None:
+    """Replace a text file in one step, by way of a temporary one beside it; links are followed, modes kept."""
+    target = target.resolve()
+    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    try:
+        with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+        os.chmod(temporary, target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask())
+        os.replace(temporary, target)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
