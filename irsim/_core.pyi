@@ -264,9 +264,13 @@ def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
 def finish(world: World, state: State) -> None:
-    """Count the step, append the history, clear `given`. (Runs before arrive and sense log their step number.)"""
+    """Count the step, append the history, clear `given`. (Runs before arrive and sense log their step number.)
+    The order is decide, limit, integrate, finish, collide, arrive, sense."""
 
 # Used by the Python API and by tests
+def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
+    """Controls with which the drive of a row realises a world-frame velocity [m/s] (zero without a native drive)."""
+
 def intersects(parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]) -> bool: ...
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of a key: key (seed, scene << 32 | noise), counter (draw, object, stream, 0)."""

@@ -1,2 +1,10 @@
-#include <nanobind/nanobind.h>
-NB_MODULE(_core, m) { m.attr("api") = 1; }
+// irsim._core: what Python sees of the engine (stub: irsim/_core.pyi).
+#include "bind.hpp"
+
+NB_MODULE(_core, m) {
+  irsim::bind_features(m);
+  irsim::bind_world(m);
+  irsim::bind_state(m);
+  irsim::bind_steps(m);
+  irsim::bind_tools(m);
+}

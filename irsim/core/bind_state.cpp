@@ -1,0 +1,224 @@
+#include "bind_state.hpp"
+
+namespace irsim {
+namespace {
+
+State make_state(const World& world, const Seeds& seeds, bool history) {
+  if (static_cast<int>(seeds.shape(0)) != world.copies) throw nb::value_error("one seed per world is needed");
+  return State(world, seeds.data(), history);
+}
+
+std::vector<Goal> to_goals(const std::vector<std::vector<double>>& lists) {
+  std::vector<Goal> out;
+  for (const auto& g : lists) {
+    if (g.size() < 2) throw nb::value_error("a goal needs two or three numbers");
+    out.push_back({g[0], g[1], g.size() > 2 ? g[2] : kNone});
+  }
+  return out;
+}
+
+nb::object goals_of(const BoundState& self, int row) {
+  self.check_row(row);
+  const GoalQueue& queue = self.state.goals[row];
+  nb::list out;
+  for (std::size_t k = queue.head; k < queue.goals.size(); ++k) {
+    const Goal& g = queue.goals[k];
+    std::vector<double> numbers = {g.x, g.y};
+    if (!std::isnan(g.theta)) numbers.push_back(g.theta);
+    out.append(nb::cast(numbers));
+  }
+  return out;
+}
+
+void set_goals(BoundState& self, int row, const std::vector<std::vector<double>>& lists, bool init) {
+  self.check_row(row);
+  GoalQueue& queue = self.state.goals[row];
+  queue.set(to_goals(lists));
+  if (init) queue.initial = queue.goals;
+  self.state.sync_goal(row);
+}
+
+void set_initial(BoundState& self, int row) {
+  self.check_row(row);
+  State& s = self.state;
+  s.initial_pose[row] = s.pose[row];
+  s.initial_control[row] = s.control[row];
+  const std::size_t e = static_cast<std::size_t>(row) * s.extra_rows;
+  std::copy_n(&s.extra[e], s.extra_rows, &s.initial_extra[e]);
+}
+
+nb::object events(const BoundState& self, int w) {
+  self.check_world(w);
+  nb::list out;
+  for (const Event& e : self.state.scenes[w].events) {
+    out.append(nb::make_tuple(kEventNames[static_cast<int>(e.kind)], e.step, e.object, e.partner, e.x, e.y));
+  }
+  return out;
+}
+
+nb::object collision_pairs(const BoundState& self, int w) {
+  self.check_world(w);
+  std::vector<std::int32_t> out;
+  for (const auto& [i, j] : self.state.scenes[w].pairs) {
+    out.push_back(i);
+    out.push_back(j);
+  }
+  const std::size_t count = out.size() / 2;
+  return own(std::move(out), {count, 2});
+}
+
+nb::object trajectory(const BoundState& self, int row) {
+  self.check_row(row);
+  if (!self.state.keep_history) throw nb::value_error("this state keeps no history");
+  const std::vector<double>& track = self.state.history[row];
+  const std::size_t columns = 3 + static_cast<std::size_t>(self.state.extra_rows);
+  return own(track, {track.size() / columns, columns});
+}
+
+/// A part in the body frame, or at the present pose of the row.
+struct PlacedPart {
+  Part part;
+  std::vector<Vec2> vertices;
+};
+PlacedPart part_of(const BoundState& self, int row, int part, bool world_frame) {
+  self.check_row(row);
+  const int object = row % self.world->objects;
+  const Shapes& shapes = *self.state.scenes[row / self.world->objects].shapes;
+  if (part < 0 || part >= shapes.part_count(object)) throw nb::index_error("no such part");
+  const Slot& slot = shapes.body[object];
+  PlacedPart out{shapes.parts[slot.part + part], {}};
+  for (int v = out.part.first; v <= out.part.last; ++v) {
+    const Vec2 body = shapes.vertices[slot.vertex + v];
+    const Pose& pose = self.state.pose[row];
+    out.vertices.push_back(world_frame ? pose.position() + rotate(body, self.state.heading(row)) : body);
+  }
+  return out;
+}
+
+nb::object vertices(const BoundState& self, int row, int part, bool world_frame) {
+  const PlacedPart placed = part_of(self, row, part, world_frame);
+  const bool ring = placed.part.kind == Kind::polygon;
+  const std::size_t count = placed.part.kind == Kind::circle ? 0 : placed.vertices.size() - (ring ? 1 : 0);
+  std::vector<double> out;
+  for (std::size_t v = 0; v < count; ++v) out.insert(out.end(), {placed.vertices[v].x, placed.vertices[v].y});
+  return own(std::move(out), {count, 2});
+}
+
+std::tuple<double, double, double> circle(const BoundState& self, int row, int part, bool world_frame) {
+  const PlacedPart placed = part_of(self, row, part, world_frame);
+  if (placed.part.kind != Kind::circle) throw nb::value_error("this part is not a circle");
+  return {placed.vertices[0].x, placed.vertices[0].y, placed.part.radius};
+}
+
+std::vector<std::string> parts(const BoundState& self, int row) {
+  self.check_row(row);
+  const char* names[] = {"circle", "polygon", "linestring"};
+  const int object = row % self.world->objects;
+  const Shapes& shapes = *self.state.scenes[row / self.world->objects].shapes;
+  std::vector<std::string> out;
+  for (int p = 0; p < shapes.part_count(object); ++p) {
+    out.push_back(names[static_cast<int>(shapes.parts[shapes.body[object].part + p].kind)]);
+  }
+  return out;
+}
+
+}  // namespace
+
+BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
+    : world(&world_), state(make_state(world_, seeds, history)) {
+  const std::size_t rows = state.rows, worlds = state.worlds, beams = state.ranges.size;
+  const std::size_t extra_rows = state.extra_rows;
+  pose = view<double>(state.pose.memory, {rows, 3});
+  extra = view<double>(state.extra.memory, {rows, extra_rows});
+  control = view<double>(state.control.memory, {rows, 3});
+  twist = view<double>(state.twist.memory, {rows, 3});
+  command = view<double>(state.command.memory, {rows, 3});
+  given = view<std::uint8_t>(state.given.memory, {rows});
+  arrived = view<std::uint8_t>(state.arrived.memory, {rows});
+  collided = view<std::uint8_t>(state.collided.memory, {rows});
+  stopped = view<std::uint8_t>(state.stopped.memory, {rows});
+  radius = view<double>(state.radius.memory, {rows});
+  goal = view<double>(state.goal.memory, {rows, 3});
+  ranges = view<double>(state.ranges.memory, {beams});
+  hits = view<std::int32_t>(state.hits.memory, {beams});
+  beam_angles = view<double>(state.beam_angles.memory, {beams});
+  count = view<std::int64_t>(state.count.memory, {worlds});
+  scene = view<std::uint32_t>(state.scene_index.memory, {worlds});
+  noise = view<std::uint32_t>(state.noise.memory, {worlds});
+  seed = view<std::uint64_t>(state.seed.memory, {worlds});
+  failed_placement = view<std::int32_t>(state.failed_placement.memory, {worlds});
+}
+
+State& BoundState::of(const World& named) {
+  if (&named != world) throw nb::value_error("this state belongs to another world");
+  return state;
+}
+void BoundState::check_row(int row) const {
+  if (row < 0 || row >= state.rows) throw nb::index_error("no such row");
+}
+void BoundState::check_world(int w) const {
+  if (w < 0 || w >= state.worlds) throw nb::index_error("no such world");
+}
+void BoundState::check_mask(const Mask& mask) const {
+  if (static_cast<int>(mask.shape(0)) != state.worlds) throw nb::value_error("the mask needs one flag per world");
+}
+
+void bind_state(nb::module_& m) {
+  using S = BoundState;
+  nb::class_<S>(m, "State")
+      .def(nb::init<World&, const Seeds&, bool>(), nb::arg("world"), nb::arg("seeds"), nb::arg("history"),
+           nb::keep_alive<1, 2>())
+      .def_ro("pose", &S::pose)
+      .def_ro("extra", &S::extra)
+      .def_ro("control", &S::control)
+      .def_ro("twist", &S::twist)
+      .def_ro("command", &S::command)
+      .def_ro("given", &S::given)
+      .def_ro("arrived", &S::arrived)
+      .def_ro("collided", &S::collided)
+      .def_ro("stopped", &S::stopped)
+      .def_ro("radius", &S::radius)
+      .def_ro("goal", &S::goal)
+      .def_ro("ranges", &S::ranges)
+      .def_ro("hits", &S::hits)
+      .def_ro("beam_angles", &S::beam_angles)
+      .def_ro("count", &S::count)
+      .def_ro("scene", &S::scene)
+      .def_ro("noise", &S::noise)
+      .def_ro("seed", &S::seed)
+      .def_ro("failed_placement", &S::failed_placement)
+      .def_prop_ro("event_count",
+                   [](const S& self) {
+                     std::int64_t sum = 0;
+                     for (const std::int64_t n : self.state.event_count) sum += n;
+                     return sum;
+                   })
+      .def(
+          "reset",
+          [](S& self, const Mask& mask, bool next_scene) {
+            self.check_mask(mask);
+            nb::gil_scoped_release free;
+            reset(*self.world, self.state, mask.data(), next_scene);
+          },
+          nb::arg("mask"), nb::arg("next_scene"))
+      .def(
+          "reseed",
+          [](S& self, const Seeds& seeds, const Mask& mask) {
+            self.check_mask(mask);
+            if (static_cast<int>(seeds.shape(0)) != self.state.worlds) throw nb::value_error("one seed per world");
+            reseed(self.state, seeds.data(), mask.data());
+          },
+          nb::arg("seeds"), nb::arg("mask"))
+      .def("refresh", [](S& self) { refresh(*self.world, self.state); })
+      .def("events", &events, nb::arg("world"))
+      .def("collision_pairs", &collision_pairs, nb::arg("world"))
+      .def("goals", &goals_of, nb::arg("row"))
+      .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))
+      .def("set_initial", &set_initial, nb::arg("row"))
+      .def("vertices", &vertices, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
+      .def("circle", &circle, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
+      .def("parts", &parts, nb::arg("row"))
+      .def("trajectory", &trajectory, nb::arg("row"));
+}
+
+}  // namespace irsim

@@ -1,0 +1,27 @@
+// The state as Python holds it: the C++ state, its world, and the arrays that look into it.
+#pragma once
+
+#include "bind.hpp"
+#include "state.hpp"
+
+namespace irsim {
+
+using Seeds = nb::ndarray<const std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Mask = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+struct BoundState {
+  BoundState(World& world, const Seeds& seeds, bool history);
+
+  World* world;
+  State state;
+  nb::object pose, extra, control, twist, command, given, arrived, collided, stopped, radius, goal, ranges, hits,
+      beam_angles, count, scene, noise, seed, failed_placement;
+
+  /// `state` for a call that names its world, too.
+  State& of(const World& named);
+  void check_row(int row) const;
+  void check_world(int w) const;
+  void check_mask(const Mask& mask) const;
+};
+
+}  // namespace irsim

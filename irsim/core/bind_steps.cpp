@@ -1,0 +1,105 @@
+// advance, rollout and the phases of a step.
+#include "batch.hpp"
+#include "bind_state.hpp"
+
+namespace irsim {
+namespace {
+
+struct Trace {
+  nb::object pose, control, arrived, collided, steps, ranges;
+};
+
+/// (T, W * size) from what each world recorded; a world that rested keeps its last values.
+template <class T, class Element>
+nb::object joined(const std::vector<Recording>& all, std::vector<Element> Recording::* part, const Array<Element>& now,
+                  long long steps, std::size_t size, bool flat) {
+  const std::size_t numbers = sizeof(Element) / sizeof(T), worlds = all.size();
+  std::vector<T> out(static_cast<std::size_t>(steps) * worlds * size * numbers);
+  for (std::size_t w = 0; w < worlds; ++w) {
+    const std::vector<Element>& recorded = all[w].*part;
+    for (long long t = 0; t < steps; ++t) {
+      const Element* from = t < all[w].steps ? recorded.data() + t * size : now.data + w * size;
+      if (size > 0) std::memcpy(&out[(t * worlds + w) * size * numbers], from, size * sizeof(Element));
+    }
+  }
+  const std::size_t rows = worlds * size, count = static_cast<std::size_t>(steps);
+  return flat ? own(std::move(out), {count, rows}) : own(std::move(out), {count, rows, numbers});
+}
+
+long long advance(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool external) {
+  State& state = bound.of(world);
+  nb::gil_scoped_release free;
+  return run_worlds(world, state, {steps, threads, until_done, external}, nullptr, false);
+}
+
+Trace rollout(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool ranges) {
+  State& state = bound.of(world);
+  std::vector<Recording> recordings(state.worlds);
+  long long most = 0;
+  {
+    nb::gil_scoped_release free;
+    most = run_worlds(world, state, {steps, threads, until_done, false}, &recordings, ranges);
+  }
+  const std::size_t n = world.objects;
+  std::vector<std::int64_t> executed;
+  for (const Recording& recording : recordings) executed.push_back(recording.steps);
+  Trace out;
+  out.pose = joined<double>(recordings, &Recording::pose, state.pose, most, n, false);
+  out.control = joined<double>(recordings, &Recording::control, state.control, most, n, false);
+  out.arrived = joined<std::uint8_t>(recordings, &Recording::arrived, state.arrived, most, n, true);
+  out.collided = joined<std::uint8_t>(recordings, &Recording::collided, state.collided, most, n, true);
+  out.ranges =
+      joined<double>(recordings, &Recording::ranges, state.ranges, ranges ? most : 0, world.beams_per_world, true);
+  const std::size_t worlds = executed.size();
+  out.steps = own(std::move(executed), {worlds});
+  return out;
+}
+
+/// A phase for every world.
+template <class Phase>
+auto all_worlds(Phase phase) {
+  return [phase](World& world, BoundState& bound) {
+    State& state = bound.of(world);
+    nb::gil_scoped_release free;
+    for (int w = 0; w < state.worlds; ++w) phase(world, state, w, state.workspaces.front());
+  };
+}
+
+}  // namespace
+
+void bind_steps(nb::module_& m) {
+  nb::class_<Trace>(m, "Trace")
+      .def_ro("pose", &Trace::pose)
+      .def_ro("control", &Trace::control)
+      .def_ro("arrived", &Trace::arrived)
+      .def_ro("collided", &Trace::collided)
+      .def_ro("steps", &Trace::steps)
+      .def_ro("ranges", &Trace::ranges);
+  m.def("advance", &advance, nb::arg("world"), nb::arg("state"), nb::arg("steps"), nb::kw_only(),
+        nb::arg("threads") = 1, nb::arg("until_done") = false, nb::arg("external") = false);
+  m.def("rollout", &rollout, nb::arg("world"), nb::arg("state"), nb::arg("steps"), nb::kw_only(),
+        nb::arg("threads") = 1, nb::arg("until_done") = false, nb::arg("ranges") = false);
+  using W = const World&;
+  const auto phase = [&](const char* name, auto call) {
+    m.def(name, all_worlds(call), nb::arg("world"), nb::arg("state"));
+  };
+  phase("decide", [](W world, State& s, int w, Workspace& work) { decide(world, s, w, work); });
+  phase("limit", [](W world, State& s, int w, Workspace&) { limit(world, s, w); });
+  phase("integrate", [](W world, State& s, int w, Workspace&) { integrate(world, s, w); });
+  phase("finish", [](W world, State& s, int w, Workspace&) { finish(world, s, w); });
+  phase("collide", [](W world, State& s, int w, Workspace& work) { collide(world, s, w, work); });
+  phase("arrive", [](W world, State& s, int w, Workspace&) { arrive(world, s, w); });
+  phase("sense", [](W world, State& s, int w, Workspace& work) { sense(world, s, w, work); });
+  m.def(
+      "follow",
+      [](World& world, BoundState& bound, int row, std::pair<double, double> velocity) {
+        State& state = bound.of(world);
+        bound.check_row(row);
+        const Vec3 u =
+            control_for(world, state, row / world.objects, row % world.objects, {velocity.first, velocity.second}, {});
+        return std::make_tuple(u[0], u[1], u[2]);
+      },
+      nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("velocity"));
+}
+
+}  // namespace irsim

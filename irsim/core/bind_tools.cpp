@@ -1,0 +1,52 @@
+// Small functions for the Python API and for tests.
+#include "bind.hpp"
+#include "collision/touch.hpp"
+#include "random.hpp"
+#include "spec.hpp"
+
+namespace irsim {
+namespace {
+
+using PoseNumbers = std::array<double, 3>;
+
+bool intersects(const std::vector<PartSpec>& parts_a, const PoseNumbers& a, const std::vector<PartSpec>& parts_b,
+                const PoseNumbers& b) {
+  Shapes shapes;
+  Outlines outlines;
+  for (const auto* parts : {&parts_a, &parts_b}) {
+    std::vector<Outline> list;
+    for (const PartSpec& part : *parts) {
+      std::visit(
+          [&](const auto& p) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(p)>, std::monostate>) {
+              list.push_back(outline(p, Draws({}, Stream::shape, 0), static_cast<std::uint64_t>(list.size()) << 32));
+            }
+          },
+          part);
+    }
+    shapes.add(list, false);
+  }
+  outlines.resize(shapes.size[0]);
+  outlines.place(shapes, 0, {a[0], a[1], a[2]}, unit(a[2]));
+  outlines.place(shapes, 1, {b[0], b[1], b[2]}, unit(b[2]));
+  return touch(outlines.footprint(shapes, 0), outlines.footprint(shapes, 1));
+}
+
+}  // namespace
+
+void bind_tools(nb::module_& m) {
+  m.def("intersects", &intersects, nb::arg("parts_a"), nb::arg("pose_a"), nb::arg("parts_b"), nb::arg("pose_b"));
+  m.def(
+      "random_bits",
+      [](std::uint64_t seed, std::uint32_t scene, std::uint32_t noise, std::uint64_t stream, std::uint64_t object,
+         std::uint64_t draw) {
+        const Block b = philox(make_key(seed, scene, noise), {draw, object, stream, 0});
+        return std::make_tuple(b[0], b[1], b[2], b[3]);
+      },
+      nb::arg("seed"), nb::arg("scene"), nb::arg("noise"), nb::arg("stream"), nb::arg("object"), nb::arg("draw"));
+  nb::dict streams;
+  for (std::size_t i = 0; i < kStreamNames.size(); ++i) streams[kStreamNames[i]] = i;
+  m.attr("STREAMS") = streams;
+}
+
+}  // namespace irsim

@@ -1,0 +1,42 @@
+# irsim_features(folder Variant MACRO suffix): one header that includes every folder/*.hpp and joins the options structs
+# they declare (some_name.hpp declares SomeName + suffix) into `Variant` and into the list macro `MACRO(X)`. When the
+# suffix is "Options", `run(options, ...)` calls the function named like the file.
+function(irsim_features folder variant macro suffix)
+  file(GLOB headers CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.hpp")
+  list(SORT headers)
+  set(includes "")
+  set(types "")
+  set(calls "")
+  set(items "")
+  foreach(header IN LISTS headers)
+    get_filename_component(name "${header}" NAME_WE)
+    string(REPLACE "_" ";" words "${name}")
+    set(type "")
+    foreach(word IN LISTS words)
+      string(SUBSTRING "${word}" 0 1 first)
+      string(SUBSTRING "${word}" 1 -1 rest)
+      string(TOUPPER "${first}" first)
+      string(APPEND type "${first}${rest}")
+    endforeach()
+    string(APPEND type "${suffix}")
+    string(APPEND includes "#include \"${folder}/${name}.hpp\"\n")
+    string(APPEND types ", ${type}")
+    string(APPEND items " X(${type})")
+    if(suffix STREQUAL "Options")
+      string(APPEND calls "template <class... A>\ninline decltype(auto) run(const ${type}& o, A&&... a) {\n"
+                          "  return ${name}(o, std::forward<A>(a)...);\n}\n")
+    endif()
+  endforeach()
+  string(CONCAT content
+      "// Written by cmake/features.cmake.\n#pragma once\n#include <utility>\n#include <variant>\n${includes}"
+      "namespace irsim {\nusing ${variant} = std::variant<std::monostate${types}>;\n${calls}}\n"
+      "#define ${macro}(X)${items}\n")
+  set(file "${CMAKE_CURRENT_BINARY_DIR}/generated/${folder}.gen.hpp")
+  set(old "")
+  if(EXISTS "${file}")
+    file(READ "${file}" old)
+  endif()
+  if(NOT "${old}" STREQUAL "${content}")
+    file(WRITE "${file}" "${content}")
+  endif()
+endfunction()

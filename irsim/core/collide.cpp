@@ -1,0 +1,86 @@
+// Who touches whom, and what the collision mode does about it.
+#include <algorithm>
+
+#include "collision/touch.hpp"
+#include "phases.hpp"
+
+namespace irsim {
+namespace {
+
+void place_moving(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  const int first = w * world.objects;
+  for (const int i : world.moving) {
+    const int row = first + i;
+    const Pose& pose = state.pose[row];
+    if (state.direction_of[row] != pose.theta) {
+      state.direction[row] = unit(pose.theta);
+      state.direction_of[row] = pose.theta;
+    }
+    scene.moving.place(*scene.shapes, i, pose, state.direction[row]);
+  }
+}
+
+void find_pairs(const World& world, State& state, int w, Workspace& work) {
+  Scene& scene = state.scenes[w];
+  const Shapes& shapes = *scene.shapes;
+  const Fixed& fixed = *scene.fixed;
+  std::vector<Pair>& pairs = scene.pairs;
+  pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
+  const bool several = world.moving.size() > 1;
+  if (several) {
+    work.grid.clear(world.cell(shapes, world.moving));
+    for (const int i : world.moving) work.grid.add(i, scene.moving.boxes[shapes.placed[i].object]);
+    work.grid.build();
+  }
+  for (const int i : world.moving) {
+    const Footprint body = scene.moving.footprint(shapes, i);
+    fixed.grid.query(body.box, [&](int j) {
+      if (touch(body, fixed.outlines.footprint(shapes, j))) pairs.emplace_back(std::min(i, j), std::max(i, j));
+    });
+    if (!several) continue;
+    work.grid.query(body.box, [&](int j) {
+      if (j > i && touch(body, scene.moving.footprint(shapes, j))) pairs.emplace_back(i, j);
+    });
+  }
+  std::sort(pairs.begin(), pairs.end());
+}
+
+/// Contacts that began since the previous evaluation.
+void log_contacts(const World& world, State& state, int w) {
+  const Scene& scene = state.scenes[w];
+  auto old = scene.previous_pairs.begin();
+  for (const Pair& pair : scene.pairs) {
+    while (old != scene.previous_pairs.end() && *old < pair) ++old;
+    if (old != scene.previous_pairs.end() && *old == pair) continue;
+    const auto [i, j] = pair;
+    if (world.unobstructed[i] && world.unobstructed[j]) continue;
+    Vec2 where;
+    touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
+    state.log(w, EventKind::collision, i, j, where);
+  }
+}
+
+}  // namespace
+
+void collide(const World& world, State& state, int w, Workspace& work) {
+  Scene& scene = state.scenes[w];
+  std::swap(scene.pairs, scene.previous_pairs);
+  place_moving(world, state, w);
+  find_pairs(world, state, w, work);
+  const int first = w * world.objects;
+  std::uint8_t* collided = state.collided.data + first;
+  std::fill(collided, collided + world.objects, std::uint8_t{0});
+  for (const auto& [i, j] : scene.pairs) {
+    if (!world.unobstructed[j]) collided[i] = 1;
+    if (!world.unobstructed[i]) collided[j] = 1;
+  }
+  log_contacts(world, state, w);
+  for (int i = 0; i < world.objects; ++i) {
+    const bool stops =
+        world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[i]);
+    state.stopped[first + i] = stops ? collided[i] : 0;
+  }
+}
+
+}  // namespace irsim

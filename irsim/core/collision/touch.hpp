@@ -1,0 +1,16 @@
+// Exact test of two footprints (the narrow phase).
+#pragma once
+
+#include "shapes.hpp"
+
+namespace irsim {
+
+/// Whether two closed footprints meet; if so, `where` is a point of both.
+bool touch(const Footprint& a, const Footprint& b, Vec2& where);
+
+inline bool touch(const Footprint& a, const Footprint& b) {
+  Vec2 where;
+  return touch(a, b, where);
+}
+
+}  // namespace irsim

@@ -1,0 +1,78 @@
+// Goals of those who have arrived are renewed, then behaviors choose.
+#include "features.hpp"
+#include "phases.hpp"
+
+namespace irsim {
+namespace {
+
+bool idle(const World& world, const State& state, int first, int object) {
+  return world.is_static[object] || state.stopped[first + object];
+}
+
+/// wander: a new random goal. loop: the initial goals again; a single goal alternates with the start.
+void renew(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  if (world.wander[object]) return draw_wander_goal(world, state, w, object);
+  GoalQueue& queue = state.goals[row];
+  if (!world.loop[object] || queue.initial.empty()) return;
+  queue.set(queue.initial);
+  if (queue.initial.size() == 1) {
+    const Pose& start = state.initial_pose[row];
+    queue.goals[0].theta = world.state_arrival[object] ? queue.goals[0].theta : kNone;
+    queue.goals.push_back({start.x, start.y, world.state_arrival[object] ? start.theta : kNone});
+  }
+  state.sync_goal(row);
+}
+
+}  // namespace
+
+Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning) {
+  const int row = w * world.objects + object;
+  const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
+                  state.heading(row), turning};
+  return std::visit(
+      [&](const auto& drive) -> Vec3 {
+        if constexpr (std::is_same_v<std::decay_t<decltype(drive)>, std::monostate>) {
+          return {};
+        } else {
+          return follow(drive, wish);
+        }
+      },
+      world.drive[object]);
+}
+
+void decide(const World& world, State& state, int w, Workspace& work) {
+  const int first = w * world.objects;
+  for (const int i : world.moving) {
+    const int row = first + i;
+    if (state.stopped[row]) continue;
+    if (state.arrived[row]) renew(world, state, w, i);
+    if (!state.given[row]) state.command[row] = {};
+  }
+  for (const BehaviorGroup& group : world.behaviors) {
+    work.objects.clear();
+    for (const int i : group.objects) {
+      if (!idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
+    }
+    if (work.objects.empty()) continue;
+    const int count = static_cast<int>(work.objects.size());
+    if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
+    const Decision decision{world, state, first, work.objects.data(), count};
+    Intent* intents = work.intents.data();
+    std::visit(
+        [&](const auto& options) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>)
+            run(options, decision, intents);
+        },
+        group.behavior);
+    for (int k = 0; k < count; ++k) {
+      const int object = work.objects[k];
+      const Intent& intent = intents[k];
+      state.command[first + object] = intent.kind == Intent::control_body
+                                          ? intent.control
+                                          : control_for(world, state, w, object, intent.velocity, intent.turning);
+    }
+  }
+}
+
+}  // namespace irsim

@@ -1,0 +1,33 @@
+// What behaviors read and write.
+#pragma once
+
+#include <vector>
+
+#include "state.hpp"
+#include "world.hpp"
+
+namespace irsim {
+
+/// K objects of one world that share a behavior, its options and their group. Read only: the snapshot everybody sees.
+struct Decision {
+  const World& world;
+  const State& state;
+  int first_row;       // row of object 0 of this world
+  const int* objects;  // (K,) ids within the world
+  int count;           // K
+
+  int row(int k) const { return first_row + objects[k]; }
+};
+
+/// What one object wants: a world-frame velocity, which its drive turns into controls, or controls.
+struct Intent {
+  enum Kind { velocity_world, control_body } kind = velocity_world;
+  Vec2 velocity;
+  Turning turning;
+  Vec3 control;
+
+  static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}}; }
+  static Intent of_control(Vec3 u) { return {control_body, {}, {}, u}; }
+};
+
+}  // namespace irsim

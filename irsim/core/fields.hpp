@@ -1,0 +1,40 @@
+// How options structs name their fields. Bindings, comparison and the test against the Python models use the list.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+
+namespace irsim {
+
+template <class Owner, class Value>
+struct Field {
+  const char* name;
+  Value Owner::* member;
+};
+
+/// A field that Python writes as one of a few words; the enum counts them from 0 in this order.
+template <class Owner, class Enum, std::size_t N>
+struct Choice {
+  const char* name;
+  Enum Owner::* member;
+  std::array<const char*, N> words;
+};
+
+template <class Owner, class Value>
+constexpr Field<Owner, Value> field(const char* name, Value Owner::* member) {
+  return {name, member};
+}
+
+template <class Owner, class Enum, class... Words>
+constexpr Choice<Owner, Enum, sizeof...(Words)> choice(const char* name, Enum Owner::* member, Words... words) {
+  return {name, member, {words...}};
+}
+
+/// Whether two options structs agree in every field.
+template <class Options>
+bool same(const Options& a, const Options& b) {
+  return std::apply([&](const auto&... f) { return ((a.*(f.member) == b.*(f.member)) && ...); }, Options::fields());
+}
+
+}  // namespace irsim

@@ -1,0 +1,96 @@
+#include "geometry/enclosing_circle.hpp"
+
+namespace irsim {
+namespace {
+
+/// How far `disc` sticks out of `circle`; negative inside.
+double excess(const Disc& circle, const Disc& disc) {
+  return norm(disc.centre - circle.centre) + disc.radius - circle.radius;
+}
+
+/// Smallest circle around two discs.
+Disc around(const Disc& a, const Disc& b) {
+  const Vec2 d = b.centre - a.centre;
+  const double length = norm(d);
+  if (length + b.radius <= a.radius) return a;
+  if (length + a.radius <= b.radius) return b;
+  const double radius = 0.5 * (length + a.radius + b.radius);
+  return {a.centre + d * ((radius - a.radius) / length), radius};
+}
+
+/// The circle that touches three discs from outside (Apollonius); radius infinite if there is none.
+Disc around(const Disc& a, const Disc& b, const Disc& c) {
+  const Disc none{{}, kInfinity};
+  const Vec2 p = b.centre - a.centre, q = c.centre - a.centre;
+  const double det = 2.0 * cross(p, q);
+  if (det == 0.0) return none;
+  // |x| = R - ra, |x - p| = R - rb, |x - q| = R - rc  ->  x = s + t R
+  const double ra = a.radius;
+  const double kp = squared(p) + ra * ra - b.radius * b.radius, kq = squared(q) + ra * ra - c.radius * c.radius;
+  const double lp = 2.0 * (b.radius - ra), lq = 2.0 * (c.radius - ra);
+  const Vec2 s{(kp * q.y - kq * p.y) / det, (kq * p.x - kp * q.x) / det};
+  const Vec2 t{(lp * q.y - lq * p.y) / det, (lq * p.x - lp * q.x) / det};
+  const double u = 1.0 - squared(t), v = ra + dot(s, t), w = ra * ra - squared(s);  // u R^2 - 2 v R + w = 0
+  const double root = v * v - u * w;
+  if (root < 0.0) return none;
+  const double largest = std::max({a.radius, b.radius, c.radius});
+  Disc best = none;
+  for (const double sign : {-1.0, 1.0}) {
+    const double radius = u == 0.0 ? w / (2.0 * v) : (v + sign * std::sqrt(root)) / u;
+    if (radius >= largest && radius < best.radius) best = {a.centre + s + t * radius, radius};
+  }
+  return best;
+}
+
+struct Basis {
+  Disc members[3];
+  int count = 0;
+  Disc circle{{}, kInfinity};
+};
+
+/// The smallest circle around the basis and `extra` that `extra` helps to hold, and what holds it.
+Basis extend(const Basis& basis, const Disc& extra, double tolerance) {
+  Basis best;
+  const auto consider = [&](const Disc& circle, std::initializer_list<int> kept) {
+    if (!(circle.radius < best.circle.radius) || excess(circle, extra) > tolerance) return;
+    for (int i = 0; i < basis.count; ++i)
+      if (excess(circle, basis.members[i]) > tolerance) return;
+    best.circle = circle;
+    best.members[0] = extra;
+    best.count = 1;
+    for (const int i : kept) best.members[best.count++] = basis.members[i];
+  };
+  consider(extra, {});
+  for (int i = 0; i < basis.count; ++i) {
+    consider(around(extra, basis.members[i]), {i});
+    for (int j = 0; j < i; ++j) consider(around(extra, basis.members[i], basis.members[j]), {i, j});
+  }
+  return best;
+}
+
+}  // namespace
+
+Disc enclosing_circle(const std::vector<Disc>& discs) {
+  if (discs.empty()) return {};
+  Basis basis;
+  basis.members[0] = basis.circle = discs.front();
+  basis.count = 1;
+  double scale = discs.front().radius;
+  for (const Disc& disc : discs) scale = std::max(scale, norm(disc.centre - discs.front().centre) + disc.radius);
+  const double tolerance = 1e-13 * scale;
+  for (std::size_t round = 0; round < 4 * discs.size() + 16; ++round) {  // the radius grows; the bound is for NaN
+    const Disc* worst = nullptr;
+    double most = tolerance;
+    for (const Disc& disc : discs) {
+      const double e = excess(basis.circle, disc);
+      if (e > most) most = e, worst = &disc;
+    }
+    if (worst == nullptr) break;
+    const Basis next = extend(basis, *worst, 2.0 * tolerance);
+    if (!(next.circle.radius > basis.circle.radius) || next.count == 0) break;
+    basis = next;
+  }
+  return basis.circle;
+}
+
+}  // namespace irsim

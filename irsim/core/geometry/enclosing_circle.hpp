@@ -1,0 +1,18 @@
+// Smallest circle around points and discs.
+#pragma once
+
+#include <vector>
+
+#include "vec.hpp"
+
+namespace irsim {
+
+struct Disc {
+  Vec2 centre;
+  double radius = 0.0;
+};
+
+/// The smallest circle that contains all discs (points are discs of radius 0).
+Disc enclosing_circle(const std::vector<Disc>& discs);
+
+}  // namespace irsim

@@ -1,0 +1,49 @@
+// Ackermann steering, reference point on the rear axle: forward speed and steering angle (or steering rate).
+#pragma once
+
+#include "drive.hpp"
+#include "fields.hpp"
+
+namespace irsim {
+
+enum class Steering { steer, angular };
+
+struct AckerOptions {
+  bool noise;
+  std::array<double, 4> alpha;
+  Steering mode;     // steer: the second control is the angle; angular: its rate
+  double wheelbase;  // [m]
+  double psi_max;    // largest steering angle [rad], may be infinite
+  static constexpr auto fields() {
+    return std::make_tuple(field("noise", &AckerOptions::noise), field("alpha", &AckerOptions::alpha),
+                           choice("mode", &AckerOptions::mode, "steer", "angular"),
+                           field("wheelbase", &AckerOptions::wheelbase), field("psi_max", &AckerOptions::psi_max));
+  }
+};
+
+inline void acker(const AckerOptions& options, const Motion& m) {
+  const double wheelbase = options.wheelbase > 0.0 ? options.wheelbase : 1.0;
+  const double yaw_rate = m.control[0] * std::tan(m.extra[0]) / wheelbase;
+  translate(m, {m.control[0], 0.0});
+  m.pose.theta = wrap(m.pose.theta + yaw_rate * m.dt);
+  m.twist[2] = yaw_rate;
+  const double psi = options.mode == Steering::steer ? m.control[1] : m.extra[0] + m.control[1] * m.dt;
+  m.extra[0] = clip(psi, -options.psi_max, options.psi_max);
+}
+
+inline Vec3 deviation(const AckerOptions& options, Vec3 control) { return velocity_deviation(options.alpha, control); }
+
+inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
+  if (options.mode == Steering::steer) control[1] = clip(control[1], -options.psi_max, options.psi_max);
+  return control;
+}
+
+/// Steers straight at the wanted direction; in mode `angular` the wheels turn there at a limited rate.
+inline Vec3 follow(const AckerOptions& options, const Wish& wish) {
+  const ForwardWish forward = forward_wish(wish);
+  if (options.mode == Steering::steer) return {{forward.speed, forward.error, 0.0}};
+  const double psi = clip(forward.error, -0.25 * kPi, 0.25 * kPi);
+  return {{forward.speed, turn_rate(psi - wish.extra[0], wish.turning), 0.0}};
+}
+
+}  // namespace irsim

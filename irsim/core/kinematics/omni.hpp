@@ -1,0 +1,31 @@
+// Holonomic drive of fixed heading: forward and lateral speed in the body frame.
+#pragma once
+
+#include "drive.hpp"
+#include "fields.hpp"
+
+namespace irsim {
+
+struct OmniOptions {
+  bool noise;
+  std::array<double, 2> alpha;
+  static constexpr auto fields() {
+    return std::make_tuple(field("noise", &OmniOptions::noise), field("alpha", &OmniOptions::alpha));
+  }
+};
+
+inline void omni(const OmniOptions&, const Motion& m) {
+  translate(m, {m.control[0], m.control[1]});
+  m.twist[2] = 0.0;
+}
+
+inline Vec3 deviation(const OmniOptions& options, Vec3) {
+  return {{std::sqrt(options.alpha[0]), std::sqrt(options.alpha[1]), 0.0}};
+}
+
+inline Vec3 follow(const OmniOptions&, const Wish& wish) {
+  const Vec2 body = unrotate(wish.velocity, wish.direction);
+  return {{body.x, body.y, 0.0}};
+}
+
+}  // namespace irsim

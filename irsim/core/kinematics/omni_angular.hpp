@@ -1,0 +1,32 @@
+// Holonomic drive that also turns: forward and lateral speed in the body frame, yaw rate.
+#pragma once
+
+#include "drive.hpp"
+#include "fields.hpp"
+
+namespace irsim {
+
+struct OmniAngularOptions {
+  bool noise;
+  std::array<double, 3> alpha;
+  static constexpr auto fields() {
+    return std::make_tuple(field("noise", &OmniAngularOptions::noise), field("alpha", &OmniAngularOptions::alpha));
+  }
+};
+
+inline void omni_angular(const OmniAngularOptions&, const Motion& m) {
+  translate(m, {m.control[0], m.control[1]});
+  m.pose.theta = wrap(m.pose.theta + m.control[2] * m.dt);
+  m.twist[2] = m.control[2];
+}
+
+inline Vec3 deviation(const OmniAngularOptions& options, Vec3) {
+  return {{std::sqrt(options.alpha[0]), std::sqrt(options.alpha[1]), std::sqrt(options.alpha[2])}};
+}
+
+inline Vec3 follow(const OmniAngularOptions&, const Wish& wish) {
+  const Vec2 body = unrotate(wish.velocity, wish.direction);
+  return {{body.x, body.y, 0.0}};
+}
+
+}  // namespace irsim

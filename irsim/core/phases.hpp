@@ -1,0 +1,25 @@
+// The phases of one period of one world; `step` is their sequence.
+#pragma once
+
+#include "state.hpp"
+#include "world.hpp"
+
+namespace irsim {
+
+void decide(const World& world, State& state, int w, Workspace& work);
+void limit(const World& world, State& state, int w);
+void integrate(const World& world, State& state, int w);
+void finish(const World& world, State& state, int w);
+void collide(const World& world, State& state, int w, Workspace& work);
+void arrive(const World& world, State& state, int w);
+void sense(const World& world, State& state, int w, Workspace& work);
+
+/// One period. `external`: the caller has moved the objects.
+void step(const World& world, State& state, int w, Workspace& work, bool external);
+/// Whether every robot of world w is stopped or has arrived; a world without robots never is done.
+bool done(const World& world, const State& state, int w);
+
+/// The control of `object` that realises a world-frame velocity.
+Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning);
+
+}  // namespace irsim

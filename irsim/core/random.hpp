@@ -1,0 +1,91 @@
+// Counter-based random numbers: a draw is a pure function of (seed, scene, noise, stream, object, draw).
+//
+// Philox4x64-10 after Salmon, Moraes, Dror, Shaw: Parallel Random Numbers: As Easy as 1, 2, 3 (SC 2011).
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "vec.hpp"
+#ifdef _MSC_VER
+#include <intrin.h>
+#endif
+
+namespace irsim {
+
+enum class Stream : std::uint64_t { placement, shape, goal, motion, sensor, behavior, planner, map, user };
+constexpr std::array<const char*, 9> kStreamNames = {"placement", "shape",   "goal", "motion", "sensor",
+                                                     "behavior",  "planner", "map",  "user"};
+
+/// The stream of the `index`-th sensor of an object.
+inline std::uint64_t sensor_stream(int index) {
+  return static_cast<std::uint64_t>(Stream::sensor) + 16 * static_cast<std::uint64_t>(index);
+}
+
+struct Key {
+  std::uint64_t seed = 0, episode = 0;
+};
+inline Key make_key(std::uint64_t seed, std::uint32_t scene, std::uint32_t noise) {
+  return {seed, (static_cast<std::uint64_t>(scene) << 32) | noise};
+}
+
+using Block = std::array<std::uint64_t, 4>;
+
+inline std::uint64_t multiply(std::uint64_t a, std::uint64_t b, std::uint64_t& high) {
+#ifdef _MSC_VER
+  return _umul128(a, b, &high);
+#else
+  __extension__ using Wide = unsigned __int128;
+  const Wide product = static_cast<Wide>(a) * b;
+  high = static_cast<std::uint64_t>(product >> 64);
+  return static_cast<std::uint64_t>(product);
+#endif
+}
+
+/// The block of a key and counter; numpy.random.Philox yields the same words (it counts before the first block).
+inline Block philox(Key key, Block counter) {
+  for (int round = 0; round < 10; ++round) {
+    std::uint64_t high0, high1;
+    const std::uint64_t low0 = multiply(0xD2E7470EE14C6C93u, counter[0], high0);
+    const std::uint64_t low1 = multiply(0xCA5A826395121157u, counter[2], high1);
+    counter = {high1 ^ counter[1] ^ key.seed, low1, high0 ^ counter[3] ^ key.episode, low0};
+    key.seed += 0x9E3779B97F4A7C15u;
+    key.episode += 0xBB67AE8584CAA73Bu;
+  }
+  return counter;
+}
+
+/// The draws of one object in one stream. Each kind of draw has its own numbering: draw d sits in block d / 4.
+struct Draws {
+  Key key;
+  std::uint64_t stream, object;
+
+  Draws(Key k, std::uint64_t s, int i) : key(k), stream(s), object(static_cast<std::uint64_t>(i)) {}
+  Draws(Key k, Stream s, int i) : Draws(k, static_cast<std::uint64_t>(s), i) {}
+
+  Block block(std::uint64_t index) const { return philox(key, {index, object, stream, 0}); }
+
+  /// Uniform in [0, 1).
+  double uniform(std::uint64_t draw) const { return fraction(block(draw / 4)[draw % 4]); }
+  double uniform(std::uint64_t draw, double low, double high) const { return low + (high - low) * uniform(draw); }
+
+  /// Standard normal (Box-Muller, two draws per pair of words).
+  double normal(std::uint64_t draw) const { return normals(draw / 4)[draw % 4]; }
+  std::array<double, 4> normals(std::uint64_t index) const {
+    const Block b = block(index);
+    std::array<double, 4> out;
+    for (int i = 0; i < 4; i += 2) {
+      const double length = std::sqrt(-2.0 * std::log(1.0 - fraction(b[i])));
+      const double angle = kTurn * fraction(b[i + 1]);
+      out[i] = length * std::cos(angle);
+      out[i + 1] = length * std::sin(angle);
+    }
+    return out;
+  }
+
+ private:
+  static double fraction(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1.0p-53; }
+};
+
+}  // namespace irsim

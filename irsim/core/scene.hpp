@@ -1,0 +1,42 @@
+// Geometry and records of one world.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "collision/grid.hpp"
+#include "shapes.hpp"
+
+namespace irsim {
+
+using Pair = std::pair<int, int>;  // object ids, first < second
+
+/// Outlines of the static objects, where they are, and what never has to be asked again about them. Shared between
+/// worlds in which they stand alike.
+struct Fixed {
+  std::vector<Pose> poses;  // of the static objects, in order
+  Outlines outlines;
+  Grid grid;
+  std::vector<Pair> pairs;  // static objects that meet each other
+};
+
+enum class EventKind { arrival, waypoint, collision };
+constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision"};
+
+struct Event {
+  EventKind kind;
+  long long step;
+  int object, partner;  // partner -1 unless a collision
+  double x, y;
+};
+
+struct Scene {
+  std::shared_ptr<const Shapes> shapes;
+  std::shared_ptr<const Fixed> fixed;
+  Outlines moving;
+  std::vector<Pair> pairs, previous_pairs;  // sorted
+  std::vector<Event> events;                // since the last reset
+};
+
+}  // namespace irsim

@@ -1,0 +1,31 @@
+// What sensors read and write; each header in sensors/ defines, for one options struct,
+//
+//   void                 NAME(options, sensing)  one scan into sensing.ranges and sensing.hits
+//   std::vector<double>  beams(options)          nominal beam angles, sensor frame
+#pragma once
+
+#include "state.hpp"
+#include "workspace.hpp"
+#include "world.hpp"
+
+namespace irsim {
+
+struct Sensing {
+  const World& world;
+  const State& state;
+  int w;
+  const Mount& mount;
+  double* ranges;      // (mount.count,) [m]
+  std::int32_t* hits;  // (mount.count,) object id or -1
+  double* angles;      // (mount.count,) nominal angle [rad], sensor frame
+  BeamBuffers& buffers;
+
+  int row() const { return w * world.objects + mount.object; }
+  Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), mount.object); }
+  /// Number of the first beam of this scan among all beams of the episode.
+  std::uint64_t first_draw() const {
+    return static_cast<std::uint64_t>(state.count[w]) * static_cast<std::uint64_t>(mount.count);
+  }
+};
+
+}  // namespace irsim

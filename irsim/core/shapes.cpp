@@ -1,0 +1,72 @@
+#include "shapes.hpp"
+
+#include "geometry/enclosing_circle.hpp"
+
+namespace irsim {
+namespace {
+
+double twice_area(const std::vector<Vec2>& ring) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]);
+  return sum;
+}
+
+}  // namespace
+
+void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
+  std::vector<Disc> discs;
+  const int base = static_cast<int>(vertices.size());
+  for (const Outline& outline : outlines) {
+    Part part{outline.kind, static_cast<int>(vertices.size()) - base, 0, outline.radius, 0.0};
+    vertices.insert(vertices.end(), outline.vertices.begin(), outline.vertices.end());
+    if (outline.kind == Kind::polygon) {
+      const double area = twice_area(outline.vertices);
+      part.turn = area > 0.0 ? 1.0 : area < 0.0 ? -1.0 : 0.0;
+    }
+    if (outline.kind == Kind::polygon || (outline.kind == Kind::linestring && outline.vertices.size() == 1)) {
+      vertices.push_back(outline.vertices.front());
+    }
+    part.last = static_cast<int>(vertices.size()) - base - 1;
+    parts.push_back(part);
+    for (const Vec2& v : outline.vertices) discs.push_back({v, outline.radius});
+  }
+  const Disc around = enclosing_circle(discs);
+  centre.push_back(around.centre);
+  radius.push_back(around.radius);
+  Slot& used = size[fixed ? 1 : 0];
+  placed.push_back(used);
+  used.object += 1;
+  used.part += static_cast<int>(outlines.size());
+  used.vertex += static_cast<int>(vertices.size()) - base;
+  body.push_back({objects(), static_cast<int>(parts.size()), static_cast<int>(vertices.size())});
+}
+
+void Outlines::resize(const Slot& size) {
+  vertices.resize(size.vertex);
+  part_boxes.resize(size.part);
+  boxes.resize(size.object);
+  centres.resize(size.object);
+}
+
+void Outlines::place(const Shapes& shapes, int object, const Pose& pose, Vec2 direction) {
+  const Vec2 origin = pose.position();
+  const Slot& from = shapes.body[object];
+  const Slot& to = shapes.placed[object];
+  centres[to.object] = origin + rotate(shapes.centre[object], direction);
+  Box all;
+  for (int p = 0; p < shapes.part_count(object); ++p) {
+    const Part& part = shapes.parts[from.part + p];
+    Box box;
+    for (int v = part.first; v <= part.last; ++v) {
+      const Vec2 vertex = origin + rotate(shapes.vertices[from.vertex + v], direction);
+      vertices[to.vertex + v] = vertex;
+      box.include(vertex);
+    }
+    if (part.kind == Kind::circle) box = box_around(vertices[to.vertex + part.first], part.radius);
+    part_boxes[to.part + p] = box;
+    all.include(box);
+  }
+  boxes[to.object] = all;
+}
+
+}  // namespace irsim

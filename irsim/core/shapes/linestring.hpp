@@ -1,0 +1,17 @@
+// An open polyline without thickness.
+#pragma once
+
+#include "shapes/polygon.hpp"
+
+namespace irsim {
+
+struct Linestring {
+  Corners vertices;  // body frame [m]
+  static constexpr auto fields() { return std::make_tuple(field("vertices", &Linestring::vertices)); }
+};
+
+inline Outline outline(const Linestring& l, const Draws&, std::uint64_t) {
+  return {Kind::linestring, points(l.vertices)};
+}
+
+}  // namespace irsim

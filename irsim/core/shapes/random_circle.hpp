@@ -1,0 +1,21 @@
+// A disc whose radius is drawn per scene.
+#pragma once
+
+#include "fields.hpp"
+#include "shapes.hpp"
+
+namespace irsim {
+
+struct RandomCircle {
+  std::array<double, 2> radius_range;  // [m]
+  std::array<double, 2> center;        // body frame [m]
+  static constexpr auto fields() {
+    return std::make_tuple(field("radius_range", &RandomCircle::radius_range), field("center", &RandomCircle::center));
+  }
+};
+
+inline Outline outline(const RandomCircle& c, const Draws& draws, std::uint64_t first) {
+  return {Kind::circle, {{c.center[0], c.center[1]}}, draws.uniform(first, c.radius_range[0], c.radius_range[1])};
+}
+
+}  // namespace irsim

@@ -1,0 +1,185 @@
+#include "state.hpp"
+
+#include "features.hpp"
+#include "phases.hpp"
+#include "spec.hpp"
+
+namespace irsim {
+namespace {
+
+Goal goal_of(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
+}
+
+void evaluate(const World& world, State& state, int w, bool with_arrival) {
+  Workspace& work = state.workspaces.front();
+  collide(world, state, w, work);
+  if (with_arrival) arrive(world, state, w);
+  sense(world, state, w, work);
+}
+
+/// Build the geometry of the static objects where they stand, unless that is known.
+void place_fixed(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  std::vector<Pose> poses;
+  poses.reserve(world.fixed_objects.size());
+  for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
+  const auto stands = [&](const std::shared_ptr<const Fixed>& fixed) {
+    return fixed &&
+           std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
+                      [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
+  };
+  if (stands(scene.fixed)) return;
+  if (stands(world.fixed)) {
+    scene.fixed = world.fixed;
+  } else {
+    scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
+  }
+}
+
+void first_values(const World& world, State& state, int w) {
+  for (int i = 0; i < world.objects; ++i) {
+    const ObjectSpec& spec = world.specs[i];
+    const int row = w * world.objects + i;
+    const auto at = [](const std::vector<double>& v, std::size_t k) { return k < v.size() ? v[k] : 0.0; };
+    state.initial_pose[row] = {at(spec.pose, 0), at(spec.pose, 1), at(spec.pose, 2)};
+    state.initial_control[row] = {{at(spec.control, 0), at(spec.control, 1), at(spec.control, 2)}};
+    for (int e = 0; e < state.extra_rows; ++e) {
+      state.initial_extra[static_cast<std::size_t>(row) * state.extra_rows + e] = at(spec.extra, e);
+    }
+    state.goals[row].initial.clear();
+    for (const auto& goal : spec.goals) {
+      if (goal.size() >= 2) state.goals[row].initial.push_back(goal_of(goal));
+    }
+  }
+}
+
+}  // namespace
+
+State::State(const World& world, const std::uint64_t* seeds, bool history_)
+    : worlds(world.copies),
+      objects(world.objects),
+      rows(world.copies * world.objects),
+      extra_rows(world.extra_rows),
+      keep_history(history_),
+      pose(rows),
+      extra(static_cast<std::size_t>(rows) * extra_rows),
+      control(rows),
+      twist(rows),
+      command(rows),
+      given(rows),
+      arrived(rows),
+      collided(rows),
+      stopped(rows),
+      radius(rows),
+      goal(rows, {kNone, kNone, kNone}),
+      ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      hits(static_cast<std::size_t>(worlds) * world.beams_per_world, -1),
+      count(worlds),
+      scene_index(worlds),
+      noise(worlds),
+      seed(worlds),
+      failed_placement(worlds, -1),
+      direction(rows),
+      direction_of(rows, kNone),
+      goals(rows),
+      goal_draws(rows),
+      initial_pose(rows),
+      initial_extra(static_cast<std::size_t>(rows) * extra_rows),
+      initial_control(rows),
+      history(keep_history ? rows : 0),
+      scenes(worlds),
+      fresh(worlds),
+      event_count(worlds) {
+  workspaces.emplace_back();
+  std::copy(seeds, seeds + worlds, seed.data);
+  for (int w = 0; w < worlds; ++w) {
+    for (const Scan& scan : world.scans) {
+      std::copy(scan.mount.angle.begin(), scan.mount.angle.end(),
+                beam_angles.data + static_cast<std::size_t>(w) * world.beams_per_world + scan.mount.first);
+    }
+    draw_scene(world, *this, w);
+  }
+}
+
+void restart(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  state.count[w] = 0;
+  scene.events.clear();
+  scene.pairs.clear();
+  for (int i = 0; i < world.objects; ++i) {
+    const int row = w * world.objects + i;
+    const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
+    state.pose[row] = state.initial_pose[row];
+    std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
+    state.control[row] = state.initial_control[row];
+    state.twist[row] = state.command[row] = {};
+    state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
+    state.radius[row] = scene.shapes->radius[i];
+    state.goal_draws[row] = 0;
+    if (state.keep_history) state.history[row].clear();
+    if (world.wander[i]) {
+      draw_wander_goal(world, state, w, i);
+      state.goals[row].initial = state.goals[row].goals;
+    } else {
+      state.goals[row].set(state.goals[row].initial);
+      state.sync_goal(row);
+    }
+  }
+  place_fixed(world, state, w);
+  evaluate(world, state, w, true);
+}
+
+void draw_scene(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  first_values(world, state, w);
+  scene.shapes = world.shapes ? world.shapes : make_shapes(world, make_key(state.seed[w], state.scene_index[w], 0));
+  scene.moving.resize(scene.shapes->size[0]);
+  scene.fixed = nullptr;
+  state.failed_placement[w] = -1;
+  if (!world.placements.empty()) place_randomly(world, state, w);
+  restart(world, state, w);
+}
+
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene) {
+  for (int w = 0; w < state.worlds; ++w) {
+    if (!mask[w]) continue;
+    if (state.fresh[w] || next_scene) {
+      state.scene_index[w] = state.fresh[w] ? 0 : state.scene_index[w] + 1;
+      state.noise[w] = 0;
+      state.fresh[w] = 0;
+      draw_scene(world, state, w);
+    } else {
+      ++state.noise[w];
+      restart(world, state, w);
+    }
+  }
+}
+
+void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask) {
+  for (int w = 0; w < state.worlds; ++w) {
+    if (!mask[w]) continue;
+    state.seed[w] = seeds[w];
+    state.fresh[w] = 1;
+  }
+}
+
+void refresh(const World& world, State& state) {
+  for (int w = 0; w < state.worlds; ++w) {
+    place_fixed(world, state, w);
+    evaluate(world, state, w, false);
+  }
+}
+
+void draw_wander_goal(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  const Draws draws(state.key(w), Stream::goal, object);
+  const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
+  const Pose &low = world.range_low[object], &high = world.range_high[object];
+  state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
+                         draws.uniform(first + 2, low.theta, high.theta)}});
+  state.sync_goal(row);
+}
+
+}  // namespace irsim

@@ -1,0 +1,96 @@
+// What changes during an episode. Row w * N + i is object i of world w.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "array.hpp"
+#include "random.hpp"
+#include "scene.hpp"
+#include "workspace.hpp"
+#include "world.hpp"
+
+namespace irsim {
+
+/// Goals of one object: the queue starts at `head`; `initial` is what `loop` and reset restore.
+struct GoalQueue {
+  std::vector<Goal> goals, initial;
+  std::size_t head = 0;
+
+  bool empty() const { return head >= goals.size(); }
+  std::size_t left() const { return goals.size() - head; }
+  void set(const std::vector<Goal>& list) { goals = list, head = 0; }
+};
+
+struct State {
+  State(const World& world, const std::uint64_t* seeds, bool history);
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  int worlds, objects, rows, extra_rows;
+  bool keep_history;
+
+  // (R,) each; `extra` (R * E,)
+  Array<Pose> pose;
+  Array<double> extra;
+  Array<Vec3> control, twist, command;
+  Array<std::uint8_t> given, arrived, collided, stopped;
+  Array<double> radius;
+  Array<Goal> goal;  // head of the queue, x NaN without one
+  // (W * beams_per_world,)
+  Array<double> ranges, beam_angles;
+  Array<std::int32_t> hits;
+  // (W,)
+  Array<std::int64_t> count;
+  Array<std::uint32_t> scene_index, noise;
+  Array<std::uint64_t> seed;
+  Array<std::int32_t> failed_placement;
+
+  std::vector<Vec2> direction;            // (R,) cosine and sine of `direction_of`
+  std::vector<double> direction_of;       // (R,) the heading they belong to
+  std::vector<GoalQueue> goals;           // (R,)
+  std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
+  std::vector<Pose> initial_pose;         // (R,)
+  std::vector<double> initial_extra;
+  std::vector<Vec3> initial_control;
+  std::vector<std::vector<double>> history;  // (R,) of K * (3 + E)
+  std::vector<Scene> scenes;                 // (W,)
+  std::vector<std::uint8_t> fresh;           // (W,) the next reset draws scene 0, noise 0
+  std::vector<std::int64_t> event_count;     // (W,) events ever
+  std::vector<Workspace> workspaces;         // one per thread
+
+  /// Scene and noise of the present episode of world w.
+  Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
+  /// Cosine and sine of the heading of a row.
+  Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
+  Footprint footprint(const World& world, int w, int object) const {
+    const Scene& scene = scenes[w];
+    return (world.is_static[object] ? scene.fixed->outlines : scene.moving).footprint(*scene.shapes, object);
+  }
+  void log(int w, EventKind kind, int object, int partner, Vec2 where) {
+    scenes[w].events.push_back({kind, count[w], object, partner, where.x, where.y});
+    ++event_count[w];
+  }
+  void sync_goal(int row) {
+    const GoalQueue& q = goals[row];
+    goal[row] = q.empty() ? Goal{kNone, kNone, kNone} : q.goals[q.head];
+  }
+};
+
+/// Draw world w anew for its present seed and scene counter: shapes, placements, goals; then `restart`.
+void draw_scene(const World& world, State& state, int w);
+/// Draw poses and goals of the random placements of world w; `failed_placement` tells who found no room.
+void place_randomly(const World& world, State& state, int w);
+/// Put world w back to its initial poses and evaluate collisions, arrival and sensors.
+void restart(const World& world, State& state, int w);
+/// Reset the worlds where mask is set; see `State.reset` in _core.pyi.
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene);
+void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask);
+/// Take over poses written from outside: geometry of all objects, collisions and sensors.
+void refresh(const World& world, State& state);
+
+/// Draw a goal for a wanderer.
+void draw_wander_goal(const World& world, State& state, int w, int object);
+
+}  // namespace irsim

@@ -1,0 +1,182 @@
+#include "world.hpp"
+
+#include <stdexcept>
+
+#include "collision/touch.hpp"
+#include "features.hpp"
+#include "spec.hpp"
+
+namespace irsim {
+namespace {
+
+Vec3 padded(const std::vector<double>& values) {
+  Vec3 out;
+  for (std::size_t c = 0; c < 3 && c < values.size(); ++c) out[static_cast<int>(c)] = values[c];
+  return out;
+}
+
+Pose pose_of(const std::vector<double>& values) {
+  const Vec3 v = padded(values);
+  return {v[0], v[1], v[2]};
+}
+
+bool is_random(const ObjectSpec& spec) {
+  for (const PartSpec& part : spec.parts) {
+    if (std::holds_alternative<RandomCircle>(part) || std::holds_alternative<RandomPolygon>(part)) return true;
+  }
+  return false;
+}
+
+bool same_behavior(const Behavior& a, const Behavior& b) {
+  if (a.index() != b.index()) return false;
+  return std::visit(
+      [&](const auto& options) {
+        using Options = std::decay_t<decltype(options)>;
+        if constexpr (std::is_same_v<Options, std::monostate>) {
+          return true;
+        } else {
+          return same(options, std::get<Options>(b));
+        }
+      },
+      a);
+}
+
+void add_to_group(World& world, int object, const ObjectSpec& spec) {
+  if (std::holds_alternative<std::monostate>(spec.behavior)) return;
+  for (BehaviorGroup& group : world.behaviors) {
+    if (group.group == spec.group && same_behavior(group.behavior, spec.behavior)) {
+      group.objects.push_back(object);
+      return;
+    }
+  }
+  world.behaviors.push_back({spec.behavior, spec.group, {object}});
+}
+
+void add_scans(World& world, int object, const ObjectSpec& spec) {
+  for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
+    Mount mount{object, static_cast<int>(k), world.beams_per_world, 0, {}, {}, {}};
+    std::visit(
+        [&](const auto& options) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) mount.angle = beams(options);
+        },
+        spec.sensors[k]);
+    for (const double angle : mount.angle) {
+      mount.cosine.push_back(std::cos(angle));
+      mount.sine.push_back(std::sin(angle));
+    }
+    mount.count = static_cast<int>(mount.angle.size());
+    world.beams_per_world += mount.count;
+    world.scans.push_back({spec.sensors[k], mount});
+  }
+}
+
+void check(const ObjectSpec& spec) {
+  if (spec.parts.empty()) throw std::invalid_argument("an object needs at least one part");
+  if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range needs two numbers");
+  if (std::isnan(spec.angle_range[0]) || std::isnan(spec.angle_range[1]) || spec.angle_range[0] >= spec.angle_range[1])
+    throw std::invalid_argument("angle_range must be an interval");
+}
+
+}  // namespace
+
+World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> specs_,
+             std::vector<RandomPlacement> placements_, int copies_)
+    : step_time(step_time_),
+      collision_mode(collision_mode_),
+      copies(copies_),
+      objects(static_cast<int>(specs_.size())),
+      extra_rows(1),
+      specs(std::move(specs_)),
+      placements(std::move(placements_)) {
+  if (copies < 0) throw std::invalid_argument("copies must not be negative");
+  for (const RandomPlacement& placement : placements) {
+    for (const int i : placement.objects) {
+      if (i < 0 || i >= objects) throw std::invalid_argument("a placement names an object that does not exist");
+    }
+  }
+  bool random = false;
+  for (int i = 0; i < objects; ++i) {
+    const ObjectSpec& s = specs[i];
+    check(s);
+    random = random || is_random(s);
+    is_robot.push_back(s.role == 0);
+    is_static.push_back(s.is_static);
+    unobstructed.push_back(s.unobstructed);
+    wander.push_back(s.wander);
+    loop.push_back(s.loop);
+    state_arrival.push_back(s.arrive_mode == 1);
+    target_roles.push_back(static_cast<std::uint8_t>(s.target_roles));
+    group.push_back(s.group);
+    drive.push_back(s.drive);
+    vel_min.push_back(padded(s.vel_min));
+    vel_max.push_back(padded(s.vel_max));
+    acce.push_back(padded(s.acce));
+    angle_low.push_back(s.angle_range[0]);
+    angle_high.push_back(s.angle_range[1]);
+    goal_threshold.push_back(s.goal_threshold);
+    range_low.push_back(pose_of(s.range_low));
+    range_high.push_back(pose_of(s.range_high));
+    extra_rows = std::max(extra_rows, static_cast<int>(s.extra.size()));
+    (s.is_static ? fixed_objects : moving).push_back(i);
+    if (s.role == 0) robots.push_back(i);
+    if (!s.unobstructed) visible.push_back(i);
+    add_to_group(*this, i, s);
+    add_scans(*this, i, s);
+  }
+  if (random) return;
+  shapes = make_shapes(*this, {});
+  std::vector<Pose> poses;
+  for (const int i : fixed_objects) poses.push_back(pose_of(specs[i].pose));
+  fixed = make_fixed(*this, *shapes, std::move(poses));
+}
+
+World::~World() = default;
+
+double World::cell(const Shapes& of, const std::vector<int>& ids) const {
+  double sum = 0.0;
+  for (const int i : ids) sum += of.radius[i];
+  return ids.empty() ? 1.0 : 3.0 * sum / static_cast<double>(ids.size());
+}
+
+std::shared_ptr<const Shapes> make_shapes(const World& world, Key key) {
+  auto shapes = std::make_shared<Shapes>();
+  for (int i = 0; i < world.objects; ++i) {
+    const Draws draws(key, Stream::shape, i);
+    std::vector<Outline> outlines;
+    for (const PartSpec& part : world.specs[i].parts) {
+      const std::uint64_t first = static_cast<std::uint64_t>(outlines.size()) << 32;  // draws of this part
+      std::visit(
+          [&](const auto& options) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) {
+              outlines.push_back(outline(options, draws, first));
+            }
+          },
+          part);
+    }
+    shapes->add(outlines, world.is_static[i] != 0);
+  }
+  return shapes;
+}
+
+std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes, std::vector<Pose> poses) {
+  auto fixed = std::make_shared<Fixed>();
+  fixed->poses = std::move(poses);
+  fixed->outlines.resize(shapes.size[1]);
+  fixed->grid.clear(world.cell(shapes, world.fixed_objects));
+  for (std::size_t k = 0; k < world.fixed_objects.size(); ++k) {
+    const int i = world.fixed_objects[k];
+    fixed->outlines.place(shapes, i, fixed->poses[k], unit(fixed->poses[k].theta));
+    fixed->grid.add(i, fixed->outlines.boxes[shapes.placed[i].object]);
+  }
+  fixed->grid.build();
+  for (const int i : world.fixed_objects) {
+    const Footprint body = fixed->outlines.footprint(shapes, i);
+    fixed->grid.query(body.box, [&](int j) {
+      if (j > i && touch(body, fixed->outlines.footprint(shapes, j))) fixed->pairs.emplace_back(i, j);
+    });
+  }
+  std::sort(fixed->pairs.begin(), fixed->pairs.end());
+  return fixed;
+}
+
+}  // namespace irsim

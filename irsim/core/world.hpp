@@ -1,0 +1,72 @@
+// What never changes during an episode. N objects per world, the same template for every copy.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kinematics.gen.hpp"
+#include "scene.hpp"
+#include "vec.hpp"
+
+namespace irsim {
+
+struct ObjectSpec;
+struct RandomPlacement;
+struct BehaviorGroup;
+struct Scan;
+
+/// A goal of 2 numbers has theta NaN.
+using Goal = Pose;
+
+/// Where a sensor sits in the template, its slice of the beams of a world, and its nominal beams (sensor frame).
+struct Mount {
+  int object;
+  int index;  // among the sensors of the object
+  int first, count;
+  std::vector<double> angle, cosine, sine;
+};
+
+enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2 };
+
+struct World {
+  World(double step_time, int collision_mode, std::vector<ObjectSpec> specs, std::vector<RandomPlacement> placements,
+        int copies);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  double step_time;    // [s]
+  int collision_mode;  // CollisionMode
+  int copies;
+  int objects;     // N
+  int extra_rows;  // E
+
+  // (N,) each
+  std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles;
+  std::vector<int> group;
+  std::vector<Drive> drive;
+  std::vector<Vec3> vel_min, vel_max, acce;
+  std::vector<double> angle_low, angle_high, goal_threshold;
+  std::vector<Pose> range_low, range_high;
+  std::vector<ObjectSpec> specs;  // as given: initial values, shapes, sensors
+
+  // object ids
+  std::vector<int> moving, fixed_objects, robots, visible;  // visible: not unobstructed
+  std::vector<BehaviorGroup> behaviors;
+  std::vector<Scan> scans;
+  int beams_per_world = 0;
+  std::vector<RandomPlacement> placements;
+
+  std::shared_ptr<const Shapes> shapes;  // null when some are drawn per scene
+  std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null when shapes are drawn
+
+  double cell(const Shapes& of, const std::vector<int>& ids) const;
+};
+
+/// The shapes of one scene: drawn where they are random.
+std::shared_ptr<const Shapes> make_shapes(const World& world, Key key);
+/// The static objects at these poses (those of `world.fixed_objects`).
+std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes, std::vector<Pose> poses);
+
+}  // namespace irsim
