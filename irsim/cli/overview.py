@@ -1,0 +1,35 @@
+"""The table of commands in the README: ``python -m irsim.cli.overview README.md`` writes it again."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import sys
+from pathlib import Path
+
+from irsim.cli.app import app
+
+__all__ = ["commands_table", "update"]
+
+_BEGIN, _END = "<!-- begin commands -->\n", "<!-- end commands -->"
+
+
+def commands_table() -> str:
+    """A Markdown table with one row per command: name and the first sentence of its help."""
+    rows = ["| command | what it does |", "|---|---|"]
+    for command in app.registered_commands:
+        assert command.callback is not None
+        first = inspect.cleandoc(command.callback.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
+        rows.append(f"| `irsim {command.callback.__name__}` | {first} |")
+    return "\n".join(rows) + "\n"
+
+
+def update(file: Path) -> None:
+    """Replace the table between the markers of a Markdown file."""
+    text = file.read_text(encoding="utf-8")
+    pattern = re.compile(re.escape(_BEGIN) + ".*?" + re.escape(_END), re.DOTALL)
+    file.write_text(pattern.sub(lambda _: _BEGIN + commands_table() + _END, text), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    update(Path(sys.argv[1]))

@@ -1,0 +1,81 @@
+"""The command line as a process: pure output, signals, pipes, start-up."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import ROOM, Spawn
+
+LONG = ROOM.replace("goal: [4, 3, 0]", "goal: [4, 3, 0]\n    number: 400").replace("dash}", "dash, wander: true}")
+
+
+def test_json_is_all_there_is_on_standard_output(spawn: Spawn, room: Path) -> None:
+    room.write_text(ROOM.replace("height: 6", "heigth: 6"), encoding="utf-8")
+    done = spawn("run", "room.yaml", "--json")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["outcome"] == "success"
+    assert "unknown-key" in json.dumps(json.loads(done.stdout)["warnings"])
+
+
+def test_python_m_irsim_is_called_irsim(spawn: Spawn) -> None:
+    done = spawn("--help")
+    assert done.returncode == 0
+    assert "Usage: irsim " in done.stdout
+
+
+def test_no_colors_in_a_pipe(spawn: Spawn, room: Path) -> None:
+    assert "\x1b" not in spawn("run", "room.yaml").stdout
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_ctrl_c_exits_130_without_a_traceback(room: Path, tmp_path: Path) -> None:
+    room.write_text(LONG, encoding="utf-8")
+    command = [sys.executable, "-m", "irsim", "run", "room.yaml", "--steps", "100000000"]
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(3)
+    assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert "Traceback" not in out + err
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX")
+def test_a_reader_that_leaves_is_no_error(room: Path, tmp_path: Path) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    command = [sys.executable, "-m", "irsim", "describe"]
+    done = subprocess.run(command, cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(write)
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
+def test_help_starts_quickly(spawn: Spawn) -> None:
+    def seconds(code: list[str]) -> float:
+        best = 9.0
+        for _ in range(3):
+            start = time.perf_counter()
+            subprocess.run([sys.executable, *code], capture_output=True, check=True)
+            best = min(best, time.perf_counter() - start)
+        return best
+
+    assert seconds(["-m", "irsim", "--help"]) < 5 * seconds(["-c", "import numpy"])  # 2.0 on a quiet machine
+
+
+def test_help_loads_neither_models_nor_pictures() -> None:
+    code = (
+        "import sys\nsys.argv = ['irsim', '--help']\nfrom irsim.cli import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "print('loaded', [m for m in ('numpy', 'matplotlib', 'shapely', 'yaml', 'irsim.api') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "loaded []"

@@ -1,0 +1,43 @@
+"""``irsim render`` and ``irsim demo``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.cli.conftest import Run, parsed
+
+
+@pytest.mark.parametrize(("suffix", "kind"), [("png", "PNG"), ("gif", "GIF")])
+def test_draws_pictures_and_animations(irsim: Run, room: Path, suffix: str, kind: str) -> None:
+    result = irsim("render", "room.yaml", "-o", f"room.{suffix}", "--steps", "5", "--seed", "3")
+    assert result.exit_code == 0, result.output
+    with Image.open(f"room.{suffix}") as picture:
+        assert picture.format == kind
+        assert getattr(picture, "n_frames", 1) == (6 if kind == "GIF" else 1)
+    assert f"wrote room.{suffix}" in result.stdout.replace(str(Path.cwd()) + "/", "")
+    assert result.stdout.rstrip().endswith(f"irsim render room.yaml --seed 3 --steps 5 -o room.{suffix}")
+
+
+def test_size_is_the_longer_side(irsim: Run, room: Path) -> None:
+    data = parsed(irsim("render", "room.yaml", "-o", "room.png", "--size", "400", "--json"))
+    with Image.open("room.png") as picture:
+        assert max(picture.size) == 400
+        assert list(picture.size) == data["size"]
+
+
+def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Path, tmp_path: Path) -> None:
+    assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
+    assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
+
+
+def test_demo_leaves_a_gif_and_says_where(irsim: Run, tmp_path: Path) -> None:
+    result = irsim("demo")
+    assert result.exit_code == 0, result.output
+    assert "success" in result.stdout
+    assert "irsim-demo.gif" in result.stdout
+    assert "irsim demo --seed" in result.stdout
+    with Image.open(tmp_path / "irsim-demo.gif") as picture:
+        assert getattr(picture, "n_frames", 1) > 20

@@ -1,0 +1,63 @@
+"""``irsim validate``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import irsim as package
+from tests.cli.conftest import ROOM, Run, parsed
+
+
+def test_says_what_a_valid_file_holds(irsim: Run, room: Path) -> None:
+    result = irsim("validate", "room.yaml")
+    assert result.exit_code == 0
+    assert "room.yaml: valid: 1 robot" in result.stdout
+
+
+def test_shows_every_problem_with_its_line(irsim: Run, room: Path) -> None:
+    room.write_text(ROOM.replace("dash", "dahs").replace("radius: 0.3", "radius: -1"), encoding="utf-8")
+    result = irsim("validate", "room.yaml")
+    assert result.exit_code == 2
+    assert "room.yaml:4:" in result.stdout
+    assert "room.yaml:7:" in result.stdout
+    assert "behavior: {name: dahs}" in result.stdout
+    assert "dash" in result.stdout
+
+
+def test_json_is_the_report_of_the_python_function(irsim: Run, room: Path) -> None:
+    room.write_text(ROOM.replace("dash", "dahs"), encoding="utf-8")
+    result = irsim("validate", "room.yaml", "--json")
+    assert result.exit_code == 2
+    assert parsed(result) == package.validate("room.yaml").model_dump(mode="json")
+
+
+def test_several_files_give_one_json_line_each(irsim: Run, room: Path, crash: Path) -> None:
+    lines = irsim("validate", "room.yaml", "crash.yaml", "--json").stdout.splitlines()
+    assert [json.loads(line)["file"] for line in lines] == ["room.yaml", "crash.yaml"]
+
+
+def test_one_bad_file_among_good_ones_decides_the_exit_code(irsim: Run, room: Path, crash: Path) -> None:
+    crash.write_text("robto: {}\n", encoding="utf-8")
+    result = irsim("validate", "crash.yaml", "room.yaml")
+    assert result.exit_code == 2
+    assert "room.yaml: valid" in result.stdout
+
+
+def test_reads_standard_input(irsim: Run) -> None:
+    assert irsim("validate", "-", input=ROOM).exit_code == 0
+    assert irsim("validate", "-", input="robot: 3").exit_code == 2
+
+
+def test_lenient_only_warns_where_ir_sim_carries_on(irsim: Run, room: Path) -> None:
+    room.write_text(ROOM.replace("height: 6", "heigth: 6"), encoding="utf-8")
+    assert irsim("validate", "room.yaml").exit_code == 2
+    lenient = irsim("validate", "room.yaml", "--lenient")
+    assert lenient.exit_code == 0
+    assert "unknown-key" in lenient.stdout
+
+
+def test_limits_can_be_raised(irsim: Run, room: Path) -> None:
+    room.write_text(ROOM.replace("  - kin", "  - number: 20\n    kin"), encoding="utf-8")
+    assert irsim("validate", "room.yaml", "--max-objects", "10").exit_code == 2
+    assert irsim("validate", "room.yaml", "--max-objects", "30").exit_code == 0

@@ -1,0 +1,118 @@
+"""Every bundled template: described, valid in both senses, runs as it says, can be drawn, varies with its parameters."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+import yaml
+from PIL import Image
+
+import irsim
+from irsim import resources, templates
+from irsim.templates import Template
+from irsim.templates.expressions import names_in
+
+ALL = templates.names()
+MODELINE = "# yaml-language-server: $schema=../../schema/scenario.schema.json"
+
+
+@pytest.fixture(params=ALL)
+def template(request: pytest.FixtureRequest) -> Template:
+    return templates.load(request.param)
+
+
+@pytest.fixture(scope="session")
+def validator() -> Any:
+    schema = json.loads(resources.schema_file().read_text(encoding="utf-8"))
+    return jsonschema.Draft202012Validator(schema)
+
+
+def extremes(template: Template) -> list[dict[str, object]]:
+    """Settings with one parameter at an end of its range, or at another choice."""
+    found: list[dict[str, object]] = []
+    for name, parameter in template.parameters.items():
+        ends = [*parameter.choices, parameter.min, parameter.max]
+        found += [{name: end} for end in ends if end is not None and end != parameter.default]
+    return found
+
+
+def test_there_are_eight() -> None:
+    assert set(ALL) >= {
+        "car-park",
+        "circle-swap",
+        "corridor-passing",
+        "crossing",
+        "empty-room",
+        "lidar-explorer",
+        "obstacle-field",
+        "random-polygons",
+    }
+
+
+def test_described_well_enough_to_be_found(template: Template) -> None:
+    assert template.title
+    assert template.purpose.endswith(".")
+    assert len(template.tags) >= 5
+    assert template.parameters
+    for parameter in template.parameters.values():
+        assert parameter.description
+        assert parameter.type != "number" or parameter.unit, "a number has a unit"
+
+
+def test_every_parameter_changes_something_and_no_expression_reads_another(template: Template) -> None:
+    read = set().union(*(names_in(expression) for expression in template.sets.values()))
+    assert read == set(template.parameters)
+
+
+def test_the_default_parameters_give_the_file_itself(template: Template) -> None:
+    assert template.text.splitlines()[0] == MODELINE
+    assert templates.fill(template) == template.text
+
+
+def test_valid_without_a_warning(template: Template, validator: Any) -> None:
+    report = irsim.validate(templates.scenario_file(template.name), strict=True)
+    assert report.findings == []
+    assert report.valid
+    assert [error.message for error in validator.iter_errors(yaml.safe_load(template.text))] == []
+
+
+def test_valid_at_the_ends_of_every_parameter(template: Template, validator: Any) -> None:
+    for given in extremes(template):
+        text = templates.fill(template, given)
+        assert irsim.validate(text=text).valid, given
+        assert validator.is_valid(yaml.safe_load(text)), given
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_ends_as_it_says(template: Template, seed: int) -> None:
+    result = irsim.run(templates.scenario_file(template.name), seed=seed)
+    assert result.outcome in template.outcomes
+    assert 3 < result.sim_time < result.time_limit
+    assert result.warnings == []
+
+
+def test_draws(template: Template, tmp_path: Path) -> None:
+    result = irsim.render(templates.scenario_file(template.name), tmp_path / "t.png", steps=20, size=300)
+    with Image.open(result.files[0]) as picture:
+        assert max(picture.size) == 300
+        assert len(picture.convert("RGB").getcolors(1 << 20) or []) > 20
+
+
+def test_the_car_finds_whichever_bay_is_free(tmp_path: Path) -> None:
+    for bay in (4, 5, 7, 8):
+        path = tmp_path / f"bay{bay}.yaml"
+        path.write_text(templates.fill(templates.load("car-park"), {"bay": bay}), encoding="utf-8")
+        result = irsim.run(path)
+        assert result.outcome == "success"
+        assert result.robots[0].pose[0] == pytest.approx(3 * bay - 1, abs=0.5)
+
+
+@pytest.mark.parametrize("given", [{"width": 1.2, "radius": 0.2}, {"width": 1.6}, {"width": 3, "length": 30}])
+def test_robots_pass_in_corridors_of_any_width(given: dict[str, float], tmp_path: Path) -> None:
+    path = tmp_path / "corridor.yaml"
+    path.write_text(templates.fill(templates.load("corridor-passing"), given), encoding="utf-8")
+    assert irsim.run(path).outcome == "success"
