@@ -70,6 +70,11 @@ struct Draws {
   double uniform(std::uint64_t draw) const { return fraction(block(draw / 4)[draw % 4]); }
   double uniform(std::uint64_t draw, double low, double high) const { return low + (high - low) * uniform(draw); }
 
+  std::array<double, 4> uniforms(std::uint64_t index) const {
+    const Block b = block(index);
+    return {fraction(b[0]), fraction(b[1]), fraction(b[2]), fraction(b[3])};
+  }
+
   /// Standard normal (Box-Muller, two draws per pair of words).
   double normal(std::uint64_t draw) const { return normals(draw / 4)[draw % 4]; }
   std::array<double, 4> normals(std::uint64_t index) const {

@@ -92,13 +92,14 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
   for (const RandomPlacement& placement : placements) {
     for (const int i : placement.objects) {
       if (i < 0 || i >= objects) throw std::invalid_argument("a placement names an object that does not exist");
+      random_statics = random_statics || specs[i].is_static;
     }
   }
-  bool random = false;
+  bool random_shapes = false, random_statics = false;
   for (int i = 0; i < objects; ++i) {
     const ObjectSpec& s = specs[i];
     check(s);
-    random = random || is_random(s);
+    random_shapes = random_shapes || is_random(s);
     is_robot.push_back(s.role == 0);
     is_static.push_back(s.is_static);
     unobstructed.push_back(s.unobstructed);
@@ -123,8 +124,9 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     add_to_group(*this, i, s);
     add_scans(*this, i, s);
   }
-  if (random) return;
+  if (random_shapes) return;
   shapes = make_shapes(*this, {});
+  if (random_statics) return;
   std::vector<Pose> poses;
   for (const int i : fixed_objects) poses.push_back(pose_of(specs[i].pose));
   fixed = make_fixed(*this, *shapes, std::move(poses));

@@ -59,7 +59,7 @@ struct World {
   std::vector<RandomPlacement> placements;
 
   std::shared_ptr<const Shapes> shapes;  // null when some are drawn per scene
-  std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null when shapes are drawn
+  std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null when those or shapes are drawn
 
   double cell(const Shapes& of, const std::vector<int>& ids) const;
 };
