@@ -89,13 +89,13 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
       specs(std::move(specs_)),
       placements(std::move(placements_)) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
+  bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
     for (const int i : placement.objects) {
       if (i < 0 || i >= objects) throw std::invalid_argument("a placement names an object that does not exist");
       random_statics = random_statics || specs[i].is_static;
     }
   }
-  bool random_shapes = false, random_statics = false;
   for (int i = 0; i < objects; ++i) {
     const ObjectSpec& s = specs[i];
     check(s);
