@@ -47,6 +47,23 @@ void set_initial(BoundState& self, int row) {
   std::copy_n(&s.extra[e], s.extra_rows, &s.initial_extra[e]);
 }
 
+nb::object initial_state(const BoundState& self, int row) {
+  self.check_row(row);
+  const State& s = self.state;
+  const Pose& pose = s.initial_pose[row];
+  std::vector<double> out = {pose.x, pose.y, pose.theta};
+  const double* extra = &s.initial_extra[static_cast<std::size_t>(row) * s.extra_rows];
+  out.insert(out.end(), extra, extra + s.extra_rows);
+  const std::size_t size = out.size();
+  return own(std::move(out), {size});
+}
+
+std::tuple<double, double> velocity_of(const BoundState& self, int row) {
+  self.check_row(row);
+  const Vec2 v = velocity_world(*self.world, self.state, row);
+  return {v.x, v.y};
+}
+
 nb::object events(const BoundState& self, int w) {
   self.check_world(w);
   nb::list out;
@@ -141,6 +158,7 @@ BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
   goal = view<double>(state.goal.memory, {rows, 3});
   ranges = view<double>(state.ranges.memory, {beams});
   hits = view<std::int32_t>(state.hits.memory, {beams});
+  valid = view<std::uint8_t>(state.valid.memory, {beams});
   beam_angles = view<double>(state.beam_angles.memory, {beams});
   count = view<std::int64_t>(state.count.memory, {worlds});
   scene = view<std::uint32_t>(state.scene_index.memory, {worlds});
@@ -181,6 +199,7 @@ void bind_state(nb::module_& m) {
       .def_ro("goal", &S::goal)
       .def_ro("ranges", &S::ranges)
       .def_ro("hits", &S::hits)
+      .def_ro("valid", &S::valid)
       .def_ro("beam_angles", &S::beam_angles)
       .def_ro("count", &S::count)
       .def_ro("scene", &S::scene)
@@ -215,6 +234,15 @@ void bind_state(nb::module_& m) {
       .def("goals", &goals_of, nb::arg("row"))
       .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))
       .def("set_initial", &set_initial, nb::arg("row"))
+      .def("initial_state", &initial_state, nb::arg("row"))
+      .def("velocity_world", &velocity_of, nb::arg("row"))
+      .def(
+          "moved",
+          [](S& self, int row) {
+            self.check_row(row);
+            moved(*self.world, self.state, row);
+          },
+          nb::arg("row"))
       .def("vertices", &vertices, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("circle", &circle, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("parts", &parts, nb::arg("row"))

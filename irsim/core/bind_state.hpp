@@ -14,7 +14,7 @@ struct BoundState {
 
   World* world;
   State state;
-  nb::object pose, extra, control, twist, command, given, arrived, collided, stopped, radius, goal, ranges, hits,
+  nb::object pose, extra, control, twist, command, given, arrived, collided, stopped, radius, goal, ranges, hits, valid,
       beam_angles, count, scene, noise, seed, failed_placement;
 
   /// `state` for a call that names its world, too.

@@ -8,9 +8,15 @@ void sense(const World& world, State& state, int w, Workspace& work) {
   const std::size_t base = static_cast<std::size_t>(w) * world.beams_per_world;
   for (const Scan& scan : world.scans) {
     const std::size_t at = base + scan.mount.first;
-    const Sensing sensing{
-        world,     state, w, scan.mount, state.ranges.data + at, state.hits.data + at, state.beam_angles.data + at,
-        work.beams};
+    const Sensing sensing{world,
+                          state,
+                          w,
+                          scan.mount,
+                          state.ranges.data + at,
+                          state.hits.data + at,
+                          state.valid.data + at,
+                          state.beam_angles.data + at,
+                          work.beams};
     std::visit(
         [&](const auto& options) {
           if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) run(options, sensing);

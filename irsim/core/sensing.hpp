@@ -15,9 +15,10 @@ struct Sensing {
   const State& state;
   int w;
   const Mount& mount;
-  double* ranges;      // (mount.count,) [m]
-  std::int32_t* hits;  // (mount.count,) object id or -1
-  double* angles;      // (mount.count,) nominal angle [rad], sensor frame
+  double* ranges;       // (mount.count,) [m]
+  std::int32_t* hits;   // (mount.count,) object id or -1
+  std::uint8_t* valid;  // (mount.count,) 1: a hit within [range_min, range_max]
+  double* angles;       // (mount.count,) nominal angle [rad], sensor frame
   BeamBuffers& buffers;
 
   int row() const { return w * world.objects + mount.object; }

@@ -76,6 +76,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_)
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
       beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
       hits(static_cast<std::size_t>(worlds) * world.beams_per_world, -1),
+      valid(static_cast<std::size_t>(worlds) * world.beams_per_world),
       count(worlds),
       scene_index(worlds),
       noise(worlds),
@@ -180,6 +181,25 @@ void draw_wander_goal(const World& world, State& state, int w, int object) {
   state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
                          draws.uniform(first + 2, low.theta, high.theta)}});
   state.sync_goal(row);
+}
+
+void moved(const World& world, State& state, int row) {
+  if (world.is_static[row % world.objects]) place_fixed(world, state, row / world.objects);
+}
+
+Vec2 velocity_world(const World& world, const State& state, int row) {
+  Pose pose = state.pose[row];
+  const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
+  std::vector<double> extra(&state.extra[e], &state.extra[e] + state.extra_rows);
+  Vec3 twist;
+  std::visit(
+      [&](const auto& drive) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(drive)>, std::monostate>) {
+          run(drive, Motion{pose, extra.data(), twist, state.heading(row), state.control[row], 0.0});
+        }
+      },
+      world.drive[row % world.objects]);
+  return {twist[0], twist[1]};
 }
 
 }  // namespace irsim

@@ -41,6 +41,7 @@ struct State {
   // (W * beams_per_world,)
   Array<double> ranges, beam_angles;
   Array<std::int32_t> hits;
+  Array<std::uint8_t> valid;  // the beam hit something within the band of ranges
   // (W,)
   Array<std::int64_t> count;
   Array<std::uint32_t> scene_index, noise;
@@ -89,6 +90,11 @@ void reset(const World& world, State& state, const std::uint8_t* mask, bool next
 void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask);
 /// Take over poses written from outside: geometry of all objects, collisions and sensors.
 void refresh(const World& world, State& state);
+
+/// A pose was written from outside: the geometry of static objects follows at once, that of others with the next step.
+void moved(const World& world, State& state, int row);
+/// World-frame velocity [m/s] that the present control of a row gives at its present pose.
+Vec2 velocity_world(const World& world, const State& state, int row);
 
 /// Draw a goal for a wanderer.
 void draw_wander_goal(const World& world, State& state, int w, int object);

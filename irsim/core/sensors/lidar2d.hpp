@@ -69,6 +69,7 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
     if (hit >= 0 && options.noise && options.std > 0.0) range += options.std * draws.normal(range_draw(s, i));
     s.ranges[i] = clip(range, options.range_min, options.range_max);
     s.hits[i] = hit;
+    s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;
   }
 }
 
