@@ -207,6 +207,8 @@ class State:
         """New seeds; the next reset of these worlds, of either kind, draws scene 0, noise 0."""
     def refresh(self) -> None:
         """Re-evaluate geometry, collisions, arrival-free status and sensors after poses were written from outside."""
+    def done(self, world: int) -> bool:
+        """Whether every robot of the world has arrived or stopped; False without robots."""
     def events(self, world: int) -> list[tuple[str, int, int, int, float, float]]:
         """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision"; since the last reset."""
     def collision_pairs(self, world: int) -> NDArray[np.int32]:

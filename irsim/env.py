@@ -199,9 +199,9 @@ class Env(EnvAccess, EnvDrawing):
             mode: ``all`` robots or ``any`` of them; another word gives None.
         """
         simulation = self._simulation
-        ended = (simulation.arrived | simulation.stopped)[simulation.robots]
         if mode == "all":
-            return bool(ended.size) and bool(ended.all())
+            return simulation.state.done(0)
+        ended = (simulation.arrived | simulation.stopped)[simulation.robots]
         return bool(ended.any()) if mode == "any" else None
 
     def reset(self, random: bool = False) -> None:

@@ -105,7 +105,7 @@ class Simulation:
         if not self.decisions:
             return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
         for done in range(steps):
-            if until_done and self.copies == 1 and bool(self.done()[0]):
+            if until_done and self.copies == 1 and self.state.done(0):
                 return done
             self.step()
         return steps

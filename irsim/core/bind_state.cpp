@@ -1,5 +1,7 @@
 #include "bind_state.hpp"
 
+#include "phases.hpp"
+
 namespace irsim {
 namespace {
 
@@ -229,6 +231,13 @@ void bind_state(nb::module_& m) {
           },
           nb::arg("seeds"), nb::arg("mask"))
       .def("refresh", [](S& self) { refresh(*self.world, self.state); })
+      .def(
+          "done",
+          [](const S& self, int w) {
+            self.check_world(w);
+            return done(*self.world, self.state, w);
+          },
+          nb::arg("world"))
       .def("events", &events, nb::arg("world"))
       .def("collision_pairs", &collision_pairs, nb::arg("world"))
       .def("goals", &goals_of, nb::arg("row"))

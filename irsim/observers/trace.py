@@ -47,7 +47,7 @@ def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> R
     if simulation.decisions:
         rows = []
         for _ in range(steps):
-            if until_done and bool(simulation.done()[0]):
+            if until_done and simulation.state.done(0):
                 break
             simulation.step()
             rows.append((simulation.pose.copy(), simulation.control.copy(), simulation.arrived.copy(), simulation.collided.copy()))

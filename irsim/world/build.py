@@ -68,7 +68,7 @@ def build_object(record: ObjectRecord) -> core.ObjectSpec:
         role=_ROLES[record.role],
         group=record.group,
         drive=drive,
-        parts=shape.function(record.shape, record.wheelbase),
+        parts=shape.function(record.shape),
         static=record.static,
         unobstructed=record.unobstructed,
         wander=record.wander,
