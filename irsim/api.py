@@ -226,6 +226,7 @@ def _finding(diagnostic: Diagnostic) -> Finding:
         path=format_path(diagnostic.path),
         line=diagnostic.line,
         column=diagnostic.column,
+        length=diagnostic.length,
         message=diagnostic.message,
         given=diagnostic.given,
         allowed=allowed if allowed is None or isinstance(allowed, str) else list(allowed),

@@ -28,6 +28,8 @@ class Finding(Result):
     """Line in the file, from 1."""
     column: int | None
     """Column in the line, from 1."""
+    length: int = 1
+    """Characters that are meant, from there."""
     message: str
     """What is wrong."""
     given: Any = None

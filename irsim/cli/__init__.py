@@ -1,4 +1,4 @@
-"""The command line: ``irsim run``, ``validate``, ``render``, ``describe``, ``new``, ``templates``, ``schema``, ``demo``.
+"""The command line ``irsim``: run, validate, render, describe, new, templates, schema, demo.
 
 One module per verb; each only reads options, calls the function below it that knows the rules, and prints the result.
 """

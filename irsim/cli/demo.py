@@ -16,7 +16,9 @@ _SEED = 7
 
 
 def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation to write.")] = Path("irsim-demo.gif"),
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation to write.")] = Path(
+        "irsim-demo.gif"
+    ),
     seed: Annotated[int, typer.Option(min=0, help="Seed of all randomness.")] = _SEED,
     json_output: Json = False,
 ) -> None:

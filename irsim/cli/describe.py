@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from irsim.cli.options import Json
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+    from irsim.lookup import Answer, Key
 
 __all__ = ["describe"]
 
@@ -14,8 +19,72 @@ __all__ = ["describe"]
 def describe(
     topic: Annotated[
         list[str] | None,
-        typer.Argument(help="Such as robot.sensors.lidar2d, behavior dash, a code, a template.", show_default=False),
+        typer.Argument(
+            metavar="[TOPIC]...",
+            help="Such as robot.sensors.lidar2d.range_max, behavior dash, vel_max, a template, a code.",
+            show_default=False,
+        ),
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Explain a part of the language, a component, a template or a code; without a topic: what there is."""
+    """Explain a key, a component, a template or an error code; without a topic: what there is."""
+    from irsim.cli.output import console, print_json
+    from irsim.lookup import lookup
+
+    answer = lookup(" ".join(topic or ()))
+    if json_output:
+        print_json(answer)
+    else:
+        _show(answer, console())
+
+
+def _show(answer: Answer, out: Console) -> None:
+    from rich.text import Text
+
+    def line(*parts: RenderableType) -> None:
+        out.print(*parts, soft_wrap=False)
+
+    line(Text(answer.title, style="bold"))
+    if answer.text:
+        line(answer.text)
+    if answer.about is not None:
+        line(Text(_facts(answer.about), style="green"))
+    for heading, keys in answer.groups.items():
+        if keys:
+            line()
+            line(Text(heading, style="dim"))
+            line(_table(keys))
+    if answer.example:
+        line()
+        line(Text.assemble("for example: ", (answer.example, "cyan")))
+    if answer.see:
+        line(Text.assemble(("see also: ", "dim"), ", ".join(answer.see)))
+
+
+def _facts(key: Key) -> str:
+    """Type, unit, range and default in one line."""
+    facts = [
+        key.type + (f" [{key.unit}]" if key.unit and not key.unit.startswith("[") else f" {key.unit or ''}".rstrip())
+    ]
+    if key.allowed:
+        facts.append(key.allowed)
+    if key.required:
+        facts.append("required")
+    if key.default is not None:
+        facts.append(f"default {key.default}")
+    return "; ".join(fact for fact in facts if fact)
+
+
+def _table(keys: list[Key]) -> RenderableType:
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, pad_edge=False, show_header=False, padding=(0, 2, 0, 2))
+    table.add_column(style="bold cyan", no_wrap=True)
+    table.add_column()
+    for key in keys:
+        text = Text(key.text)
+        if facts := _facts(key):
+            text.append(("\n" if key.text else "") + facts, style="green")
+        table.add_row(key.name, text)
+    return table

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from irsim.cli.output import is_terminal
+from irsim.cli.output import has_colors
 
 if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
@@ -14,6 +14,54 @@ if TYPE_CHECKING:
     from irsim.scenario.limits import Limits
 
 __all__ = ["import_user_modules", "limits_for", "print_diagnostics", "print_findings"]
+
+
+def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, stderr: bool = False) -> None:
+    """Print diagnostics with the lines they are about.
+
+    Args:
+        diagnostics: What was found.
+        text: The scenario's text.
+        stderr: To standard error instead of standard output.
+    """
+    if not diagnostics:
+        return
+    from irsim.scenario.report import format_diagnostics
+
+    stream = sys.stderr if stderr else sys.stdout
+    print(format_diagnostics(diagnostics, text, color=has_colors(stream)), file=stream)
+
+
+def print_findings(findings: Sequence[Finding], file: str, text: str | None = None, *, stderr: bool = False) -> None:
+    """Print the findings of a result.
+
+    Args:
+        findings: From a result.
+        file: The scenario they are about.
+        text: Its text; None reads the file again.
+        stderr: To standard error instead of standard output.
+    """
+    if not findings:
+        return
+    from irsim.diagnostics import Diagnostic
+    from irsim.templates.fill import parse_path
+
+    diagnostics = [
+        Diagnostic(
+            code=finding.code,
+            severity=finding.severity,
+            path=parse_path(finding.path),
+            message=finding.message,
+            line=finding.line,
+            column=finding.column,
+            length=finding.length,
+            allowed=finding.allowed,
+            fix=finding.fix,
+            file=file,
+        )
+        for finding in findings
+    ]
+    print_diagnostics(diagnostics, _text_of(file) if text is None else text, stderr=stderr)
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:
@@ -40,3 +88,10 @@ def limits_for(max_objects: int | None) -> Limits | None:
     from irsim.scenario.limits import Limits
 
     return Limits(objects=max_objects)
+
+
+def _text_of(file: str) -> str | None:
+    from irsim.scenario.load import load_path
+    from irsim.scenario.locate import locate
+
+    return load_path(locate(file)).text

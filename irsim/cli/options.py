@@ -21,7 +21,9 @@ Strict = Annotated[bool, typer.Option("--strict", help="Refuse what IR-SIM would
 Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON and nothing else on standard output.")]
 Imports = Annotated[
     list[str] | None,
-    typer.Option("--import", metavar="MODULE", help="Import a module first, for the behaviors it registers. Repeatable."),
+    typer.Option(
+        "--import", metavar="MODULE", help="Import a module first, for the behaviors it registers. Repeatable."
+    ),
 ]
 MaxObjects = Annotated[
     int | None,

@@ -7,14 +7,23 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
     from rich.console import Console
     from rich.progress import Progress
 
-__all__ = ["clean", "console", "is_terminal", "prepare_streams", "print_json", "progress", "silence_stdout"]
+__all__ = [
+    "clean",
+    "console",
+    "has_colors",
+    "is_terminal",
+    "prepare_streams",
+    "print_json",
+    "progress",
+    "silence_stdout",
+]
 
 _PATIENCE = 1.0  # s before a progress bar appears
 
@@ -31,6 +40,11 @@ def console(*, stderr: bool = False) -> Console:
     from rich.console import Console
 
     return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=True)
+
+
+def has_colors(stream: TextIO) -> bool:
+    """Whether to use colors on a stream: on a terminal, and NO_COLOR is not set."""
+    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def is_terminal(*, stderr: bool = False) -> bool:

@@ -22,7 +22,7 @@ def render(
         int | None,
         typer.Option(
             min=0,
-            help="A picture shows the scene after so many steps (default 0: the start); an animation ends there at the latest.",
+            help="When a picture is taken (default 0: the start), or when an animation ends at the latest.",
             show_default=False,
         ),
     ] = None,
@@ -61,5 +61,7 @@ def render(
     frames = f", {result.frames} frames" if result.frames > 1 else ""
     width, height = result.size
     for written in result.files:
-        shown.print(Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})"))
+        shown.print(
+            Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})")
+        )
     shown.print(Text.assemble("again: ", (result.reproduce, "cyan")))

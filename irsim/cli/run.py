@@ -84,7 +84,8 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
         out.print(f"... and {len(result.robots) - _MANY} robots more (--json has all)")
     out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", result.summary))
     limit = {"argument": "--steps", "scenario": "the scenario", "default": "default: set world.time_limit"}
-    out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {result.time_limit:.1f} s ({limit[result.time_limit_from]})")
+    horizon = f"{result.time_limit:.1f} s ({limit[result.time_limit_from]})"
+    out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {horizon}")
     for written in result.files:
         out.print(Text.assemble("wrote ", (written, "bold")))
     out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")))

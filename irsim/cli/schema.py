@@ -15,7 +15,9 @@ def schema(
         Path | None,
         typer.Option("-o", "--out", metavar="FILE", help="File to write; default: the checkout's schema, else -."),
     ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Write nothing; exit with 1 if the file is out of date.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Write nothing; exit with 1 if the file is out of date.")
+    ] = False,
     scenario: Annotated[
         Path | None,
         typer.Option("--for", metavar="FILE", help="Put the line by which editors find the schema on top of FILE."),

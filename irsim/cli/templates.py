@@ -13,7 +13,9 @@ __all__ = ["templates"]
 
 
 def templates(
-    words: Annotated[list[str] | None, typer.Argument(help="Only templates about these words.", show_default=False)] = None,
+    words: Annotated[
+        list[str] | None, typer.Argument(help="Only templates about these words.", show_default=False)
+    ] = None,
     json_output: Json = False,
 ) -> None:
     """List the bundled scenarios to start from."""

@@ -1,4 +1,4 @@
-"""Every bundled template: described, valid in both senses, runs as it says, can be drawn, varies with its parameters."""
+"""Every bundled template: described, valid in both senses, runs as it says, can be drawn, varies as promised."""
 
 from __future__ import annotations
 

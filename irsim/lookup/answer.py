@@ -1,0 +1,74 @@
+"""What a lookup returns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from irsim.errors import IrsimError
+
+__all__ = ["Answer", "Key", "Kind", "TopicError"]
+
+Kind = Literal["index", "key", "component", "template", "code", "search"]
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+
+class Key(_Data):
+    """One key of a mapping, or one line of a list of topics."""
+
+    name: str
+    """The key; in an index the topic to ask for next."""
+    type: str = ""
+    """What it takes, in words."""
+    unit: str | None = None
+    """Unit of the number or numbers."""
+    default: str | None = None
+    """Value without it, as YAML; None when there is none or it is null."""
+    required: bool = False
+    """Whether it must be given."""
+    allowed: str | None = None
+    """Names or range it is limited to."""
+    text: str = ""
+    """What it means."""
+
+
+class Answer(_Data):
+    """All there is to say about a topic."""
+
+    topic: str
+    """Its full name."""
+    kind: Kind
+    """What it is."""
+    title: str
+    """One line."""
+    text: str = ""
+    """More about it."""
+    about: Key | None = None
+    """The facts, if it is a key."""
+    groups: dict[str, list[Key]] = {}
+    """What is in it, under headings: keys, components, templates …"""
+    example: str | None = None
+    """YAML or a command to start from."""
+    see: list[str] = []
+    """Related topics."""
+
+
+class TopicError(IrsimError, LookupError):
+    """Nothing is known under that name.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        near: Topics with similar names.
+    """
+
+    code = "unknown-topic"
+
+    def __init__(self, topic: str, near: Sequence[str]) -> None:
+        hint = f" Did you mean {' or '.join(near)}?" if near else " irsim describe lists what there is."
+        super().__init__(f"{self.code}: nothing is called {topic!r}.{hint}")
+        self.near = list(near)

@@ -1,0 +1,249 @@
+"""From what someone typed to an :class:`Answer`."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import re
+from typing import Any
+
+from irsim import templates
+from irsim.codes import CODES
+from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.walk import Node, components, key, mappings, paths, step, yaml_text
+from irsim.registry import REGISTRIES, Registry
+from irsim.scenario.schema import build_schema
+from irsim.templates import Template
+
+__all__ = ["lookup"]
+
+_PLACES = {
+    "behavior": ("robot", "behavior"),
+    "distribution": ("robot", "distribution"),
+    "kinematics": ("robot", "kinematics"),
+    "map": ("world", "obstacle_map"),
+    "planner": ("robot", "behavior", "follow"),
+    "sensor": ("robot", "sensors"),
+    "shape": ("robot", "shape"),
+}
+"""Where components of a kind stand in a scenario."""
+_MOST_HITS = 20
+
+
+def lookup(topic: str = "") -> Answer:
+    """What is known about a topic.
+
+    Args:
+        topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of
+            component (``sensors``), a key, a template, a code, or a word to search for; empty for an index.
+
+    Raises:
+        TopicError: Nothing goes by that name; the message names similar topics.
+    """
+    words = [word for word in re.split(r"[\s.\[\]:]+", topic.strip()) if word and not word.isdigit()]
+    name = " ".join(words)
+    if not words:
+        return _index()
+    if name in ("codes", "templates"):
+        return _codes() if name == "codes" else _templates()
+    if topic.strip() in CODES:
+        return _code(topic.strip())
+    if name in templates.names():
+        return _template(templates.load(name))
+    schema = build_schema()
+    for path in _readings(schema, tuple(words)):
+        nodes = [schema]
+        for word in path:
+            nodes = step(schema, nodes, word)
+        if nodes:
+            return _part(schema, path, nodes)
+    return _search(schema, words)
+
+
+def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
+    """Paths that the words may stand for, the most literal first."""
+    found = [words, ("robot", *words), ("world", *words)]
+    kind = _kind(words[0])
+    if kind is not None:
+        found += [(*_PLACES[kind], *words[1:])]
+    for place, registry in ((_PLACES[registry.kind], registry) for registry in REGISTRIES.values()):
+        if words[0] in registry.names():
+            found.append((*place, *words))
+    if len(words) == 1:
+        same = [path for path in paths(schema) if path[-1] == words[0]]
+        if len({path[-2:] for path in same}) == 1:
+            found += same
+    return found
+
+
+def _kind(word: str) -> str | None:
+    singular = word[:-1] if word.endswith("s") and word[:-1] in REGISTRIES else word
+    return singular if singular in REGISTRIES else None
+
+
+def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
+    node = nodes[0]
+    about = key(schema, path[-1], node)
+    names = components(schema, node)
+    registry, feature_name = _registry_of(path)
+    if len(names) > 1 and registry is not None and not feature_name:
+        groups = {f"{registry.kind}, one of": [_component_line(registry, path, name) for name in names]}
+        example = f"{path[-1]}: {{name: {next(iter(names))}}}"
+    else:
+        groups = {}
+        for option in mappings(schema, node):
+            required = option.get("required", [])
+            groups.setdefault("keys", []).extend(
+                key(schema, name, child, name in required) for name, child in option["properties"].items()
+            )
+        example = _example(path, node, registry, feature_name)
+    text, title = about.text, ".".join(path)
+    if registry is not None and feature_name:
+        title = f"{registry.kind} {feature_name}"
+        feature = registry.get(feature_name)
+        if feature is not None and not feature.simulated:
+            text += " Part of the language, but not simulated by this version."
+        if feature is not None and feature.origin != "built-in":
+            text += f" Brought by {feature.origin}."
+    return Answer(
+        topic=".".join(path),
+        kind="component" if feature_name else "key",
+        title=title,
+        text=text,
+        about=None if feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
+        groups=groups,
+        example=example,
+        see=_related(path, registry, feature_name),
+    )
+
+
+def _registry_of(path: tuple[str, ...]) -> tuple[Registry | None, str | None]:
+    """The registry a path leads into, and the component if it names one."""
+    for kind, place in _PLACES.items():
+        section = ("obstacle", *place[1:]) if place[0] == "robot" else place
+        for start in (place, section):
+            if path == start and kind != "planner":
+                return REGISTRIES[kind], None
+            if path[:-1] == start and path[-1] in REGISTRIES[kind].names():
+                return REGISTRIES[kind], path[-1]
+    return None, None
+
+
+def _component_line(registry: Registry, path: tuple[str, ...], name: str) -> Key:
+    feature = registry.get(name)
+    doc = " ".join((feature.options.__doc__ or "").split()) if feature is not None else ""
+    later = "" if feature is None or feature.simulated else " (not simulated yet)"
+    return Key(name=name, text=doc + later)
+
+
+def _example(path: tuple[str, ...], node: Node, registry: Registry | None, name: str | None) -> str | None:
+    examples = node.get("examples")
+    if name is not None and registry is not None:
+        value: Any = examples[0] if examples else {"name": name}
+        place = path[-2]
+        return f"{place}: [{yaml_text(value)}]" if place == "sensors" else f"{place}: {yaml_text(value)}"
+    return f"{path[-1]}: {yaml_text(examples[0])}" if examples else None
+
+
+def _related(path: tuple[str, ...], registry: Registry | None, name: str | None) -> list[str]:
+    if registry is not None and name is not None:
+        return [".".join(path[:-1]), *(f"{registry.kind} {other}" for other in registry.names() if other != name)][:6]
+    return [".".join(path[:-1])] if len(path) > 1 else []
+
+
+def _search(schema: Node, words: list[str]) -> Answer:
+    """Everything that the words occur in; several keys of one name, too."""
+    wanted = " ".join(words).lower()
+    hits = [Key(name=".".join(path)) for path in paths(schema) if path[-1].lower() == wanted]
+    if not hits:
+        hits += [Key(name=template.name, text=template.purpose) for template in templates.find(words)]
+        hits += [
+            Key(name=name, text=code.title) for name, code in CODES.items() if wanted in f"{name} {code.title}".lower()
+        ]
+        for path in paths(schema):
+            node = functools.reduce(lambda nodes, word: step(schema, nodes, word), path, [schema])[0]
+            if wanted in str(node.get("description", "")).lower() or wanted in path[-1].lower():
+                hits.append(Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split())))
+    if not hits:
+        raise TopicError(" ".join(words), _near(schema, words))
+    unique = list({hit.name: hit for hit in hits}.values())
+    more = len(unique) - _MOST_HITS
+    return Answer(
+        topic=wanted,
+        kind="search",
+        title=f"{len(unique)} topics about '{wanted}'" if len(unique) != 1 else f"1 topic about '{wanted}'",
+        text=f"The first {_MOST_HITS}; a more special word finds fewer." if more > 0 else "",
+        groups={"topics": unique[:_MOST_HITS]},
+    )
+
+
+def _near(schema: Node, words: list[str]) -> list[str]:
+    """Topics with similar names: the wrong word of a path mended, or the nearest of all names."""
+    asked = ".".join(words)
+    everything = {".".join(path) for path in paths(schema)}
+    everything |= {*CODES, *templates.names(), *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names())}
+    near = difflib.get_close_matches(asked, everything, 3, 0.75)
+    if not near:
+        by_last: dict[str, str] = {}
+        for topic in sorted(everything, key=len):
+            by_last.setdefault(topic.rpartition(".")[2], topic)
+        near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.6)]
+    return near
+
+
+def _index() -> Answer:
+    schema = build_schema()
+    sections = [key(schema, name, node) for name, node in schema["properties"].items()]
+    kinds = [Key(name=kind, text=", ".join(registry.names())) for kind, registry in sorted(REGISTRIES.items())]
+    return Answer(
+        topic="",
+        kind="index",
+        title="What irsim describe knows",
+        groups={
+            "sections of a scenario": [Key(name=section.name, text=section.text) for section in sections],
+            "components": kinds,
+            "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
+            "codes": [Key(name="codes", text=f"the {len(CODES)} codes of errors and warnings")],
+        },
+        example="irsim describe robot.sensors.lidar2d",
+    )
+
+
+def _code(name: str) -> Answer:
+    code = CODES[name]
+    return Answer(topic=name, kind="code", title=f"{name}: {code.title}", text=code.explanation, see=["codes"])
+
+
+def _codes() -> Answer:
+    lines = [Key(name=name, text=code.title) for name, code in CODES.items()]
+    return Answer(topic="codes", kind="index", title="Codes of errors and warnings", groups={"codes": lines})
+
+
+def _templates() -> Answer:
+    lines = [Key(name=template.name, text=template.purpose) for template in templates.load_all()]
+    return Answer(topic="templates", kind="index", title="Templates", groups={"templates": lines})
+
+
+def _template(template: Template) -> Answer:
+    keys = [
+        Key(
+            name=name,
+            type=parameter.type,
+            unit=parameter.unit,
+            default=yaml_text(parameter.default),
+            allowed=parameter.allowed(),
+            text=parameter.description,
+        )
+        for name, parameter in template.parameters.items()
+    ]
+    first = keys[0] if keys else None
+    setting = f" --set {first.name}={first.default}" if first else ""
+    return Answer(
+        topic=template.name,
+        kind="template",
+        title=f"template {template.name}: {template.title}",
+        text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}.",
+        groups={"parameters": keys},
+        example=f"irsim new {template.name}{setting}",
+        see=["templates"],
+    )

@@ -1,0 +1,191 @@
+"""Walking the JSON Schema of the language by the words of a path, and saying in words what a node accepts."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.lookup.answer import Key
+
+__all__ = ["Node", "components", "key", "mappings", "paths", "step", "yaml_text"]
+
+Node = dict[str, Any]
+"""A schema node with references and siblings merged in."""
+
+_NUMBER_BOUNDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "more than",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
+_PLAIN = {
+    "number": "a number",
+    "integer": "an integer",
+    "boolean": "true or false",
+    "string": "text",
+    "object": "a mapping",
+}
+
+
+def alternatives(root: Node, node: Node) -> Iterator[Node]:
+    """The node without references and unions: one node per thing it accepts."""
+    while "$ref" in node:
+        target: Node = root
+        for part in node["$ref"].removeprefix("#/").split("/"):
+            target = target[part.replace("~1", "/").replace("~0", "~")]
+        node = {**target, **{name: value for name, value in node.items() if name != "$ref"}}
+    for union in ("anyOf", "oneOf"):
+        if union in node:
+            for option in node[union]:
+                yield from alternatives(root, option)
+            return
+    if "allOf" in node:
+        merged: Node = {name: value for name, value in node.items() if name != "allOf"}
+        for option in node["allOf"]:
+            for part in alternatives(root, option):
+                merged = {**part, **merged}
+        yield merged
+        return
+    yield node
+
+
+def mappings(root: Node, node: Node) -> list[Node]:
+    """The mappings a node accepts, also as elements of lists."""
+    found: list[Node] = []
+    for option in alternatives(root, node):
+        if "properties" in option:
+            found.append(option)
+        elif isinstance(option.get("items"), dict):
+            found += mappings(root, option["items"])
+    unique = {json.dumps(option, sort_keys=True): option for option in found}
+    return list(unique.values())
+
+
+def component_name(mapping: Node) -> str | None:
+    """The name that picks this mapping among others: ``rvo``."""
+    name = mapping["properties"].get("name", {})
+    names = [name["const"]] if "const" in name else name.get("enum", [])
+    return str(names[0]) if len(names) == 1 else None
+
+
+def components(root: Node, node: Node) -> dict[str, Node]:
+    """The mappings one chooses among by name, if there are several."""
+    return {name: option for option in mappings(root, node) if (name := component_name(option)) is not None}
+
+
+def step(root: Node, nodes: list[Node], word: str) -> list[Node]:
+    """Where one word of a path leads: a key, or the name of a component."""
+    options = [option for node in nodes for option in mappings(root, node)]
+    named = [option for option in options if component_name(option) == word]
+    return named or [option["properties"][word] for option in options if word in option["properties"]]
+
+
+def paths(
+    root: Node, prefix: tuple[str, ...] = (), node: Node | None = None, depth: int = 6
+) -> Iterator[tuple[str, ...]]:
+    """All paths of the language, components included."""
+    if depth == 0:
+        return
+    for option in mappings(root, root if node is None else node):
+        name = component_name(option)
+        here = (*prefix, name) if name else prefix
+        if name:
+            yield here
+        for word, child in option["properties"].items():
+            yield (*here, word)
+            yield from paths(root, (*here, word), child, depth - 1)
+
+
+def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
+    """A key in words."""
+    options = list(alternatives(root, node))
+    units = [unit for option in options if (unit := _unit(root, option))]
+    default = node.get("default")
+    allowed = [str(value) for option in options for value in _values(option)]
+    ranges = [text for option in options if (text := _range(option))]
+    texts = [text for option in [node, *options] if (text := option.get("description"))]
+    return Key(
+        name=name,
+        type=_type(root, options),
+        unit=units[0] if units else None,
+        default=None if default is None or default == {} else yaml_text(default),
+        required=required,
+        allowed=", ".join(dict.fromkeys(allowed)) or "; ".join(dict.fromkeys(ranges)) or None,
+        text=" ".join(texts[0].split()) if texts else "",
+    )
+
+
+def yaml_text(value: Any) -> str:
+    """A value as one line of YAML."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {yaml_text(item)}" for name, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(yaml_text, value)) + "]"
+    if isinstance(value, bool) or value is None:
+        return json.dumps(value)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _type(root: Node, options: list[Node]) -> str:
+    words = []
+    per_object = False
+    plain = {_digest(option) for option in options}
+    for option in options:
+        kind = option.get("type")
+        if kind == "array" and isinstance(option.get("items"), dict):
+            items = list(alternatives(root, option["items"]))
+            if {_digest(item) for item in items} & plain:
+                per_object = True
+            else:
+                words.append(_list_type(root, option, items))
+        elif "properties" in option:
+            words.append("a mapping")
+        elif kind == "null":
+            words.append("null")
+        elif _values(option):
+            words.append("a name" if isinstance(_values(option)[0], str) else "a value")
+        elif kind in _PLAIN:
+            words.append(_PLAIN[kind])
+        elif isinstance(kind, list):
+            words += [_PLAIN.get(each, each) for each in kind]
+    text = " or ".join(dict.fromkeys(words)) or "anything"
+    return text + ("; also a list, one per object" if per_object else "")
+
+
+def _list_type(root: Node, option: Node, items: list[Node]) -> str:
+    low, high = option.get("minItems"), option.get("maxItems")
+    count = "" if high is None else f"{low} " if low == high else f"{low or 0} to {high} "
+    kinds = {item.get("type") for item in items}
+    if kinds <= {"number", "integer"}:
+        return f"a list of {count}numbers"
+    if "array" in kinds:
+        return "a list of lists"
+    return f"a list of {count}mappings" if any("properties" in item for item in items) else f"a list of {count}items"
+
+
+def _unit(root: Node, option: Node) -> str | None:
+    if "x-units" in option:
+        return "[" + ", ".join(option["x-units"]) + "]"
+    if "x-unit" in option:
+        return str(option["x-unit"])
+    if isinstance(option.get("items"), dict):
+        for item in alternatives(root, option["items"]):
+            unit = _unit(root, item)
+            if unit:
+                return unit
+    return None
+
+
+def _values(option: Node) -> list[Any]:
+    return [option["const"]] if "const" in option else list(option.get("enum", []))
+
+
+def _range(option: Node) -> str:
+    return ", ".join(f"{words} {option[bound]:g}" for bound, words in _NUMBER_BOUNDS.items() if bound in option)
+
+
+def _digest(node: Node) -> str:
+    return json.dumps(
+        {name: value for name, value in node.items() if name not in ("description", "default")}, sort_keys=True
+    )
