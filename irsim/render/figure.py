@@ -1,0 +1,256 @@
+"""One Matplotlib figure of one world: a scene in, artists updated in place, pixels out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.text import Text
+from matplotlib.transforms import Affine2D
+
+from irsim.render.canvas import Compositor
+from irsim.render.layers import BeamLayer, MarkLayer, layer_key, rgba
+from irsim.render.pictures import find_picture, load_picture
+from irsim.render.pixels import Pixels
+from irsim.render.scene import Label, Picture, Scene
+
+__all__ = ["SceneFigure", "fitting_size"]
+
+_TITLE_PAD = 6.0
+_TITLE_SIZE = 12.0
+_SMALLEST_TITLE = 6.0
+_LABEL_MARGIN = 4.0
+_LABEL_RANK = 0.01
+_POINTS_PER_INCH = 72.0
+_MARGINS = {True: (0.75, 0.85), False: (0.25, 0.45)}
+"""Room beside and above and below the axes [inch], with ticks and labels and without."""
+_LEAST_WIDTH = 3.6
+"""Of a figure, for the sake of its title [inch]."""
+
+
+class SceneFigure:
+    """Figure and axes in world coordinates, equal aspect.
+
+    Args:
+        size: Width and height [px].
+        dpi: Pixels per inch.
+        axis: Draw axes, ticks and labels.
+        tight: Fit the axes to the figure.
+        figure: A figure to use (of a window); default: a new one without a window.
+        folder: Where images of the scenario may lie.
+
+    Attributes:
+        figure, ax: For drawing more into it.
+    """
+
+    def __init__(
+        self,
+        size: tuple[float, float],
+        dpi: float,
+        *,
+        axis: bool = True,
+        tight: bool = True,
+        figure: Figure | None = None,
+        folder: str | None = None,
+    ) -> None:
+        if figure is None:
+            figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
+            FigureCanvasAgg(figure)
+        self.figure = figure
+        self.axis, self.tight, self.folder = axis, tight, folder
+        self.ax: Axes = figure.add_subplot()
+        self.compositor = Compositor(figure, self.ax)
+        self._images: dict[str, Any] = {}
+        self._start()
+
+    def _start(self) -> None:
+        self._marks: dict[tuple[Any, ...], MarkLayer] = {}
+        self._beams: dict[tuple[int, int], BeamLayer] = {}
+        self._labels: dict[tuple[int, str], Text] = {}
+        self._pictures: dict[int, AxesImage] = {}
+        self._extent: tuple[float, float, float, float] | None = None
+        self._title: str | None = None
+        ax = self.ax
+        ax.set_aspect("equal")
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        if not self.axis:
+            ax.set_axis_off()
+        self._title_artist = ax.set_title("", fontsize=_TITLE_SIZE, pad=_TITLE_PAD, y=1.0, parse_math=False)
+        self.compositor.forget()
+
+    def clear(self) -> None:
+        """Remove everything drawn, also by others, and start anew; the view shows the world again."""
+        self.ax.clear()
+        self._start()
+
+    def show(self, scene: Scene, title: str | None) -> None:
+        """Bring the artists up to date.
+
+        Args:
+            scene: What to show.
+            title: Text above the axes; None for none.
+        """
+        first = self._extent is None
+        self._look_at(scene)
+        self._show_title(title or "")
+        if first and self.tight:
+            self.figure.tight_layout()
+        self.ax.apply_aspect()
+        scale = self._points_per_metre()
+        groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
+        for mark in scene.marks:
+            groups.setdefault(layer_key(mark.part, mark.zorder, mark.stroke.round_caps), []).append(mark)
+        for key, marks in groups.items():
+            if key not in self._marks:
+                self._marks[key] = MarkLayer(self.ax, key)
+                self.compositor.forget()
+            self._marks[key].show(marks, scale)
+        for shown, beam_layer in self._beams.items():
+            if not any(shown == (beams.object, beams.sensor) for beams in scene.beams):
+                beam_layer.show(None)
+        for beams in scene.beams:
+            shown = beams.object, beams.sensor
+            if shown not in self._beams:
+                self._beams[shown] = BeamLayer(self.ax, beams.zorder)
+            self._beams[shown].show(beams)
+        self._show_pictures(scene.pictures)
+        self._show_labels(scene.labels)
+
+    def draw(self) -> None:
+        """Draw the artists into the canvas."""
+        self.compositor.draw({layer.artist: (layer.version, layer.rested) for layer in self._marks.values()})
+
+    def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
+        """Draw and read the pixels.
+
+        Returns:
+            The pixels, and the box (left, top, right, bottom) they were cut from.
+        """
+        self.draw()
+        box = self.compositor.tight_box(pad_inches) if tight else (0, 0, *self.compositor.size)
+        return self.compositor.pixels(box), box
+
+    # parts -----------------------------------------------------------------------------------------------------------
+    def _look_at(self, scene: Scene) -> None:
+        if scene.extent != self._extent:
+            self._extent = scene.extent
+            self.ax.set_xlim(scene.extent[0], scene.extent[1])
+            self.ax.set_ylim(scene.extent[2], scene.extent[3])
+        if scene.center is not None:
+            for value, get, set_ in (
+                (scene.center[0], self.ax.get_xlim, self.ax.set_xlim),
+                (scene.center[1], self.ax.get_ylim, self.ax.set_ylim),
+            ):
+                low, high = get()
+                set_(value - (high - low) / 2, value + (high - low) / 2)
+
+    def _points_per_metre(self) -> float:
+        low, high = self.ax.get_ylim()
+        return float(self.ax.bbox.height / (high - low) * _POINTS_PER_INCH / self.figure.dpi)
+
+    def _show_title(self, title: str) -> None:
+        if title == self._title:
+            return
+        longer = self._title is None or len(title) > len(self._title)
+        self._title = title
+        artist = self._title_artist
+        artist.set_text(title)
+        if longer:
+            artist.set_fontsize(_TITLE_SIZE)
+            width = artist.get_window_extent(self._renderer()).width
+            room = self.figure.bbox.width - 2 * _LABEL_MARGIN
+            if width > room:
+                artist.set_fontsize(max(_SMALLEST_TITLE, _TITLE_SIZE * room / width))
+
+    def _renderer(self) -> Any:
+        return self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+
+    def _show_pictures(self, pictures: Sequence[Picture]) -> None:
+        shown = {picture.object for picture in pictures}
+        for number, image in self._pictures.items():
+            image.set_visible(number in shown)
+        for picture in pictures:
+            artist = self._pictures.get(picture.object)
+            if artist is None or artist.get_label() != picture.name:
+                if artist is not None:
+                    artist.remove()
+                artist = AxesImage(self.ax, interpolation="bilinear", label=picture.name)
+                artist.set_data(self._image(picture.name))
+                self.ax.add_image(artist)
+                self._pictures[picture.object] = artist
+            x, y, length, width = picture.box
+            artist.set_extent((x, x + length, y, y + width))
+            px, py, theta = picture.pose
+            artist.set_transform(Affine2D().rotate(theta).translate(px, py) + self.ax.transData)
+            artist.set_alpha(picture.alpha)
+            artist.set_zorder(picture.zorder)
+            artist.set_clip_path(self.ax.patch)
+
+    def _image(self, name: str) -> Any:
+        if name not in self._images:
+            path = find_picture(name, self.folder)
+            self._images[name] = np.zeros((1, 1, 4), np.uint8) if path is None else load_picture(path)
+        return self._images[name]
+
+    def _show_labels(self, labels: Sequence[Label]) -> None:
+        view, data = self.ax.bbox, self.ax.transData
+        shown = set()
+        for label in labels:
+            ax, ay = data.transform(label.anchor)
+            if not (view.x0 <= ax <= view.x1 and view.y0 <= ay <= view.y1):
+                continue
+            key = label.object, label.part
+            text = self._labels.get(key)
+            if text is None:
+                text = self._labels[key] = self.ax.text(0, 0, "", parse_math=False, ha="left", va="baseline")
+            shown.add(key)
+            text.set_visible(True)
+            text.set_text(label.text)
+            text.set_position((label.x, label.y))
+            text.set_color(rgba(label.color))
+            text.set_fontsize(label.size)
+            text.set_alpha(label.alpha)
+            text.set_zorder(label.zorder + _LABEL_RANK)
+            self._keep_inside(text)
+        for key, text in self._labels.items():
+            if key not in shown:
+                text.set_visible(False)
+
+    def _keep_inside(self, text: Text) -> None:
+        """Shift a label that the edge of the axes would cut."""
+        view, data = self.ax.bbox, self.ax.transData
+        x, y = data.transform(text.get_position())
+        size = float(text.get_fontsize()) * self.figure.dpi / _POINTS_PER_INCH
+        reach = size * (len(text.get_text()) + 1)
+        if view.x0 < x < view.x1 - reach and view.y0 + size < y < view.y1 - 2 * size:
+            return
+        box = text.get_window_extent(self._renderer())
+        dx = max(view.x0 + _LABEL_MARGIN - box.x0, 0.0) + min(view.x1 - _LABEL_MARGIN - box.x1, 0.0)
+        dy = max(view.y0 + _LABEL_MARGIN - box.y0, 0.0) + min(view.y1 - _LABEL_MARGIN - box.y1, 0.0)
+        if dx or dy:
+            moved = data.inverted().transform((x + dx, y + dy))
+            text.set_position((float(moved[0]), float(moved[1])))
+
+
+def fitting_size(width: float, height: float, side: float, dpi: float, *, axis: bool = True) -> tuple[float, float]:
+    """Size of a figure that shows a world without empty margins.
+
+    Args:
+        width: Of the world [m].
+        height: Of the world [m].
+        side: Longer side of the figure [px].
+        dpi: Pixels per inch.
+        axis: Whether ticks and labels take room.
+
+    Returns:
+        Width and height [px]; never narrower than a title needs.
+    """
+    across, up = _MARGINS[axis][0] * dpi, _MARGINS[axis][1] * dpi
+    scale = min((side - across) / width, (side - up) / height)
+    return min(side, max(scale * width + across, _LEAST_WIDTH * dpi)), min(side, max(scale * height + up, dpi))

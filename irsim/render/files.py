@@ -1,0 +1,61 @@
+"""Where pictures go, and writing them so that no half-written file is ever left."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+__all__ = ["PICTURE_FORMATS", "picture_path", "replacing"]
+
+PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
+"""What a figure can be saved as."""
+
+
+def picture_path(
+    folder: str | Path,
+    name: str | Path | None,
+    default: str,
+    *,
+    count: int | None = None,
+    format: str | None = None,
+    default_format: str | None = None,
+) -> Path:
+    """The file a figure is saved to.
+
+    Args:
+        folder: For names that are not absolute.
+        name: Name with or without suffix; None takes ``default``.
+        default: Name of the world.
+        count: Step number to append as ``_0042``.
+        format: Format wanted whatever the name says.
+        default_format: Format of names without suffix (default png).
+
+    Raises:
+        ValueError: A format nothing writes.
+    """
+    given = str(name) if name is not None and str(name) else default
+    stem, dot, suffix = given.rpartition(".")
+    if not dot or "/" in suffix or os.sep in suffix or not stem or name is None:
+        stem, suffix = given, default_format or "png"
+    suffix = (format or suffix).lower().lstrip(".")
+    if suffix not in PICTURE_FORMATS:
+        raise ValueError(f"cannot save a figure as {suffix!r}: choose one of {', '.join(PICTURE_FORMATS)}")
+    index = "" if count is None else f"_{count:04d}"
+    return Path(folder) / f"{stem}{index}.{suffix}"
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A temporary file beside ``path`` that takes its place when all went well and vanishes when not.
+
+    The folder is made if need be.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

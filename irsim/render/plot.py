@@ -1,0 +1,441 @@
+"""The picture of one environment: figure, window, saved frames. Nothing is made before something is drawn."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from PIL import Image
+
+from irsim.diagnostics import nearest
+from irsim.render.animation import AnimationOptions, FrameBuffer, check_suffix
+from irsim.render.builder import MODES, SceneBuilder
+from irsim.render.figure import SceneFigure, fitting_size
+from irsim.render.files import picture_path, replacing
+from irsim.render.layers import rgba
+from irsim.render.overlay import Overlay
+from irsim.render.palette import Palette
+from irsim.render.pictures import find_picture
+from irsim.render.pixels import Pixels, from_image, to_image
+from irsim.render.png import png_bytes
+from irsim.render.scene import Scene
+from irsim.render.style import STYLE_KEYS
+from irsim.render.video import VIDEO_OPTIONS
+
+if TYPE_CHECKING:
+    from irsim.render.window import Window
+    from irsim.simulation import Simulation
+
+__all__ = ["EnvPlot", "Pictured"]
+
+_PAD_INCHES = 0.1
+_QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
+
+
+class _Paths(Protocol):
+    ani_buffer_path: str
+    ani_path: str
+    fig_path: str
+
+
+class _Logger(Protocol):
+    def info(self, message: object) -> None: ...
+    def warning(self, message: object) -> None: ...
+
+
+class Pictured(Protocol):
+    """What is read of an environment."""
+
+    path_param: Any
+    logger: Any
+    ani_kwargs: dict[str, Any]
+
+    @property
+    def simulation(self) -> Simulation:
+        """State and scenario."""
+
+    @property
+    def status(self) -> str:
+        """Word for the title."""
+
+
+class EnvPlot:
+    """Draws one environment.
+
+    Pictures show the state at the moment they are made, whenever that is; ``update`` only notes how to draw it.
+
+    Args:
+        env: What to draw.
+        display: Open a window where that is possible.
+        full: Fill the screen with it.
+        palette: Default colours.
+
+    Attributes:
+        title: Fixed title, or None for time and status.
+        show_title: Whether there is a title.
+        viewpoint: Point or name of the object that the view follows, or None.
+        saved_figure_kwargs: Options of saved figures; those given to ``save_figure`` are added.
+    """
+
+    def __init__(
+        self, env: Pictured, *, display: bool = False, full: bool = False, palette: Palette | None = None
+    ) -> None:
+        self.env = env
+        self.palette = palette or Palette()
+        self._display, self._full = display, full
+        source = env.simulation.scenario.source
+        self._folder = str(Path(source).parent) if source else None
+        self._options = env.simulation.scenario.world.plot
+        self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **_saved_figure(self._options)}
+        self._format: str | None = self.saved_figure_kwargs.pop("format", None)
+        width, height = self._options.figure_pixels
+        self._size = float(width), float(height)
+        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
+        self._overlay = Overlay(self.palette)
+        self._figure: SceneFigure | None = None
+        self._window: Window | None = None
+        self._buffer: FrameBuffer | None = None
+        self._crop: tuple[int, int, int, int] | None = None
+        self._missing: set[str] = set()
+        self._frame_size: tuple[int, int] | None = None
+        self.frames_written = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        self.title: str | None = self._options.title
+        self.show_title: bool = self._options.show_title
+        self.viewpoint: Any = self._options.viewpoint
+        self._mode = "all"
+        self._overrides: dict[str, Any] = {}
+
+    # the figure ------------------------------------------------------------------------------------------------------
+    @property
+    def fig(self) -> Figure:
+        """The Matplotlib figure, made when first asked for."""
+        return self._made().figure
+
+    @property
+    def ax(self) -> Axes:
+        """Its axes, in world coordinates [m]."""
+        return self._made().ax
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the last saved picture [px]; of the figure before that."""
+        return self._frame_size or (int(self._size[0]), int(self._size[1]))
+
+    def set_size(self, longer_side: float) -> None:
+        """Fit pictures into a square of this side [px]. Call before anything is drawn.
+
+        Raises:
+            ValueError: Not positive, or the figure exists.
+        """
+        if not longer_side > 0:
+            raise ValueError(f"the size must be positive, not {longer_side}")
+        if self._figure is not None:
+            raise ValueError("the size can only be set before the first drawing")
+        world, axis = self.env.simulation.scenario.world, not self._options.no_axis
+        self._size = fitting_size(world.width, world.height, longer_side, self._dpi, axis=axis)
+
+    @property
+    def _dpi(self) -> float:
+        return float(self.saved_figure_kwargs["dpi"])
+
+    def _made(self) -> SceneFigure:
+        if self._figure is None:
+            if self._display:
+                from irsim.render.window import open_window
+
+                name = self.env.simulation.scenario.name
+                self._window = open_window(self._size, self._dpi, full=self._full, title=name)
+            self._figure = SceneFigure(
+                self._size,
+                self._dpi,
+                axis=not self._options.no_axis,
+                tight=self._options.tight,
+                figure=None if self._window is None else self._window.figure,
+                folder=self._folder,
+            )
+            self._figure.show(self.scene(), self._title())
+        return self._figure
+
+    def scene(self) -> Scene:
+        """What the picture shows, as data."""
+        return self._builder.build(
+            status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
+        )
+
+    def _title(self) -> str | None:
+        if not self.show_title:
+            return None
+        if self.title is not None:
+            return self.title
+        simulation = self.env.simulation
+        time = int(simulation.count[0]) * float(simulation.scenario.world.step_time)
+        return f"Simulation Time: {time:.2f}s, Status: {self.env.status}"
+
+    def _synced(self) -> SceneFigure:
+        figure = self._made()
+        figure.show(self.scene(), self._title())
+        return figure
+
+    def _has_picture(self, name: str) -> bool:
+        if find_picture(name, self._folder) is not None:
+            return True
+        if name not in self._missing:
+            self._missing.add(name)
+            self.env.logger.warning(f"description image {name!r} not found: the shape is drawn instead")
+        return False
+
+    # per step --------------------------------------------------------------------------------------------------------
+    def update(self, mode: str = "dynamic", **overrides: Any) -> None:
+        """Begin the next frame.
+
+        Args:
+            mode: Objects that ``overrides`` apply to: ``dynamic``, ``static`` or ``all``.
+            **overrides: Object plot keys that hold until the next call.
+
+        Raises:
+            ValueError: Unknown mode.
+        """
+        if mode not in MODES:
+            raise ValueError(f"unknown render mode {mode!r}: choose one of {', '.join(MODES)}")
+        self._note_unknown(overrides)
+        self._mode, self._overrides = mode, overrides
+        self._overlay.next_frame()
+
+    def _note_unknown(self, overrides: Mapping[str, Any]) -> None:
+        for key in overrides.keys() - STYLE_KEYS - self._missing:
+            self._missing.add(key)
+            near = nearest(key, STYLE_KEYS)
+            hint = f": did you mean {near!r}?" if near else ""
+            self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
+
+    def pause(self, interval: float) -> None:
+        """Show the present state in the window for ``interval`` seconds; returns at once where there is none."""
+        if not self._display:
+            return
+        figure = self._synced()
+        if self._window is not None and self._window.open:
+            figure.draw()
+            self._window.refresh(interval)
+
+    def show(self) -> None:
+        """Show the window until the user closes it; returns at once where there is none."""
+        self.pause(0.001)
+        if self._window is not None:
+            self._window.wait()
+
+    def frame(self) -> Image.Image:
+        """The picture as it would be saved."""
+        return to_image(self._pixels({})[0])
+
+    def _pixels(self, options: Mapping[str, Any]) -> tuple[Pixels, tuple[int, int, int, int] | None]:
+        options = {**self.saved_figure_kwargs, **options}
+        figure = self._synced()
+        tight = options.get("bbox_inches") == "tight"
+        if _is_quick(options, figure.figure.dpi):
+            return figure.pixels(tight=tight, pad_inches=options.get("pad_inches", _PAD_INCHES))
+        data = io.BytesIO()
+        figure.figure.savefig(data, **{**options, "format": "png"})
+        with Image.open(data) as image:
+            return from_image(image), None
+
+    # files -----------------------------------------------------------------------------------------------------------
+    def save_figure(
+        self,
+        save_name: str | Path | None = None,
+        *,
+        include_index: bool = False,
+        save_gif: bool = False,
+        **options: Any,
+    ) -> Path:
+        """Save the present picture.
+
+        Args:
+            save_name: Name with format (default ``<world>.png``), in ``fig_path`` unless absolute.
+            include_index: Append ``_<step, 4 digits>``.
+            save_gif: Save into ``ani_buffer_path``, with the index, and keep it as a frame of the animation.
+            **options: Of Matplotlib's ``savefig``; they hold for later saves too, ``format`` excepted.
+
+        Returns:
+            The file.
+
+        Raises:
+            ValueError: A format nothing writes.
+        """
+        wanted = options.pop("format", None)
+        self.saved_figure_kwargs.update(options)
+        count = int(self.env.simulation.count[0])
+        paths: _Paths = self.env.path_param
+        path = picture_path(
+            paths.ani_buffer_path if save_gif else paths.fig_path,
+            save_name,
+            self.env.simulation.scenario.name,
+            count=count if include_index or save_gif else None,
+            format=wanted,
+            default_format=self._format,
+        )
+        figure = self._synced()
+        with replacing(path) as temporary:
+            if path.suffix == ".png" and _is_quick(self.saved_figure_kwargs, figure.figure.dpi):
+                pixels, _ = self._pixels({})
+                temporary.write_bytes(png_bytes(pixels, figure.figure.dpi))
+                self._frame_size = pixels.shape[1], pixels.shape[0]
+            else:
+                figure.figure.savefig(temporary, format=path.suffix[1:], **self.saved_figure_kwargs)
+        if save_gif and (self._buffer is None or count not in self._buffer.counts[-1:]):
+            self.add_frame()
+        return path
+
+    def add_frame(self, **options: Any) -> None:
+        """Keep the present picture for the animation; all frames are cut like the first.
+
+        Args:
+            **options: Of ``savefig``; they hold for later frames too.
+        """
+        self.saved_figure_kwargs.update(options)
+        kwargs = self.saved_figure_kwargs
+        if self._crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self.fig.dpi):
+            figure = self._synced()
+            figure.draw()
+            pixels = figure.compositor.pixels(self._crop)
+        else:
+            pixels, self._crop = self._pixels({})
+        if self._buffer is None:
+            defaults = self.env.ani_kwargs
+            suffix = str(defaults.get("suffix", ".gif")).lower()
+            indexed = suffix == ".gif" and bool(defaults.get("rm_fig_path", True))
+            play, _ = _animation_options(defaults)
+            self._buffer = FrameBuffer(play, indexed=indexed, colors=self._colors())
+        self._buffer.add(pixels, int(self.env.simulation.count[0]))
+        self._frame_size = pixels.shape[1], pixels.shape[0]
+
+    def save_animation(
+        self,
+        path: str | Path | None = None,
+        *,
+        ani_name: str | None = None,
+        suffix: str = ".gif",
+        rm_fig_path: bool = True,
+        **options: Any,
+    ) -> Path | None:
+        """Write the animation of the frames kept so far, and forget them.
+
+        Args:
+            path: File to write; default ``<ani_path>/<ani_name><suffix>``.
+            ani_name: Default ``animation_<world>``.
+            suffix: ``.gif``, ``.apng``, ``.png`` or a video's: ``.mp4``, ``.webm``, …
+            rm_fig_path: Unless set to False, no single frames are left behind; else they are in ``ani_buffer_path``.
+            **options: ``fps`` (10), ``last_frame_duration`` (1 s), ``loop``, and the video encoder's.
+
+        Returns:
+            The file; None, with a warning, when there are no frames.
+
+        Raises:
+            ValueError: A suffix that nothing writes.
+        """
+        paths: _Paths = self.env.path_param
+        name = self.env.simulation.scenario.name
+        if path is None:
+            path = Path(paths.ani_path) / f"{ani_name or f'animation_{name}'}{suffix}"
+        path = Path(path)
+        check_suffix(path.suffix)
+        play, unknown = _animation_options(options)
+        if unknown:
+            self.env.logger.warning(f"unknown options of the animation are ignored: {', '.join(unknown)}")
+        buffer = self._buffer
+        if buffer is None or not buffer.frames:
+            self.env.logger.warning("no frames were kept: there is no animation to save")
+            return None
+        buffer.save(path, play)
+        if not rm_fig_path:
+            for count, pixels in zip(buffer.counts, buffer.read(), strict=True):
+                with replacing(Path(paths.ani_buffer_path) / f"{name}_{count:04d}.png") as temporary:
+                    temporary.write_bytes(png_bytes(pixels))
+        self.frames_written = buffer.frames
+        self._forget_frames()
+        self.env.logger.info(f"animation saved: {path}")
+        return path
+
+    def _colors(self) -> list[tuple[int, int, int]]:
+        """Colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
+        scene = self.scene()
+        colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
+        levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
+        return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
+
+    def _forget_frames(self) -> None:
+        if self._buffer is not None:
+            self._buffer.close()
+        self._buffer = None
+        self._crop = None
+
+    # life ------------------------------------------------------------------------------------------------------------
+    def reset(self) -> None:
+        """Draw everything anew: drawings, titles and views of scripts are gone; kept frames stay."""
+        self._begin()
+        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._has_picture)
+        self._overlay.forget()
+        if self._figure is not None:
+            self._figure.clear()
+
+    def close(self) -> None:
+        """Close the window and forget figure and frames."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+        self._overlay.forget()
+        self._figure = None
+        self._forget_frames()
+
+    # drawings of scripts ---------------------------------------------------------------------------------------------
+    def set_title(self, title: str | None) -> None:
+        """Fixed title until the next reset; None shows time and status again."""
+        self.title = title
+
+    def draw_trajectory(self, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
+        """A path; see :meth:`Overlay.trajectory`."""
+        self._overlay.trajectory(self.ax, traj, traj_type, **kwargs)
+
+    def draw_points(self, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
+        """Dots; see :meth:`Overlay.points`."""
+        if points is not None:
+            self._overlay.points(self.ax, points, s, c, refresh, **kwargs)
+
+    def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-") -> None:
+        """A closed outline; see :meth:`Overlay.box`."""
+        self._overlay.box(self.ax, vertex, refresh, color)
+
+    def draw_quiver(self, point: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
+        """One arrow (x, y, u, v)."""
+        if point is not None:
+            self._overlay.quivers(self.ax, [point], refresh, color, **kwargs)
+
+    def draw_quivers(self, points: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
+        """Arrows (x, y, u, v)."""
+        self._overlay.quivers(self.ax, points, refresh, color, **kwargs)
+
+
+def _saved_figure(options: Any) -> dict[str, Any]:
+    values: dict[str, Any] = options.saved_figure.model_dump(exclude_unset=True)
+    return {key: value for key, value in values.items() if value is not None or key == "bbox_inches"}
+
+
+def _is_quick(options: Mapping[str, Any], dpi: float) -> bool:
+    """Whether options of ``savefig`` can be served from the canvas as it is."""
+    same_dpi = options.get("dpi") in (dpi, "figure", None)
+    return same_dpi and set(options) <= _QUICK_OPTIONS and options.get("bbox_inches") in ("tight", None)
+
+
+def _animation_options(options: Mapping[str, Any]) -> tuple[AnimationOptions, list[str]]:
+    """Options of an animation, and the names among them that mean nothing."""
+    known = {key: options[key] for key in ("fps", "last_frame_duration", "loop") if options.get(key) is not None}
+    video = {key: options[key] for key in VIDEO_OPTIONS if key in options}
+    place = ("ani_name", "suffix", "rm_fig_path")
+    unknown = [key for key in options if key not in known and key not in video and key not in place]
+    return AnimationOptions(**known, video=video), unknown

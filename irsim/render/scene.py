@@ -1,0 +1,179 @@
+"""What a picture of the simulation contains, as plain data in world coordinates: no drawing library, JSON-able.
+
+A :class:`Scene` is made by :class:`irsim.render.builder.SceneBuilder` from the state of one world; the Matplotlib
+figure draws it, and :meth:`Scene.as_dict` is what a replay in a web page reads. All lengths are metres, angles
+radians, colours as the user wrote them; ``zorder`` is the layer, higher ones cover lower ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.render.palette import Color
+
+__all__ = ["Beams", "Circle", "Geometry", "Label", "Line", "Mark", "Picture", "Region", "Scene", "Sector", "Stroke"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(slots=True, eq=False)
+class Circle:
+    """A true circle."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(slots=True, eq=False)
+class Region:
+    """A filled area. ``rings``: (M, 2) outlines; the first of a part counter-clockwise, holes clockwise."""
+
+    rings: list[Floats]
+
+
+@dataclass(slots=True, eq=False)
+class Line:
+    """An open polyline. ``points``: (M, 2)."""
+
+    points: Floats
+
+
+@dataclass(slots=True, eq=False)
+class Sector:
+    """A slice of a disc from angle ``start`` to ``end`` (counter-clockwise)."""
+
+    x: float
+    y: float
+    radius: float
+    start: float
+    end: float
+
+
+Geometry = Circle | Region | Line | Sector
+
+
+@dataclass(slots=True, eq=False)
+class Stroke:
+    """Outline of a mark.
+
+    Attributes:
+        color: None draws no outline.
+        width: In points, or in metres when ``metric``.
+        style: ``-``, ``--``, ``-.``, ``:`` or their long names.
+        round_caps: Ends of open lines.
+    """
+
+    color: Color | None
+    width: float = 1.0
+    metric: bool = False
+    style: Any = "-"
+    round_caps: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Mark:
+    """Something with a shape: body, goal, arrow, view sector, trajectory or trail snapshot (``part``) of an object."""
+
+    object: int
+    part: str
+    geometry: Geometry
+    fill: Color | None
+    stroke: Stroke
+    alpha: float
+    zorder: float
+
+
+@dataclass(slots=True, eq=False)
+class Label:
+    """Text whose left end of the baseline is at ``x, y``; ``anchor`` is the position of what it names."""
+
+    object: int
+    part: str
+    x: float
+    y: float
+    anchor: tuple[float, float]
+    text: str
+    color: Color
+    size: float
+    alpha: float
+    zorder: float
+
+
+@dataclass(slots=True, eq=False)
+class Beams:
+    """One scan: lines from ``origin`` to ``ends`` (B, 2).
+
+    ``highlights`` are (beam, colour, alpha) of beams that differ from the rest.
+    """
+
+    object: int
+    sensor: int
+    origin: tuple[float, float]
+    ends: Floats
+    color: Color
+    alpha: float
+    zorder: float
+    highlights: list[tuple[int, Color, float]] = field(default_factory=list)
+
+
+@dataclass(slots=True, eq=False)
+class Picture:
+    """An image in place of a body: ``box`` (x, y, length, width) in the body frame, moved to the pose."""
+
+    object: int
+    name: str
+    box: tuple[float, float, float, float]
+    pose: tuple[float, float, float]
+    alpha: float
+    zorder: float
+
+
+@dataclass(slots=True, eq=False)
+class Scene:
+    """One frame.
+
+    Attributes:
+        time: Simulated seconds.
+        status: The environment's status word.
+        extent: The world: x from, x to, y from, y to.
+        center: Point the view is centred on; None shows the world.
+    """
+
+    time: float
+    status: str
+    extent: tuple[float, float, float, float]
+    center: tuple[float, float] | None
+    marks: list[Mark]
+    beams: list[Beams]
+    labels: list[Label]
+    pictures: list[Picture]
+
+    def of(self, object_id: int, part: str) -> Iterator[Mark]:
+        """The marks that show ``part`` of one object."""
+        return (mark for mark in self.marks if mark.object == object_id and mark.part == part)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The scene as lists, mappings, numbers and text; geometries carry their kind."""
+        plain: dict[str, Any] = _plain(self)
+        return plain
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if is_dataclass(value) and not isinstance(value, type):
+        data = {entry.name: _plain(getattr(value, entry.name)) for entry in fields(value)}
+        if isinstance(value, Circle | Region | Line | Sector):
+            data["kind"] = type(value).__name__.lower()
+        return data
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
