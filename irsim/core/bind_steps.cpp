@@ -87,7 +87,7 @@ void bind_steps(nb::module_& m) {
   phase("limit", [](W world, State& s, int w, Workspace&) { limit(world, s, w); });
   phase("integrate", [](W world, State& s, int w, Workspace&) { integrate(world, s, w); });
   phase("finish", [](W world, State& s, int w, Workspace&) { finish(world, s, w); });
-  phase("collide", [](W world, State& s, int w, Workspace& work) { collide(world, s, w, work); });
+  phase("collide", [](W world, State& s, int w, Workspace&) { collide(world, s, w); });
   phase("arrive", [](W world, State& s, int w, Workspace&) { arrive(world, s, w); });
   phase("sense", [](W world, State& s, int w, Workspace& work) { sense(world, s, w, work); });
   m.def(

@@ -21,29 +21,29 @@ void place_moving(const World& world, State& state, int w) {
   }
 }
 
-void find_pairs(const World& world, State& state, int w, Workspace& work) {
+void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   const Shapes& shapes = *scene.shapes;
   const Fixed& fixed = *scene.fixed;
   std::vector<Pair>& pairs = scene.pairs;
   pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
-  const bool several = world.moving.size() > 1;
-  if (several) {
-    work.grid.clear(world.cell(shapes, world.moving));
-    for (const int i : world.moving) work.grid.add(i, scene.moving.boxes[shapes.placed[i].object]);
-    work.grid.build();
+  if (!world.fixed_objects.empty()) {
+    for (const int i : world.moving) {
+      const Footprint body = scene.moving.footprint(shapes, i);
+      fixed.grid.query(body.box, [&](int j) {
+        if (touch(body, fixed.outlines.footprint(shapes, j))) pairs.emplace_back(std::min(i, j), std::max(i, j));
+      });
+    }
   }
-  for (const int i : world.moving) {
-    const Footprint body = scene.moving.footprint(shapes, i);
-    fixed.grid.query(body.box, [&](int j) {
-      if (touch(body, fixed.outlines.footprint(shapes, j))) pairs.emplace_back(std::min(i, j), std::max(i, j));
-    });
-    if (!several) continue;
-    work.grid.query(body.box, [&](int j) {
-      if (j > i && touch(body, scene.moving.footprint(shapes, j))) pairs.emplace_back(i, j);
-    });
+  if (world.moving.size() > 1) {
+    scene.sweep.pairs([&](int i) { return scene.moving.boxes[shapes.placed[i].object]; },
+                      [&](int i, int j) {
+                        if (touch(scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j))) {
+                          pairs.emplace_back(std::min(i, j), std::max(i, j));
+                        }
+                      });
   }
-  std::sort(pairs.begin(), pairs.end());
+  if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
 }
 
 /// Contacts that began since the previous evaluation.
@@ -63,11 +63,11 @@ void log_contacts(const World& world, State& state, int w) {
 
 }  // namespace
 
-void collide(const World& world, State& state, int w, Workspace& work) {
+void collide(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   std::swap(scene.pairs, scene.previous_pairs);
   place_moving(world, state, w);
-  find_pairs(world, state, w, work);
+  find_pairs(world, state, w);
   const int first = w * world.objects;
   std::uint8_t* collided = state.collided.data + first;
   std::fill(collided, collided + world.objects, std::uint8_t{0});

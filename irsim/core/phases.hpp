@@ -10,7 +10,7 @@ void decide(const World& world, State& state, int w, Workspace& work);
 void limit(const World& world, State& state, int w);
 void integrate(const World& world, State& state, int w);
 void finish(const World& world, State& state, int w);
-void collide(const World& world, State& state, int w, Workspace& work);
+void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);
 void sense(const World& world, State& state, int w, Workspace& work);
 

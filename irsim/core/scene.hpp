@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collision/grid.hpp"
+#include "collision/sweep.hpp"
 #include "shapes.hpp"
 
 namespace irsim {
@@ -35,6 +36,7 @@ struct Scene {
   std::shared_ptr<const Shapes> shapes;
   std::shared_ptr<const Fixed> fixed;
   Outlines moving;
+  Sweep sweep;                              // of the moving objects
   std::vector<Pair> pairs, previous_pairs;  // sorted
   std::vector<Event> events;                // since the last reset
 };

@@ -13,7 +13,7 @@ Goal goal_of(const std::vector<double>& numbers) {
 
 void evaluate(const World& world, State& state, int w, bool with_arrival) {
   Workspace& work = state.workspaces.front();
-  collide(world, state, w, work);
+  collide(world, state, w);
   if (with_arrival) arrive(world, state, w);
   sense(world, state, w, work);
 }
@@ -137,6 +137,7 @@ void draw_scene(const World& world, State& state, int w) {
   first_values(world, state, w);
   scene.shapes = world.shapes ? world.shapes : make_shapes(world, make_key(state.seed[w], state.scene_index[w], 0));
   scene.moving.resize(scene.shapes->size[0]);
+  scene.sweep.reset(world.moving);
   scene.fixed = nullptr;
   state.failed_placement[w] = -1;
   if (!world.placements.empty()) place_randomly(world, state, w);

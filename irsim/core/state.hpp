@@ -69,6 +69,12 @@ struct State {
     const Scene& scene = scenes[w];
     return (world.is_static[object] ? scene.fixed->outlines : scene.moving).footprint(*scene.shapes, object);
   }
+  /// Centre and radius of the bounding circle, world frame.
+  std::pair<Vec2, double> bounds(const World& world, int w, int object) const {
+    const Scene& scene = scenes[w];
+    const Outlines& outlines = world.is_static[object] ? scene.fixed->outlines : scene.moving;
+    return {outlines.centres[scene.shapes->placed[object].object], scene.shapes->radius[object]};
+  }
   void log(int w, EventKind kind, int object, int partner, Vec2 where) {
     scenes[w].events.push_back({kind, count[w], object, partner, where.x, where.y});
     ++event_count[w];

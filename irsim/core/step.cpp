@@ -9,10 +9,10 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
     limit(world, state, w);         // speed and acceleration limits -> executed controls
     integrate(world, state, w);     // kinematics, noise -> poses
   }
-  finish(world, state, w);         // the step counts, the history grows
-  collide(world, state, w, work);  // broad phase, exact narrow phase, what the mode does about it
-  arrive(world, state, w);         // goals, waypoints
-  sense(world, state, w, work);    // lidars
+  finish(world, state, w);       // the step counts, the history grows
+  collide(world, state, w);      // broad phase, exact narrow phase, what the mode does about it
+  arrive(world, state, w);       // goals, waypoints
+  sense(world, state, w, work);  // lidars
 }
 
 bool done(const World& world, const State& state, int w) {

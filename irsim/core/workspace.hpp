@@ -4,15 +4,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/grid.hpp"
-
 namespace irsim {
 
 struct Intent;
 
 struct BeamBuffers {
-  std::vector<double> dx, dy, range, offset, bearing;
+  struct Body {
+    double distance;   // nothing of it is nearer [m]
+    double low, high;  // beams that may see it
+    int object;
+  };
+  std::vector<double> dx, dy, range;
   std::vector<std::int32_t> hit;
+  std::vector<Body> bodies, sorted;
 };
 
 struct Workspace {
@@ -21,7 +25,6 @@ struct Workspace {
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
 
-  Grid grid;
   std::vector<int> objects;
   std::vector<Intent> intents;
   BeamBuffers beams;

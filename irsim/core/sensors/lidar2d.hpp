@@ -61,8 +61,11 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
     fan.aim(i, rotate(beam, heading));
   }
   for (const int object : s.world.visible) {
-    if (object != s.mount.object) fan.cast(s.state.footprint(s.world, s.w, object), object);
+    if (object == s.mount.object) continue;
+    const auto [centre, radius] = s.state.bounds(s.world, s.w, object);
+    fan.consider(object, centre, radius);
   }
+  fan.cast([&](int object) { return s.state.footprint(s.world, s.w, object); });
   for (int i = 0; i < n; ++i) {
     const int hit = fan.hit(i);
     double range = hit < 0 ? options.range_max : fan.range(i);
