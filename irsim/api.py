@@ -12,16 +12,17 @@ from typing import Literal
 
 import numpy as np
 
-from irsim.diagnostics import Diagnostic, by_severity, format_path
+from irsim.diagnostics import Diagnostic, format_path
 from irsim.env import Env
-from irsim.errors import ScenarioError
 from irsim.observers.events import Event, first_events
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, RenderResult, RobotResult, RunResult, ValidationReport
-from irsim.scenario.load import Limits
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
+from irsim.scenario.load import Document, load_text
 from irsim.scenario.objects import ResolvedScenario
-from irsim.scenario.read import Reading, read
+from irsim.scenario.opening import open_scenario
+from irsim.scenario.read import read
 
 __all__ = ["default_time_limit", "import_modules", "read_scenario", "render", "run", "validate"]
 
@@ -50,8 +51,8 @@ def validate(
         ScenarioNotFoundError: No such file.
         ValueError: Neither or both of ``path`` and ``text``.
     """
-    reading = _read(path, text, strict=strict, limits=limits)
-    findings = [_finding(d) for d in by_severity(reading.diagnostics)]
+    reading = read(_source(path, text, limits), strict=strict, limits=limits or DEFAULT_LIMITS)
+    findings = [_finding(d) for d in reading.diagnostics]
     count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
     scenario, counts = reading.scenario, dict[str, int]()
     if scenario is not None:
@@ -193,10 +194,8 @@ def read_scenario(
     Raises:
         ScenarioError: The file cannot be used.
     """
-    reading = _read(path, None, strict=strict, limits=limits)
-    if reading.scenario is None:
-        raise ScenarioError(by_severity(reading.diagnostics), reading.text)
-    return reading.scenario, [_finding(d) for d in by_severity(reading.diagnostics)]
+    scenario, diagnostics = open_scenario(path, strict=strict, limits=limits)
+    return scenario, [_finding(d) for d in diagnostics]
 
 
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
@@ -210,12 +209,13 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     return max(_MIN_HORIZON, _HORIZON_FACTOR * longest)
 
 
-def _read(path: str | Path | None, text: str | None, *, strict: bool, limits: Limits | None) -> Reading:
+def _source(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:
     if (path is None) == (text is None):
         raise ValueError("give either a path or a text")
     if path is not None:
-        return read(locate(str(path)), strict=strict, limits=limits)
-    return read(text=text, strict=strict, limits=limits)
+        return locate(path)
+    assert text is not None
+    return load_text(text, limits=limits or DEFAULT_LIMITS)
 
 
 def _finding(diagnostic: Diagnostic) -> Finding:

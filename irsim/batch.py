@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.python_behaviors import attach_python_behaviors
-from irsim.scenario.locate import locate
 from irsim.scenario.objects import ResolvedScenario
-from irsim.scenario.read import read_or_raise
+from irsim.scenario.opening import open_scenario
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed
 
@@ -148,7 +147,7 @@ def batch(
     if isinstance(scenario, ResolvedScenario):
         resolved = scenario
     else:
-        resolved, _ = read_or_raise(locate(str(scenario)), strict=strict)
+        resolved, _ = open_scenario(scenario, strict=strict)
     if seeds is None:
         first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()
         seeds = [first + i for i in range(n)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
@@ -21,9 +20,8 @@ from irsim.observers.outcome import Outcome, outcome_of
 from irsim.observers.trace import Rollout, record_rollout
 from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
 from irsim.python_behaviors import attach_python_behaviors
-from irsim.scenario.locate import locate
 from irsim.scenario.objects import ResolvedScenario
-from irsim.scenario.read import read_or_raise
+from irsim.scenario.opening import open_scenario
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed, generator
 from irsim.views import ObjectView, views
@@ -57,8 +55,6 @@ def make(
         )
     if chosen != "2d":
         raise ValueError(f"unknown projection {projection!r}: choose '2d'")
-    if world_name is None:
-        world_name = Path(sys.argv[0]).name.split(".")[0] + ".yaml"
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
@@ -66,7 +62,7 @@ class Env(EnvAccess, EnvDrawing):
     """One world, stepped from Python.
 
     Args:
-        world_name: YAML file, or an already resolved scenario.
+        world_name: YAML file (None: named like the running script), or an already resolved scenario.
         step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller does).
         display: Show a window where there is a screen.
         headless: No drawing at all; ``disable_all_plot`` is the same.
@@ -80,7 +76,7 @@ class Env(EnvAccess, EnvDrawing):
 
     def __init__(
         self,
-        world_name: str | Path | ResolvedScenario,
+        world_name: str | Path | ResolvedScenario | None = None,
         *,
         step_mode: str | None = None,
         display: bool = True,
@@ -99,7 +95,7 @@ class Env(EnvAccess, EnvDrawing):
         if isinstance(world_name, ResolvedScenario):
             self.scenario = world_name
         else:
-            self.scenario, warnings = read_or_raise(locate(str(world_name)), strict=strict)
+            self.scenario, warnings = open_scenario(world_name, strict=strict)
             for warning in warnings:
                 self.logger.warning(_one_line(warning))
         self.step_mode = _step_mode(step_mode if step_mode is not None else self.scenario.world.step_mode)

@@ -1,0 +1,241 @@
+"""The loop every script writes: make, step, done, reset, end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+
+Make = Callable[..., Any]
+
+ONE = """
+world: {height: 10, width: 10}
+robot:
+  kinematics: {name: diff}
+  shape: {name: circle, radius: 0.2}
+  state: [1, 1, 0]
+  goal: [3, 1, 0]
+  behavior: {name: dash}
+  goal_threshold: 0.05
+"""
+
+WALL = """
+world: {height: 10, width: 10}
+robot:
+  kinematics: {name: diff}
+  shape: {name: circle, radius: 0.5}
+  state: [1, 1, 0]
+  goal: [9, 1, 0]
+  behavior: {name: dash}
+obstacle:
+  - {shape: {name: rectangle, length: 1, width: 4}, state: [4, 1, 0]}
+"""
+
+
+def test_dash_reaches_its_goal_in_closed_form(make: Make) -> None:
+    env = make(ONE)
+    steps = 0
+    while not env.done():
+        env.step()
+        steps += 1
+    # 1 m/s for 0.1 s a step; arrived once less than 0.05 m are left of the 2 m
+    assert steps == 20
+    assert env.robot.state[0, 0] == pytest.approx(3.0, abs=1e-12)
+    assert env.time == 2.0
+    assert env.status == "Arrived"
+    assert env.outcome == "success"
+    assert [(e.kind, e.object, e.step) for e in env.events] == [("arrival", "robot_0", 20)]
+
+
+def test_a_collision_stops_and_is_told(make: Make) -> None:
+    env = make(WALL)
+    for _ in range(100):
+        env.step()
+        if env.done():
+            break
+    # the disc touches x = 3.5 when its centre is at 3.0
+    assert env.robot.state[0, 0] == pytest.approx(3.0, abs=0.11)
+    assert env.robot.collision and env.robot.stop_flag and env.status == "Collision"
+    assert env.outcome == "collision"
+    (event,) = env.events
+    assert (event.kind, event.object, event.partner) == ("collision", "robot_0", "obstacle_1")
+    assert event.x == pytest.approx(3.5, abs=0.11) and event.y == pytest.approx(1.0, abs=0.3)
+    assert [o.name for o in env.robot.collision_obj] == ["obstacle_1"]
+    before = env.robot.state
+    env.step()
+    assert np.array_equal(env.robot.state, before)
+    assert not env.robot.velocity.any()
+
+
+def test_initial_overlap_is_visible_at_once(make: Make) -> None:
+    env = make(WALL.replace("state: [1, 1, 0]", "state: [4, 1, 0]"))
+    assert env.robot.collision and env.status == "Collision" and env.done()
+    before = env.robot.state
+    env.step()
+    assert np.array_equal(env.robot.state, before)
+
+
+def test_reset_repeats_the_scene(make: Make) -> None:
+    env = make(ONE)
+    first = [env.step() or env.robot.state for _ in range(5)]
+    env.reset()
+    assert env.time == 0 and env.status == "Reset" and env.robot.trajectory == [] and env.events == []
+    again = [env.step() or env.robot.state for _ in range(5)]
+    assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
+
+
+def test_state_is_a_snapshot_that_cannot_be_written(make: Make) -> None:
+    env = make(ONE)
+    kept = env.get_robot_state()
+    env.step()
+    assert kept[0, 0] == 1.0 and env.robot.state[0, 0] == pytest.approx(1.1)
+    with pytest.raises(ValueError, match="read-only"):
+        kept[0, 0] = 5.0
+
+
+def test_trajectory_holds_every_step(make: Make) -> None:
+    env = make(ONE)
+    for _ in range(4):
+        env.step()
+    assert [round(s[0, 0], 9) for s in env.robot.trajectory] == [1.1, 1.2, 1.3, 1.4]
+    assert env.robot.trajectory[0].shape == (3, 1)
+
+
+@pytest.mark.parametrize("action", [[0.5, 0.2], (0.5, 0.2), np.array([0.5, 0.2]), np.array([[0.5], [0.2]]), [[0.5, 0.2]]])
+def test_one_action_in_every_spelling(make: Make, action: Any) -> None:
+    env = make(ONE)
+    env.step(action)
+    assert env.robot.velocity[:, 0].tolist() == [0.5, 0.2]
+    assert env.robot.state[:, 0] == pytest.approx([1.05, 1.0, 0.02], abs=1e-12)
+
+
+TWO = """
+world: {height: 10, width: 10}
+robot:
+  - number: 2
+    kinematics: {name: diff}
+    state: [[1, 1, 0], [1, 5, 0]]
+    goal: [[9, 1, 0], [9, 5, 0]]
+    behavior: {name: dash}
+"""
+
+
+@pytest.mark.parametrize(
+    ("action", "target", "expected"),
+    [
+        ([[0.5, 0.1], [0.2, 0.2]], None, [[0.5, 0.1], [0.2, 0.2]]),
+        ([None, [0.2, 0.2]], None, [[1, 0], [0.2, 0.2]]),
+        ({"robot_1": [0.3, 0.3]}, None, [[1, 0], [0.3, 0.3]]),
+        ({0: [0.4, 0.4]}, None, [[0.4, 0.4], [1, 0]]),
+        ([0.5, 0.1], 1, [[1, 0], [0.5, 0.1]]),
+        ([0.5, 0.1], [0, 1], [[0.5, 0.1], [0.5, 0.1]]),
+        ([[0.5, 0.1], [0.2, 0.2]], [1, 0], [[0.2, 0.2], [0.5, 0.1]]),
+        ([0.5, 0.1], "robot_1", [[1, 0], [0.5, 0.1]]),
+    ],
+)
+def test_actions_find_their_robots(make: Make, action: Any, target: Any, expected: list[list[float]]) -> None:
+    env = make(TWO)
+    env.step(action, target)
+    assert [robot.velocity[:, 0].tolist() for robot in env.robot_list] == expected
+    env.step()
+    assert [robot.velocity[:, 0].tolist() for robot in env.robot_list] != expected, "an action holds for one step"
+
+
+@pytest.mark.parametrize(
+    ("action", "target", "error", "says"),
+    [
+        ([0.1, 0.1], 17, ValueError, "no object with id or name 17"),
+        ([0.1, 0.1, 0.1], None, ValueError, "takes 2 numbers"),
+        ([math.nan, 0.0], None, ValueError, "not finite"),
+        ("left", None, TypeError, "action must be"),
+        ({"nobody": [0, 0]}, None, ValueError, "nobody"),
+    ],
+)
+def test_bad_actions_say_what_is_wrong(make: Make, action: Any, target: Any, error: type[Exception], says: str) -> None:
+    env = make(TWO)
+    with pytest.raises(error, match=says):
+        env.step(action, target)
+
+
+def test_external_mode_moves_nothing_but_evaluates(make: Make) -> None:
+    env = make(WALL, step_mode="external")
+    env.step()
+    assert env.robot.state[0, 0] == 1.0 and env.time == 0.1
+    env.robot.set_state([4, 1, 0])
+    env.step()
+    assert env.robot.collision and env.time == 0.2
+    with pytest.raises(ValueError, match="external"):
+        env.step([0.1, 0.1])
+
+
+def test_rollout_equals_steps(make: Make) -> None:
+    stepped, rolled = make(WALL), make(WALL)
+    poses = []
+    while not stepped.done():
+        stepped.step()
+        poses.append(stepped.simulation.pose.copy())
+    result = rolled.rollout(1000)
+    assert len(result) == len(poses) and np.array_equal(result.pose, np.array(poses))
+    assert rolled.events == stepped.events
+    assert result.time[-1] == pytest.approx(stepped.sim_time)
+    assert rolled.robot.trajectory[-1].tolist() == stepped.robot.trajectory[-1].tolist()
+
+
+def test_environments_do_not_meet(make: Make) -> None:
+    a, b = make(ONE), make(ONE)
+    a.step()
+    assert b.time == 0 and b.robot.state[0, 0] == 1.0
+    a.end()
+    b.step()
+    assert b.time == 0.1
+    with pytest.raises(RuntimeError, match="ended"):
+        a.step()
+
+
+def test_pause_and_resume(make: Make) -> None:
+    env = make(ONE)
+    env.pause()
+    env.step()
+    assert env.time == 0 and env.status == "Pause"
+    env.resume()
+    env.step()
+    assert env.time == 0.1 and env.status == "Running"
+
+
+def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "crossing.yaml").write_text(ONE)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(FileNotFoundError, match=r"crossing\.yaml") as caught:
+        irsim.make("crosing.yaml")
+    assert str(tmp_path) in str(caught.value)
+
+
+def test_custom_behavior_registered_as_function(make: Make) -> None:
+    from irsim.lib import register_behavior
+
+    @register_behavior("diff", "test_spin")
+    def spin(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
+        assert len(external_objects) == 1 and kwargs["speed"] == 0.7
+        return np.array([[0.0], [kwargs["speed"]]])
+
+    env = make(WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}"))
+    env.step()
+    assert env.robot.velocity[:, 0].tolist() == [0.0, 0.7]
+    assert env.robot.state[2, 0] == pytest.approx(0.07)
+    again = make(WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}"))
+    result = again.rollout(3)
+    assert result.pose[0].tolist() == env.simulation.pose.tolist()
+
+
+def test_unregistered_behavior_fails_at_the_first_step_only(make: Make) -> None:
+    text = ONE.replace("{name: dash}", "{name: test_nowhere}")
+    env = make(text)
+    with pytest.raises(ValueError, match="test_nowhere"):
+        env.step()
+    with pytest.raises(irsim.ScenarioError, match="unknown-behavior"):
+        make(text, strict=True)
