@@ -114,8 +114,10 @@ class ObjectView:
 
     @property
     def max_speed(self) -> float:
-        """Highest speed the limits allow [m/s]."""
+        """Highest speed the limits allow [m/s]; 0 for objects that never move."""
         top = self.record.vel_max
+        if self.kinematics is None:
+            return 0.0
         if self.kinematics in ("omni", "omni_angular"):
             return math.hypot(top[0], top[1])
         return float(top[0])
