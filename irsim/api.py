@@ -343,7 +343,8 @@ def _summary(robots: list[RobotResult], events: Sequence[Event], sim_time: float
             robots[0].outcome
         ]
     text += f" within {sim_time:.1f} s"
-    first = next((event for event in events if event.kind == "collision"), None)
+    names = {robot.name for robot in robots}
+    first = next((e for e in events if e.kind == "collision" and names & {e.object, e.partner}), None)
     if first is not None:
         text += f"; {first.object} hit {first.partner} at {first.time:.1f} s near ({first.x:.2f}, {first.y:.2f})"
     return text
