@@ -7,13 +7,24 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from irsim.cli.output import has_colors
+from irsim.errors import IrsimError
 
 if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
     from irsim.results import Finding
     from irsim.scenario.limits import Limits
 
-__all__ = ["import_user_modules", "limits_for", "print_diagnostics", "print_findings"]
+__all__ = ["UserImportError", "import_user_modules", "limits_for", "print_diagnostics", "print_findings"]
+
+
+class UserImportError(IrsimError, ImportError):
+    """A module named by ``--import`` cannot be imported.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+    """
+
+    code = "import-failed"
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, stderr: bool = False) -> None:
@@ -68,7 +79,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
     """Import user modules, for what they register.
 
     Raises:
-        ImportError: Whatever went wrong in one of them.
+        UserImportError: Whatever went wrong in one of them.
     """
     if not names:
         return
@@ -78,7 +89,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
         try:
             import_modules([name])
         except Exception as error:
-            raise ImportError(f"--import {name}: {type(error).__name__}: {error}") from error
+            raise UserImportError(f"import-failed: --import {name}: {type(error).__name__}: {error}") from error
 
 
 def limits_for(max_objects: int | None) -> Limits | None:

@@ -43,10 +43,6 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
         except BrokenPipeError:
             silence_stdout()
             raise typer.Exit(0) from None
-        except (IrsimError, ImportError, OSError, MemoryError) as error:
-            if os.environ.get("IRSIM_TRACEBACK"):
-                raise
-            raise typer.Exit(_report(error, as_json=bool(kwargs.get("json_output")))) from None
         except Exception as error:
             if isinstance(error, _PASS) or os.environ.get("IRSIM_TRACEBACK"):
                 raise
@@ -86,8 +82,6 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
         code = getattr(error, "code", None)
         text = str(error)
         return (str(code), text.removeprefix(f"{code}: "), INVALID) if code else ("invalid-input", text, INVALID)
-    if isinstance(error, ImportError):
-        return "import-failed", str(error), INVALID
     if isinstance(error, MemoryError):
         return "out-of-memory", "not enough memory for this.", FAILED
     if isinstance(error, OSError):

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Strict
+from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
 
 __all__ = ["render"]
 

@@ -7,13 +7,17 @@ from typing import Annotated
 
 import typer
 
+from irsim.cli.guard import FAILED
+
 __all__ = ["schema"]
 
 
 def schema(
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="FILE", help="File to write; default: the checkout's schema, else -."),
+        typer.Option(
+            "-o", "--out", metavar="FILE", help="File to write; - prints it. Default: the one of the checkout."
+        ),
     ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit with 1 if the file is out of date.")
@@ -24,3 +28,43 @@ def schema(
     ] = None,
 ) -> None:
     """Write the JSON Schema of scenario files, or connect a file to it."""
+    if scenario is not None:
+        _connect(scenario)
+        return
+    from irsim import resources
+    from irsim.files import write_atomically
+    from irsim.scenario.schema import schema_text
+
+    text = schema_text()
+    if str(out) == "-" or (out is None and not check and resources.checkout() is None):
+        typer.echo(text, nl=False)
+        return
+    target = out or resources.schema_file()
+    if not check:
+        write_atomically(target, text)
+        typer.echo(f"wrote {target}")
+    elif not target.is_file() or target.read_text(encoding="utf-8") != text:
+        typer.echo(f"{target} is out of date; irsim schema writes it again", err=True)
+        raise typer.Exit(FAILED)
+    else:
+        typer.echo(f"{target} is up to date")
+
+
+def _connect(scenario: Path) -> None:
+    """Put the editor line on top of a scenario file."""
+    from irsim.errors import ScenarioError
+    from irsim.files import write_atomically
+    from irsim.modeline import schema_reference, with_modeline
+    from irsim.scenario.load import load_path
+    from irsim.scenario.locate import locate
+
+    document = load_path(locate(scenario))
+    if document.text is None:
+        raise ScenarioError(document.problems)
+    target = Path(str(document.path))
+    with target.open(encoding="utf-8", newline="") as file:
+        before = file.read()
+    after = with_modeline(before, target)
+    if after != before:
+        write_atomically(target, after)
+    typer.echo(f"{target}: editors find the schema at {schema_reference(target)}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.guard import INVALID
-from irsim.cli.options import Imports, Json, MaxObjects
+from irsim.cli.options import Imports, MaxObjects
 
 if TYPE_CHECKING:
     from irsim.results import ValidationReport

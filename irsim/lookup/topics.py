@@ -87,8 +87,8 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
     names = components(schema, node)
     registry, feature_name = _registry_of(path)
     if len(names) > 1 and registry is not None and not feature_name:
-        groups = {f"{registry.kind}, one of": [_component_line(registry, path, name) for name in names]}
-        example = f"{path[-1]}: {{name: {next(iter(names))}}}"
+        groups = {f"{registry.kind}, one of": [_component_line(registry, name) for name in names]}
+        example: str | None = f"{path[-1]}: {{name: {next(iter(names))}}}"
     else:
         groups = {}
         for option in mappings(schema, node):
@@ -129,7 +129,7 @@ def _registry_of(path: tuple[str, ...]) -> tuple[Registry | None, str | None]:
     return None, None
 
 
-def _component_line(registry: Registry, path: tuple[str, ...], name: str) -> Key:
+def _component_line(registry: Registry, name: str) -> Key:
     feature = registry.get(name)
     doc = " ".join((feature.options.__doc__ or "").split()) if feature is not None else ""
     later = "" if feature is None or feature.simulated else " (not simulated yet)"

@@ -104,7 +104,7 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
     default = node.get("default")
     allowed = [str(value) for option in options for value in _values(option)]
     ranges = [text for option in options if (text := _range(option))]
-    texts = [text for option in [node, *options] if (text := option.get("description"))]
+    texts = [str(option["description"]) for option in [node, *options] if option.get("description")]
     return Key(
         name=name,
         type=_type(root, options),
@@ -148,7 +148,7 @@ def _type(root: Node, options: list[Node]) -> str:
         elif kind in _PLAIN:
             words.append(_PLAIN[kind])
         elif isinstance(kind, list):
-            words += [_PLAIN.get(each, each) for each in kind]
+            words += [_PLAIN.get(str(each), str(each)) for each in kind]
     text = " or ".join(dict.fromkeys(words)) or "anything"
     return text + ("; also a list, one per object" if per_object else "")
 

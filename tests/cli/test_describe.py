@@ -1,0 +1,107 @@
+"""``irsim describe``: whatever one may ask for is found, and near misses are helped."""
+
+from __future__ import annotations
+
+import pytest
+
+from irsim import templates
+from irsim.codes import CODES
+from irsim.lookup import lookup
+from irsim.registry import REGISTRIES
+from tests.cli.conftest import Run, parsed
+
+
+def test_without_a_topic_it_lists_what_there_is(irsim: Run) -> None:
+    shown = irsim("describe").stdout
+    for word in ("world", "robot", "obstacle", "behavior", "sensor", "kinematics", *templates.names()):
+        assert word in shown
+    assert len(shown.splitlines()) <= 60
+
+
+def test_a_path_gives_type_unit_default_and_meaning(irsim: Run) -> None:
+    shown = irsim("describe", "robot.sensors.lidar2d.range_max").stdout
+    assert "robot.sensors.lidar2d.range_max" in shown
+    assert "a number [m]" in shown
+    assert "default 10" in shown
+    about = lookup("robot.sensors.lidar2d.range_max").about
+    assert about is not None
+    assert about.text
+
+
+@pytest.mark.parametrize(
+    "topic",
+    ["robot[0].vel_max", "obstacle.shape.circle.radius", "world.plot.viewpoint", "gui.keyboard", "world", "robot"],
+)
+def test_paths_of_all_kinds(irsim: Run, topic: str) -> None:
+    result = irsim("describe", topic)
+    assert result.exit_code == 0
+    assert lookup(topic).kind == "key"
+
+
+@pytest.mark.parametrize("topic", ["behavior dash", "behavior.dash", "robot.behavior.dash", "dash", "behaviors dash"])
+def test_a_component_by_any_of_its_names(irsim: Run, topic: str) -> None:
+    shown = irsim("describe", *topic.split()).stdout
+    assert shown.startswith("behavior dash")
+    assert "angle_tolerance" in shown
+    assert "[rad]" in shown
+    assert "behavior: {name: dash" in shown
+
+
+@pytest.mark.parametrize("kind", sorted(REGISTRIES))
+def test_every_component_is_described(kind: str) -> None:
+    for name in REGISTRIES[kind].names():
+        answer = lookup(f"{kind} {name}")
+        assert answer.kind == "component", name
+        assert answer.text, name
+        for keys in answer.groups.values():
+            assert all(key.text for key in keys), [key.name for key in keys if not key.text]
+
+
+@pytest.mark.parametrize("topic", ["sensor", "sensors", "robot.sensors", "shapes", "behavior", "kinematics", "map"])
+def test_a_kind_lists_its_components(topic: str) -> None:
+    (listed,) = lookup(topic).groups.values()
+    assert len(listed) >= 2
+
+
+def test_codes_are_explained(irsim: Run) -> None:
+    shown = irsim("describe", "unknown-key").stdout
+    assert CODES["unknown-key"].explanation.split(".")[0] in " ".join(shown.split())
+    assert set(CODES) == {key.name for keys in lookup("codes").groups.values() for key in keys}
+
+
+def test_templates_show_their_parameters(irsim: Run) -> None:
+    shown = irsim("describe", "corridor-passing").stdout
+    assert "width" in shown
+    assert "from 1.2 to 4 m" in shown
+    assert "irsim new corridor-passing --set width=1.6" in shown
+
+
+def test_a_key_alone_is_found_wherever_it_is() -> None:
+    assert lookup("vel_max").topic in ("robot.vel_max", "obstacle.vel_max")
+    several = lookup("radius")
+    assert several.kind == "search"
+    assert "robot.shape.circle.radius" in {key.name for keys in several.groups.values() for key in keys}
+
+
+def test_other_words_are_searched_for(irsim: Run) -> None:
+    assert "corridor-passing" in irsim("describe", "hallway").stdout
+
+
+@pytest.mark.parametrize(
+    ("topic", "near"),
+    [
+        ("robot.sensors.lidar2d.range_maks", "robot.sensors.lidar2d.range_max"),
+        ("behavior dahs", "behavior.dash"),
+        ("wrld.widht", "world.width"),
+        ("unknwon-kye", "unknown-key"),
+    ],
+)
+def test_a_miss_names_what_is_near(irsim: Run, topic: str, near: str) -> None:
+    result = irsim("describe", *topic.split())
+    assert result.exit_code == 2
+    assert "unknown-topic" in result.stderr
+    assert near in result.stderr
+
+
+def test_json(irsim: Run) -> None:
+    assert parsed(irsim("describe", "dash", "--json")) == lookup("dash").model_dump(mode="json")
