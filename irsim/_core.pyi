@@ -209,8 +209,9 @@ class State:
         """Re-evaluate geometry, collisions, arrival-free status and sensors after poses were written from outside."""
     def done(self, world: int) -> bool:
         """Whether every robot of the world has arrived or stopped; False without robots."""
-    def events(self, world: int) -> list[tuple[str, int, int, int, float, float]]:
-        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision"; since the last reset."""
+    def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
+        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision"; since the last reset,
+        the first `start` left out."""
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
     def goals(self, row: int) -> list[list[float]]: ...

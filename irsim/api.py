@@ -249,7 +249,7 @@ def _horizon(
 def _advance(env: Env, steps: int, progress: Progress | None, *, until_done: bool = True) -> None:
     done = 0
     while done < steps and not (until_done and env.done()):
-        done += max(1, env.simulation.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done))
+        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done))
         if progress is not None:
             progress(done, steps)
 

@@ -14,7 +14,7 @@ from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_access import EnvAccess
 from irsim.env_drawing import EnvDrawing
 from irsim.errors import NotSimulatedError
-from irsim.log import Logger
+from irsim.log import LEVELS, Logger
 from irsim.observers.events import Event, read_events
 from irsim.observers.outcome import Outcome, outcome_of
 from irsim.observers.trace import Rollout, record_rollout
@@ -114,7 +114,7 @@ class Env(EnvAccess, EnvDrawing):
         self.env_param = EnvParam(self._objects, self.logger)
         self.path_param = PathParam()
         self._external = self.step_mode == "external"
-        self._events_seen = 0
+        self._events_seen = self._events_told = 0
         self._label: str | None = self.scenario.world.status
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self.pause_flag = self.quit_flag = self.debug_flag = False
@@ -151,8 +151,11 @@ class Env(EnvAccess, EnvDrawing):
                     simulation.command[view.row, : len(control)] = control
                     simulation.given[view.row] = 1
             simulation.step()
+        self._after_step()
+
+    def _after_step(self) -> None:
         self._label = None
-        if simulation.state.event_count != self._events_seen:
+        if self._simulation.state.event_count != self._events_seen:
             self._log_collisions()
 
     def _held(self) -> bool:
@@ -183,10 +186,20 @@ class Env(EnvAccess, EnvDrawing):
         if self._ended:
             raise RuntimeError("the environment has ended: make a new one to go on")
         result = record_rollout(self._simulation, steps, until_done=until_done)
-        self._label = None
-        if self._simulation.state.event_count != self._events_seen:
-            self._log_collisions()
+        self._after_step()
         return result
+
+    def advance(self, steps: int, *, until_done: bool = True) -> int:
+        """Like :meth:`rollout`, keeping nothing.
+
+        Returns:
+            Periods executed.
+        """
+        if self._external or self._ended:
+            raise RuntimeError("advance needs an environment in step_mode 'internal' that has not ended")
+        done = self._simulation.advance(steps, until_done=until_done)
+        self._after_step()
+        return done
 
     def done(self, mode: str = "all") -> bool | None:
         """Whether the robots are through: arrived, or stopped by a collision.
@@ -214,7 +227,7 @@ class Env(EnvAccess, EnvDrawing):
         self._simulation.reset(next_scene=random)
         self.pause_flag = self.debug_flag = self.reset_flag = False
         self.debug_count = 0
-        self._events_seen = 0
+        self._events_told = 0
         self._label = "Reset"
         self._redraw()
         self._log_collisions()
@@ -316,8 +329,11 @@ class Env(EnvAccess, EnvDrawing):
         return self._rng[1]
 
     def _log_collisions(self) -> None:
-        events = read_events(self._simulation, start=self._events_seen)
-        self._events_seen += len(events)
+        self._events_seen = self._simulation.state.event_count
+        if self.logger.level > LEVELS["WARNING"]:
+            return
+        events = read_events(self._simulation, start=self._events_told)
+        self._events_told += len(events)
         for event in events:
             if event.kind != "collision":
                 continue

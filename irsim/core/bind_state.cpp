@@ -66,10 +66,12 @@ std::tuple<double, double> velocity_of(const BoundState& self, int row) {
   return {v.x, v.y};
 }
 
-nb::object events(const BoundState& self, int w) {
+nb::object events(const BoundState& self, int w, std::size_t start) {
   self.check_world(w);
   nb::list out;
-  for (const Event& e : self.state.scenes[w].events) {
+  const std::vector<Event>& all = self.state.scenes[w].events;
+  for (std::size_t k = start; k < all.size(); ++k) {
+    const Event& e = all[k];
     out.append(nb::make_tuple(kEventNames[static_cast<int>(e.kind)], e.step, e.object, e.partner, e.x, e.y));
   }
   return out;
@@ -238,7 +240,7 @@ void bind_state(nb::module_& m) {
             return done(*self.world, self.state, w);
           },
           nb::arg("world"))
-      .def("events", &events, nb::arg("world"))
+      .def("events", &events, nb::arg("world"), nb::arg("start") = 0)
       .def("collision_pairs", &collision_pairs, nb::arg("world"))
       .def("goals", &goals_of, nb::arg("row"))
       .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))

@@ -46,7 +46,7 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
     step_time = simulation.scenario.world.step_time
     return [
         Event(kind, step * step_time, step, records[a].name, records[b].name if b >= 0 else None, x, y)  # type: ignore[arg-type]
-        for kind, step, a, b, x, y in simulation.state.events(world)[start:]
+        for kind, step, a, b, x, y in simulation.state.events(world, start)
     ]
 
 
