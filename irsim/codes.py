@@ -16,13 +16,221 @@ class Code(NamedTuple):
 
 CODES: dict[str, Code] = {
     # the file
-    "file-not-found": Code("scenario file not found", "No file of that name in the places searched; the message lists them."),
-    "not-a-file": Code("not a regular file", "The path names a directory, a device or something else that holds no text."),
-    "not-text": Code("not a text file", "The file holds bytes that are not UTF-8 text."),
-    # names
-    "unknown-key": Code("unknown key", "The key is not part of the language at this place."),
-    "unknown-behavior": Code("unknown behavior", "No behavior of that name is registered."),
+    "file-not-found": Code(
+        "scenario file not found",
+        "No file of that name in the places searched: as given, below sys.path[0], below the current directory, beside "
+        "the running script. The message lists them and files with similar names.",
+    ),
+    "not-a-file": Code(
+        "not a regular file", "The path names a directory, a device or a pipe. Name the YAML file itself."
+    ),
+    "unreadable": Code("file cannot be read", "The system refuses to read the file: check permissions and the path."),
+    "not-text": Code("not a text file", "The file holds bytes that are not UTF-8 text. Save the scenario as UTF-8."),
+    "file-too-large": Code(
+        "file too large",
+        "Scenarios are limited to 16 MiB (servers may allow less). Groups of objects are written with 'number' and "
+        "'distribution' instead of one entry each.",
+    ),
+    # YAML
+    "yaml-syntax": Code(
+        "not valid YAML",
+        "The text does not follow YAML's grammar at this place; the cause is often a line earlier: a missing ':', an "
+        "unclosed bracket or quote, a tab, or uneven indentation.",
+    ),
+    "empty-document": Code("nothing in the file", "The file holds only blanks or comments. A scenario is a mapping."),
+    "multiple-documents": Code(
+        "more than one YAML document", "A line '---' starts a second document. One file holds one scenario."
+    ),
+    "not-a-scenario": Code(
+        "not a scenario",
+        "The file is valid YAML, but a list or a single value. A scenario is a mapping with the keys world, robot, "
+        "obstacle, gui, custom.",
+    ),
+    "duplicate-key": Code(
+        "key given twice", "A mapping has the same key twice. YAML keeps the last value; keep one of them."
+    ),
+    "bad-key": Code("not usable as a key", "Keys are words. Lists and mappings cannot be keys; '<<' merges mappings."),
+    "unsupported-tag": Code(
+        "YAML tag not supported",
+        "Tags such as !!python/object construct program objects. A scenario is plain data: remove the tag.",
+    ),
+    "recursive-alias": Code(
+        "alias inside its own anchor", "The value would contain itself without end. Write it out instead."
+    ),
+    "alias-expansion": Code(
+        "aliases expand to too much",
+        "Aliases (*name) and merge keys (<<) repeat so much that the scenario would not fit into memory.",
+    ),
+    "too-many-events": Code("too many values", "The file holds more values and brackets than are read (2 million)."),
+    "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
+    "yaml-number-text": Code(
+        "number that YAML 1.1 reads as text",
+        "In YAML 1.1 a float has a point, and its exponent a sign: 1e3 is text, 1.0e+3 and 1000 are numbers.",
+    ),
+    "yaml-boolean": Code(
+        "word that YAML 1.1 reads as a boolean",
+        "yes, no, on, off, true and false are booleans unless quoted. Quote the word to keep it as text.",
+    ),
+    "yaml-sexagesimal": Code(
+        "number in base 60",
+        "YAML 1.1 reads 12:30:45 as 45045, counting in sixties. Quote it for text, or write the number.",
+    ),
+    "yaml-octal": Code(
+        "octal number", "YAML 1.1 reads a number that starts with 0, such as 010, in base 8. Drop the leading zero."
+    ),
+    # keys and values
+    "unknown-key": Code(
+        "unknown key",
+        "The key is not part of the language at this place; 'allowed' lists those that are. IR-SIM 2.12 ignores most "
+        "of them: irsim.make and irsim run do so too and warn, everything strict refuses.",
+    ),
+    "missing-key": Code("key missing", "This mapping needs the key; there is no default for it."),
+    "conflicting-keys": Code("keys exclude each other", "Two keys say the same thing in different ways. Keep one."),
+    "ignored-key": Code("key without effect", "Another key of the same entry makes this one meaningless."),
+    "wrong-type": Code(
+        "value of the wrong kind",
+        "The key takes another kind of value, such as a number instead of text; 'allowed' says which.",
+    ),
+    "wrong-length": Code(
+        "wrong number of elements",
+        "A vector has too few or too many numbers. Poses are [x, y] or [x, y, theta]; vel_min, vel_max, acce and "
+        "velocity have one number per control component of the kinematics.",
+    ),
+    "scalar-list": Code(
+        "list where one number belongs",
+        "A list of plain numbers is one vector for all objects, so keys that take a single number cannot be given per "
+        "object (mass, friction, inertia and restitution can). Write one entry per value. In 'state' and 'goal' it "
+        "means one level of brackets too many.",
+    ),
+    "not-a-mapping": Code(
+        "mapping expected", "Features are mappings with a name: 'kinematics: {name: diff}', not 'kinematics: diff'."
+    ),
+    "unknown-value": Code("unknown word", "The key takes one of a fixed set of words; 'allowed' lists them."),
+    "invalid-value": Code("invalid value", "The value does not fit; the message says why."),
+    "out-of-range": Code("number out of range", "The number is outside the bounds of this key; 'allowed' has them."),
+    "range-order": Code(
+        "bounds in the wrong order", "The lower bound of a range must not be greater than the upper one."
+    ),
+    "infinite-number": Code("infinity not allowed", "Only acce, mass and inertia may be infinite (.inf)."),
+    "not-a-number": Code("NaN not allowed", "Not-a-number has no meaning in a scenario. Give a number."),
+    "angle-over-full-turn": Code(
+        "angle larger than a full turn",
+        "Opening angles go from 0 to 2π = 6.28318 radians. A value such as 90, 180 or 360 is probably in degrees.",
+    ),
+    "unknown-color": Code(
+        "unknown color",
+        "Colors are names ('red', 'tab:blue', 'xkcd:sky blue'), '#RRGGBB', a grey level as text ('0.5'), or [r, g, b] "
+        "with numbers from 0 to 1.",
+    ),
+    # names of features
+    "unknown-behavior": Code(
+        "unknown behavior",
+        "No behavior of that name is built in or registered for the object's kinematics. User code registers its own "
+        "with irsim.register_behavior before the scenario is read, or with --import MODULE on the command line.",
+    ),
+    "behavior-for-other-drive": Code(
+        "behavior registered for other kinematics",
+        "User code registered this behavior, but not for the kinematics of this object. Register it for these too.",
+    ),
+    "not-a-group-behavior": Code(
+        "not a group behavior", "This behavior decides for each object alone: write it under 'behavior'."
+    ),
+    "unknown-kinematics": Code("unknown kinematics", "No drive of that name is built in or registered."),
+    "unknown-shape": Code("unknown shape", "No shape of that name is built in or registered."),
+    "unknown-sensor": Code("unknown sensor", "No sensor of that name is built in or registered."),
+    "unknown-distribution": Code("unknown distribution", "No distribution of that name is built in or registered."),
+    "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered."),
+    "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered."),
+    "unknown-object": Code("unknown object", "No object of the scenario has that name."),
+    # objects
+    "duplicate-name": Code(
+        "name used twice",
+        "Names are unique. With 'number' give a list of names, one per object (the last one is repeated), or none.",
+    ),
+    "role-mismatch": Code("role does not fit the section", "Robots stand under 'robot', obstacles under 'obstacle'."),
+    "too-many-objects": Code(
+        "too many objects",
+        "A scenario may have 100,000 objects (servers may allow less); the limit can be raised where it is read.",
+    ),
+    "limits-order": Code("lower limit above upper limit", "vel_min must not exceed vel_max in any component."),
+    "angle-range": Code(
+        "heading interval is not one turn wide", "angle_range is [low, low + 2π], by default [-π, π]."
+    ),
+    "invalid-polygon": Code(
+        "polygon crosses itself",
+        "The corners must go around the polygon once. irsim.make uses the area the outline encloses and warns.",
+    ),
+    "too-few-vertices": Code("too few vertices", "A polygon has 3 corners or more, a linestring 2 points or more."),
+    "goal-levels": Code(
+        "list of goals is one goal per object",
+        "'goal: [[1, 1], [5, 5]]' gives object 0 the first goal and object 1 the second. Waypoints are written "
+        "'waypoints: [[1, 1], [5, 5]]', or with three levels of brackets under 'goal'.",
+    ),
+    "state-truncated": Code(
+        "state has more numbers than rows", "The surplus numbers are dropped: three rows, four for acker."
+    ),
+    "default-state": Code(
+        "vertices are shifted by the default state",
+        "Vertices are in the body frame. An object without 'state' stands at [1, 1, 0]; write 'state: [0, 0, 0]' for "
+        "vertices in world coordinates.",
+    ),
+    "default-shape": Code(
+        "no shape given", "The default is a circle of radius 1 m, while {name: circle} has radius 0.2 m."
+    ),
+    "default-vertices": Code("polygon without vertices", "The default is a square of 2 m around the position."),
+    "stacked": Code(
+        "objects start at the same place",
+        "Without a distribution all objects of an entry share its 'state'. Give a list of states, or a distribution.",
+    ),
+    "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
+    "outside-world": Code("start or goal outside the world", "Nothing stops objects at the edge; check the numbers."),
+    "behavior-without-kinematics": Code(
+        "behavior without kinematics", "What has no kinematics never moves by itself, so its behavior has no effect."
+    ),
+    "no-behavior": Code(
+        "robot without behavior", "It stands still unless the program passes actions to step() or uses the keyboard."
+    ),
+    "wander-and-loop": Code("wander and loop together", "wander draws new goals, so loop never applies."),
+    "wander-outside": Code(
+        "random goals outside the world", "Without range_low and range_high, goals lie within the world."
+    ),
+    "rvo-acce": Code(
+        "rvo's acce is not per second",
+        "The object's 'acce' is in m/s². The one of rvo is the change of velocity considered in one step, in m/s.",
+    ),
+    "vel-min-default": Code(
+        "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."
+    ),
+    "wheelbase-default": Code("no wheelbase given", "Ackermann steering without a wheelbase uses 1 m."),
+    "omni-noise": Code(
+        "noise at standstill", "The noise of omni drives does not depend on speed, so a resting robot trembles."
+    ),
+    "group-drives-obstacle": Code(
+        "group behavior drives an obstacle",
+        "A single 'obstacle:' mapping is in group 0, like the first robots, and follows their group behavior. Write "
+        "it as a list, or give it its own 'group'.",
+    ),
+    "group-behavior-unused": Code(
+        "group behavior without effect", "The first member of a group (lowest id) decides about its group behavior."
+    ),
+    "fov-radius-ignored": Code("fov_radius without fov", "The radius counts only together with 'fov'."),
+    "fov-without-radius": Code("fov without fov_radius", "A field of view needs a reach: add 'fov_radius' or a lidar."),
+    "contact-without-mode": Code(
+        "contact sensor without contacts", "Contact forces exist in 'collision_mode: contact' only."
+    ),
+    "sample-time": Code(
+        "sample_time is not a multiple of step_time", "Frames are drawn every int(sample_time / step_time) steps."
+    ),
+    "time-limit": Code("time limit below one step", "The run would end before its first step."),
     # engine
-    "not-yet-simulated": Code("valid, but not simulated yet", "The language knows the feature; this version's engine does not run it."),
-    "placement-crowded": Code("random placement found no room", "No free pose was found within the attempts."),
+    "not-yet-simulated": Code(
+        "valid, but not simulated yet",
+        "The language knows the feature; this version's engine does not run it, and says so instead of leaving it out.",
+    ),
+    "placement-crowded": Code(
+        "random placement found no room",
+        "No free pose was found within the attempts. Fewer or smaller objects, a larger range, or a smaller "
+        "min_distance make room.",
+    ),
+    "too-many-problems": Code("more problems than are shown", "Mend the first ones and validate again."),
 }

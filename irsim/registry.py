@@ -16,6 +16,8 @@ from pydantic import BaseModel
 
 __all__ = [
     "BEHAVIORS",
+    "CUSTOM_BEHAVIORS",
+    "CUSTOM_GROUP_BEHAVIORS",
     "DISTRIBUTIONS",
     "KINEMATICS",
     "MAPS",
@@ -23,6 +25,7 @@ __all__ = [
     "REGISTRIES",
     "SENSORS",
     "SHAPES",
+    "CustomBehaviors",
     "Feature",
     "Registry",
 ]
@@ -67,9 +70,14 @@ class Registry:
         self._plugins: dict[str, Any] | None = None
 
     def register(
-        self, options: type[BaseModel], *, kernel: type[Any] | None = None, function: Callable[..., Any] | None = None
+        self,
+        options: type[BaseModel],
+        *,
+        name: str | None = None,
+        kernel: type[Any] | None = None,
+        function: Callable[..., Any] | None = None,
     ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-        """Register an options model under the default of its ``name`` field.
+        """Register an options model under ``name``, by default the default of its ``name`` field.
 
         With neither ``kernel`` nor ``function`` the feature is part of the language but not simulated; the returned
         decorator then adds the Python function that computes it.
@@ -77,7 +85,7 @@ class Registry:
         Raises:
             ValueError: The name is taken by another model.
         """
-        name = str(options.model_fields["name"].default)
+        name = str(options.model_fields["name"].default) if name is None else name
         known = self._features.get(name)
         if known is not None and known.options is not options:
             raise ValueError(f"{self.kind} {name!r} is already registered by {known.options.__module__}")
@@ -127,6 +135,44 @@ class Registry:
         return self._plugins
 
 
+class CustomBehaviors:
+    """Behaviors that user code registered the 2.12 way: one function or class per kinematics and name.
+
+    Args:
+        kind: Singular word for messages: ``behavior``.
+        built_in: The registry whose names are taken.
+    """
+
+    def __init__(self, kind: str, built_in: Registry) -> None:
+        self.kind, self.built_in = kind, built_in
+        self._functions: dict[tuple[str, str], Any] = {}
+
+    def register(self, kinematics: str, name: str, function: Any) -> None:
+        """Make ``function`` the behavior ``name`` of objects with these kinematics.
+
+        Raises:
+            ValueError: There is one of that name, built-in or registered before.
+        """
+        key = (kinematics, name)
+        if self._functions.get(key, function) is not function:
+            raise ValueError(f"{self.kind} {name!r} is already registered for {kinematics!r}")
+        if name in self.built_in.names():
+            raise ValueError(f"{name!r} is a built-in {self.built_in.kind}; register yours under another name")
+        self._functions[key] = function
+
+    def find(self, kinematics: str | None, name: str) -> Any | None:
+        """What is registered for this kinematics and name, or None."""
+        return self._functions.get((kinematics or "static", name))
+
+    def names(self, kinematics: str | None = None) -> list[str]:
+        """Names registered for these kinematics, sorted; for any kinematics without an argument."""
+        return sorted({name for drive, name in self._functions if kinematics in (None, drive)})
+
+    def drives(self, name: str) -> list[str]:
+        """Kinematics that have a behavior of that name, sorted."""
+        return sorted(drive for drive, known in self._functions if known == name)
+
+
 BEHAVIORS = Registry("behavior", "irsim.behaviors", "irsim.behaviors")
 DISTRIBUTIONS = Registry("distribution", "irsim.distributions", "irsim.distributions")
 KINEMATICS = Registry("kinematics", "irsim.kinematics", "irsim.kinematics")
@@ -134,6 +180,9 @@ MAPS = Registry("map", "irsim.maps", "irsim.maps")
 PLANNERS = Registry("planner", "irsim.planners", "irsim.planners")
 SENSORS = Registry("sensor", "irsim.sensors", "irsim.sensors")
 SHAPES = Registry("shape", "irsim.shapes", "irsim.shapes")
+
+CUSTOM_BEHAVIORS = CustomBehaviors("behavior", BEHAVIORS)
+CUSTOM_GROUP_BEHAVIORS = CustomBehaviors("group behavior", BEHAVIORS)
 
 REGISTRIES = {
     registry.kind: registry

@@ -1,0 +1,88 @@
+"""The base of every model of the scenario language, and the documentation of its fields."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from functools import lru_cache
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError
+
+__all__ = ["Options", "field_docs", "problem"]
+
+
+class Options(BaseModel):
+    """Keys of one mapping of a scenario.
+
+    Every field is documented by the string below it. These strings are read from the source when someone asks
+    (:func:`field_docs`, the JSON Schema), not when the class is made: a run needs none of them.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, protected_namespaces=())
+
+    schema_extra: ClassVar[dict[str, Any]] = {}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        produced = handler(schema)
+        target = handler.resolve_ref_schema(produced)
+        docs = field_docs(cls)
+        for name, value in target.get("properties", {}).items():
+            value.pop("title", None)
+            if docs.get(name) and "description" not in value:
+                value["description"] = docs[name]
+        if cls.__doc__:
+            target["description"] = inspect.cleandoc(cls.__doc__)
+        target.update(cls.schema_extra)
+        return produced
+
+
+def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
+    """A validation error that becomes a diagnostic of that code.
+
+    Args:
+        code: From :data:`irsim.codes.CODES`.
+        message: One sentence.
+        **details: ``allowed``, ``fix``, ``replace`` (a better value) or ``tolerated`` of the diagnostic.
+    """
+    # the type parameter of PydanticCustomError wants literals; the list of codes is open to features
+    return PydanticCustomError(code, "{message}", {"message": message, **details})  # type: ignore[arg-type]
+
+
+@lru_cache(maxsize=None)
+def field_docs(model: type[BaseModel]) -> dict[str, str]:
+    """The documentation of each field of ``model``, its own and inherited; missing ones are left out."""
+    docs: dict[str, str] = {}
+    for cls in reversed(model.__mro__):
+        if not (issubclass(cls, BaseModel) and cls.__dict__.get("__annotations__")):
+            continue
+        for name, text in _own_docs(cls).items():
+            if name in model.model_fields:
+                docs[name] = text
+    for name, info in model.model_fields.items():
+        if info.description:
+            docs[name] = info.description
+    return docs
+
+
+def _own_docs(cls: type) -> dict[str, str]:
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(cls)))
+    except (OSError, TypeError, SyntaxError):  # made at run time or shipped without source
+        return {}
+    body = getattr(tree.body[0], "body", [])
+    found: dict[str, str] = {}
+    for statement, following in zip(body, body[1:], strict=False):
+        if (
+            isinstance(statement, ast.AnnAssign)
+            and isinstance(statement.target, ast.Name)
+            and isinstance(following, ast.Expr)
+            and isinstance(following.value, ast.Constant)
+            and isinstance(following.value.value, str)
+        ):
+            found[statement.target.id] = inspect.cleandoc(following.value.value)
+    return found

@@ -1,0 +1,36 @@
+"""``follow``: plan a path on the map, follow it with a local behavior."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from irsim.behaviors._options import BehaviorOptions
+from irsim.registry import BEHAVIORS, PLANNERS
+from irsim.selection import Select
+from irsim.units import Meters, Seconds
+
+
+def _named(value: Any) -> Any:
+    """A name alone stands for a mapping with that name."""
+    return {"name": value} if isinstance(value, str) else value
+
+
+class Follow(BehaviorOptions):
+    """Get there through the maze: plan on the map inflated by the footprint, then follow the path."""
+
+    name: Literal["follow"] = "follow"
+    planner: Annotated[Any, Select(PLANNERS), BeforeValidator(_named), Field(validate_default=True)] = "astar"
+    """Path planner: its name, or a mapping with its name and options."""
+    local: Annotated[
+        Any, Select(BEHAVIORS, exclude=("follow",)), BeforeValidator(_named), Field(validate_default=True)
+    ] = "dash"
+    """Behavior that drives from one path point to the next: its name, or a mapping with its name and options."""
+    replan: Annotated[Seconds, Field(gt=0)] | None = None
+    """Plan anew after this time; null plans once per goal."""
+    lookahead: Annotated[Meters, Field(gt=0)] | None = None
+    """Distance along the path of the point headed for; null is the object's goal threshold beyond the next corner."""
+
+
+BEHAVIORS.register(Follow)

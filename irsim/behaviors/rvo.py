@@ -1,0 +1,32 @@
+"""``rvo``: reciprocal velocity obstacles."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim.behaviors._options import BehaviorOptions
+from irsim.registry import BEHAVIORS
+from irsim.units import Meters, MetersPerSecond, Number
+
+
+class Rvo(BehaviorOptions):
+    """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles."""
+
+    name: Literal["rvo"] = "rvo"
+    vxmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
+    """Largest speed along world x that is considered."""
+    vymax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
+    """Largest speed along world y that is considered."""
+    acce: Annotated[MetersPerSecond, Field(gt=0)] = 1.0
+    """Largest change of velocity in one step: half the width of the search window, not multiplied by the period."""
+    factor: Annotated[Number, Field(ge=0)] = 1.0
+    """Weight of the time to collision when no velocity is free."""
+    mode: Literal["rvo", "hrvo", "vo"] = "rvo"
+    """Whose share of the avoidance each side takes."""
+    neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
+    """Others farther away than this are ignored."""
+
+
+BEHAVIORS.register(Rvo)

@@ -1,0 +1,28 @@
+"""``random``: free places drawn anew for every scene."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim import _core as core
+from irsim.distributions._options import DistributionOptions
+from irsim.registry import DISTRIBUTIONS
+from irsim.units import Meters
+from irsim.vectors import Offset
+
+
+class RandomDistribution(DistributionOptions):
+    """Uniform draws of poses and then goals, clear of everything placed before; the entry's own are ignored."""
+
+    name: Literal["random"] = "random"
+    range_low: Offset | None = None
+    """Lower bounds [x, y, theta]; null is half a metre inside the world, heading -π."""
+    range_high: Offset | None = None
+    """Upper bounds [x, y, theta]; null is half a metre inside the world, heading π."""
+    min_distance: Annotated[Meters, Field(ge=0)] = 1.0
+    """Smallest distance between the positions of this entry's objects."""
+
+
+DISTRIBUTIONS.register(RandomDistribution, kernel=core.RandomPlacement)

@@ -1,0 +1,23 @@
+"""``diff``: differential drive."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim import _core as core
+from irsim.kinematics._options import KinematicsOptions
+from irsim.registry import KINEMATICS
+from irsim.units import Number
+
+
+class Diff(KinematicsOptions):
+    """Differential drive: controls are forward speed and yaw rate."""
+
+    name: Literal["diff"] = "diff"
+    alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=4, max_length=4)] = [0.03, 0.0, 0.0, 0.03]
+    """Noise variances: linear from v², linear from ω², angular from v², angular from ω²."""
+
+
+KINEMATICS.register(Diff, kernel=core.DiffOptions)

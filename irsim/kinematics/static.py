@@ -1,0 +1,24 @@
+"""``static``: no drive at all."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import Field
+
+from irsim.kinematics._options import KinematicsOptions
+from irsim.registry import KINEMATICS
+
+
+class Static(KinematicsOptions):
+    """The object never moves by itself, the same as no `kinematics` at all."""
+
+    name: Literal["static"] = "static"
+    alpha: list[float] = Field(default=[])
+    """Accepted and ignored: what does not move has no noise."""
+
+
+@KINEMATICS.register(Static)
+def stay(pose: Any, control: Any, dt: float) -> Any:
+    """The pose after one period: the same."""
+    return pose

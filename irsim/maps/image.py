@@ -1,0 +1,21 @@
+"""``image``: dark pixels are occupied."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim.maps._options import MapOptions
+from irsim.registry import MAPS
+
+
+class ImageMap(MapOptions):
+    """A grey-scale picture stretched over the world: black is occupied, white is free."""
+
+    name: Literal["image"] = "image"
+    path: Annotated[str, Field(strict=True, min_length=1)]
+    """Picture file: as written, beside the scenario, or one of the bundled maps."""
+
+
+MAPS.register(ImageMap)

@@ -1,0 +1,32 @@
+"""``perlin``: procedural noise."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim.maps._options import MapOptions
+from irsim.registry import MAPS
+from irsim.units import Fraction, Meters, Number
+
+
+class PerlinMap(MapOptions):
+    """Cave-like walls from gradient noise."""
+
+    name: Literal["perlin"] = "perlin"
+    resolution: Annotated[Meters, Field(gt=0)]
+    """Cell size."""
+    complexity: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "1/cell"})] = 0.142857
+    """Frequency of the noise: larger makes smaller rooms."""
+    fill: Fraction = 0.38
+    """Share of occupied cells."""
+    fractal: Annotated[int, Field(strict=True, ge=1, le=32)] = 1
+    """Octaves of finer and finer detail."""
+    attenuation: Annotated[Number, Field(gt=0)] = 0.5
+    """Amplitude of detail k is this divided by k + 1."""
+    seed: Annotated[int, Field(strict=True, ge=0)] | None = None
+    """Seed of the noise alone; null draws it from the environment's map stream."""
+
+
+MAPS.register(PerlinMap)

@@ -1,0 +1,17 @@
+"""``jps``: jump point search on a grid."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from irsim.planners._options import GridPlanner
+from irsim.registry import PLANNERS
+
+
+class Jps(GridPlanner):
+    """The paths of A*, found by jumping over cells that need no decision."""
+
+    name: Literal["jps"] = "jps"
+
+
+PLANNERS.register(Jps)

@@ -1,0 +1,26 @@
+"""``prm``: probabilistic road map."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from irsim.planners._options import PlannerOptions
+from irsim.registry import PLANNERS
+from irsim.units import Meters
+
+
+class Prm(PlannerOptions):
+    """Connect random free points to a graph, then take its shortest path."""
+
+    name: Literal["prm"] = "prm"
+    n_sample: Annotated[int, Field(strict=True, ge=1)] = 500
+    """How many free points are drawn."""
+    n_knn: Annotated[int, Field(strict=True, ge=1)] = 10
+    """Most edges per point."""
+    max_edge_len: Annotated[Meters, Field(gt=0)] = 30.0
+    """Longest edge."""
+
+
+PLANNERS.register(Prm)

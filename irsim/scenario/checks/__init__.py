@@ -1,0 +1,19 @@
+"""Checks of a valid scenario: what would not work, or work otherwise than its author expects. One file per family."""
+
+from __future__ import annotations
+
+from irsim.scenario.checks import behaviors, goals, groups, kinematics, names, placement, sensors, shapes, simulated, world
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding
+
+__all__ = ["KEY_CODES", "Context", "run_checks"]
+
+KEY_CODES = frozenset({"unknown-key", "duplicate-key"})
+"""Codes whose findings point at a key rather than at its value."""
+
+_FAMILIES = (world, names, kinematics, shapes, goals, placement, behaviors, groups, sensors, simulated)
+
+
+def run_checks(context: Context) -> list[Finding]:
+    """The findings of every family."""
+    return [finding for family in _FAMILIES for finding in family.check(context)]

@@ -1,0 +1,57 @@
+"""What a check sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from irsim.diagnostics import Path
+from irsim.scenario.load import Document
+from irsim.scenario.model import Entry, Scenario
+from irsim.scenario.objects import ObjectRecord, ResolvedScenario
+from irsim.scenario.spread import is_per_object, kind_of
+
+__all__ = ["Context"]
+
+
+@dataclass(frozen=True)
+class Context:
+    """A valid scenario in all its forms.
+
+    Attributes:
+        scenario: The models.
+        resolved: One record per object.
+        data: The data the models were made from.
+        document: The document as written.
+    """
+
+    scenario: Scenario
+    resolved: ResolvedScenario
+    data: Mapping[str, Any]
+    document: Document
+
+    def entries(self) -> Iterator[tuple[Path, Entry, list[ObjectRecord]]]:
+        """Every entry with its path and its objects."""
+        first = 0
+        for role in ("robot", "obstacle"):
+            for path, entry in self.scenario.entries(role):
+                yield path, entry, self.resolved.objects[first : first + entry.number]
+                first += entry.number
+
+    def entry_path(self, record: ObjectRecord, key: str) -> Path:
+        """Where an object's value of ``key`` is written: the key, or the element of its list that is the object's."""
+        value: Any = self.data
+        for part in record.path:
+            value = value[part]
+        value = value.get(key)
+        if is_per_object(value, kind_of(key)):
+            return (*record.path, key, min(record.index, len(value) - 1))
+        return (*record.path, key)
+
+    def given(self, record: ObjectRecord, key: str) -> bool:
+        """Whether the entry of an object writes ``key`` (null does not count)."""
+        value: Any = self.data
+        for part in record.path:
+            value = value[part]
+        return value.get(key) is not None

@@ -1,0 +1,87 @@
+"""Whether an outline is simple, without a geometry library; and its repair, with one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["crosses_itself", "repaired"]
+
+Corner = tuple[float, float]
+_SMALL_AREA = 1e-12
+
+
+def crosses_itself(corners: Sequence[Corner]) -> bool:
+    """Whether the closed outline crosses or touches itself, or encloses no area.
+
+    Args:
+        corners: At least 3, without the closing repetition.
+    """
+    n = len(corners)
+    area = sum(corners[i - 1][0] * corners[i][1] - corners[i][0] * corners[i - 1][1] for i in range(n)) / 2
+    if abs(area) < _SMALL_AREA:
+        return True
+    edges = [(corners[i], corners[(i + 1) % n]) for i in range(n)]
+    order = sorted(range(n), key=lambda i: min(edges[i][0][0], edges[i][1][0]))
+    active: list[int] = []
+    for i in order:  # sweep along x: only edges whose x ranges overlap are compared
+        left = min(edges[i][0][0], edges[i][1][0])
+        active = [j for j in active if max(edges[j][0][0], edges[j][1][0]) >= left]
+        for j in active:
+            first, second = min(i, j), max(i, j)
+            if second - first == 1 or (first == 0 and second == n - 1):
+                if _folds_back(edges[first], edges[second]):
+                    return True
+            elif _meet(*edges[i], *edges[j]):
+                return True
+        active.append(i)
+    return False
+
+
+def repaired(vertices: Sequence[Sequence[float]]) -> list[list[list[float]]] | None:
+    """The area an invalid outline encloses, as outlines of valid polygons; None if it encloses none."""
+    from shapely import MultiPolygon, Polygon, make_valid
+    from shapely.errors import GEOSException
+
+    try:
+        valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
+    except (GEOSException, ValueError):
+        return None
+    polygons = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
+    outlines = [
+        [[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]]
+        for polygon in sorted(polygons, key=lambda p: p.bounds)
+        if polygon.area > _SMALL_AREA
+    ]
+    return outlines or None
+
+
+def _side(a: Corner, b: Corner, p: Corner) -> float:
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+
+def _within(a: Corner, b: Corner, p: Corner) -> bool:
+    return min(a[0], b[0]) <= p[0] <= max(a[0], b[0]) and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+
+
+def _meet(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
+    """Whether the closed segments ab and cd have a point in common."""
+    if max(a[1], b[1]) < min(c[1], d[1]) or max(c[1], d[1]) < min(a[1], b[1]):
+        return False
+    abc, abd, cda, cdb = _side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b)
+    if ((abc > 0) != (abd > 0)) and ((cda > 0) != (cdb > 0)) and 0 not in (abc, abd, cda, cdb):
+        return True
+    return (
+        (abc == 0 and _within(a, b, c))
+        or (abd == 0 and _within(a, b, d))
+        or (cda == 0 and _within(c, d, a))
+        or (cdb == 0 and _within(c, d, b))
+    )
+
+
+def _folds_back(first: tuple[Corner, Corner], second: tuple[Corner, Corner]) -> bool:
+    """Whether two edges that share a corner run over each other."""
+    (a, b), (c, d) = first, second
+    shared, p, q = (b, a, d) if b == c else (a, b, c)
+    if _side(shared, p, q) != 0:
+        return False
+    return (p[0] - shared[0]) * (q[0] - shared[0]) + (p[1] - shared[1]) * (q[1] - shared[1]) > 0

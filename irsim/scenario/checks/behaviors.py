@@ -1,0 +1,134 @@
+"""Behaviors: known, able to act, and with parameters that mean what they seem to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.behaviors._options import CustomOptions
+from irsim.diagnostics import Edit, nearest
+from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, hint, warning
+from irsim.scenario.objects import ObjectRecord
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """One finding per entry and key, whatever the number of its objects."""
+    seen: set[tuple[Any, ...]] = set()
+    for record in context.resolved.objects:
+        for finding in _of_object(context, record):
+            key = (finding.diagnostic.code, finding.diagnostic.path)
+            if key not in seen:
+                seen.add(key)
+                yield finding
+
+
+def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    for key, table in (("behavior", CUSTOM_BEHAVIORS), ("group_behavior", CUSTOM_GROUP_BEHAVIORS)):
+        options = getattr(record, key)
+        if options is None:
+            continue
+        if isinstance(options, CustomOptions):
+            yield from _custom(context, record, key, table)
+        yield from _common(context, record, key, options)
+        if options.name == "rvo":
+            yield from _rvo(context, record, key, options)
+    if record.behavior is not None and record.kinematics is None:
+        yield warning(
+            "behavior-without-kinematics",
+            context.entry_path(record, "behavior"),
+            "an object without kinematics never moves, whatever its behavior",
+            fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
+        )
+    if record.role == "robot" and not record.static and record.behavior is None and record.group_behavior is None:
+        yield hint(
+            "no-behavior",
+            record.path,
+            "this robot has no behavior: it stands still unless the program gives it actions",
+            fix="add 'behavior: {name: dash}'",
+            edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
+        )
+
+
+def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehaviors) -> Iterator[Finding]:
+    options: Any = getattr(record, key)
+    drive = getattr(record.kinematics, "name", "static")
+    if table.find(drive, options.name) is not None or record.kinematics is None:
+        return
+    known = sorted({*_built_in(key), *table.names(drive)})
+    elsewhere = table.drives(options.name)
+    path = (*context.entry_path(record, key), "name")
+    if elsewhere:
+        yield error(
+            "behavior-for-other-drive",
+            path,
+            f"'{options.name}' is registered for {', '.join(elsewhere)}, not for {drive}",
+            given=options.name,
+            allowed=known,
+            fix=f"register it for '{drive}' too, or use the kinematics it is registered for",
+            tolerated=True,
+        )
+        return
+    near = nearest(options.name, known)
+    yield error(
+        "unknown-behavior",
+        path,
+        f"'{options.name}' is not a {'group ' if key == 'group_behavior' else ''}behavior",
+        given=options.name,
+        allowed=known,
+        fix=f"name: {near}" if near else "register it before the scenario is read (--import MODULE on the command line)",
+        edit=Edit("replace", path, near) if near else None,
+        tolerated=True,
+    )
+
+
+def _built_in(key: str) -> list[str]:
+    if key == "behavior":
+        return BEHAVIORS.names()
+    return [feature.name for feature in BEHAVIORS.features() if getattr(feature.options, "in_group", False)]
+
+
+def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+    path = context.entry_path(record, key)
+    if options.wander and options.loop:
+        yield warning(
+            "wander-and-loop",
+            (*path, "loop"),
+            "wander wins over loop",
+            fix="keep one of them",
+            edit=Edit("remove", (*path, "loop")),
+        )
+    if options.range_low is None and options.range_high is None:
+        return
+    low, high = record.range_low, record.range_high
+    written = "range_low" if options.range_low is not None else "range_high"
+    if any(a > b for a, b in zip(low, high, strict=True)):
+        yield error(
+            "range-order",
+            (*path, written),
+            f"a lower bound is above the upper bound: {low} and {high}",
+            given=getattr(options, written),
+            fix="range_low must not be greater than range_high",
+        )
+        return
+    x0, y0, x1, y1 = context.scenario.world.bounds
+    if options.wander and (low[0] < x0 or low[1] < y0 or high[0] > x1 or high[1] > y1):
+        yield hint(
+            "wander-outside",
+            (*path, written),
+            f"random goals may lie outside the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]",
+            fix="leave range_low and range_high out to use the world's own extent",
+        )
+
+
+def _rvo(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+    if "acce" in options.model_fields_set and options.acce >= max(options.vxmax, options.vymax):
+        rate = options.acce / context.scenario.world.step_time
+        yield hint(
+            "rvo-acce",
+            (*context.entry_path(record, key), "acce"),
+            f"'acce' of rvo is m/s per step, not m/s²: {options.acce:g} allows {rate:g} m/s² and so limits nothing",
+            given=options.acce,
+            fix=f"for {options.acce:g} m/s² write {options.acce * context.scenario.world.step_time:g}",
+        )

@@ -1,0 +1,106 @@
+"""States and goals: nesting, numbers that are dropped, starts and goals outside the world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.diagnostics import Edit, Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, hint, warning
+from irsim.scenario.model import Entry
+from irsim.scenario.objects import ObjectRecord
+from irsim.vectors import is_vector
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """By entry."""
+    for path, entry, records in context.entries():
+        yield from _levels(path, entry)
+        if entry.goal is not None and entry.waypoints is not None:
+            yield error(
+                "conflicting-keys",
+                (*path, "waypoints"),
+                "both 'goal' and 'waypoints' say where to go",
+                fix="keep one of them",
+            )
+        if entry.distribution is not None and entry.distribution.name != "manual":
+            yield from _ignored(path, entry)
+        elif records:
+            yield from _state(context, path, entry, records)
+        if records and entry.distribution is None:
+            yield from _outside(context, records)
+
+
+def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
+    goal: Any = entry.goal
+    if goal is None or is_vector(goal) or len(goal) <= max(entry.number, 1):
+        return
+    if not all(is_vector(item) for item in goal):
+        return
+    kept = "only the first is used" if entry.number == 1 else f"only the first {entry.number} are used"
+    yield warning(
+        "goal-levels",
+        (*path, "goal"),
+        f"a list of {len(goal)} goals is one goal per object: {kept}",
+        given=goal,
+        fix="write 'waypoints:' instead of 'goal:' to visit them one after the other",
+        edit=Edit("rename", (*path, "goal"), "waypoints"),
+    )
+
+
+def _ignored(path: Path, entry: Entry) -> Iterator[Finding]:
+    name = entry.distribution.name
+    keys = ["state"] if name == "circle" else ["state", "goal", "waypoints"]
+    for key in keys:
+        if getattr(entry, key) is not None:
+            yield warning(
+                "ignored-key",
+                (*path, key),
+                f"the distribution '{name}' places the objects: '{key}' has no effect",
+                fix=f"remove '{key}', or use the distribution 'manual'",
+                edit=Edit("remove", (*path, key)),
+            )
+
+
+def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+    if entry.state is None:
+        shape: Any = records[0].shape
+        if shape.name in ("polygon", "linestring") and shape.vertices is not None and not shape.random_shape:
+            yield warning(
+                "default-state",
+                (*path, "shape"),
+                "without 'state' the object stands at [1, 1, 0], which shifts its vertices by (1, 1)",
+                fix="add 'state: [0, 0, 0]' if the vertices are world coordinates",
+                edit=Edit("add", (*path, "state"), [0, 0, 0]),
+            )
+    elif records[0].role == "robot":
+        states: Any = [entry.state] if is_vector(entry.state) else entry.state
+        longest = max((len(state) for state in states[: entry.number] if state is not None), default=0)
+        if longest > records[0].state_dim:
+            yield hint(
+                "state-truncated",
+                (*path, "state"),
+                f"{longest} numbers; the state has {records[0].state_dim}, the rest is dropped",
+            )
+
+
+def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+    x0, y0, x1, y1 = context.scenario.world.bounds
+    what = [("state", "starts")] if records[0].role == "robot" else []
+    if any(not record.static for record in records) and records[0].role == "robot":
+        what.append(("goal", "has a goal"))
+    for key, words in what:
+        for record in records:
+            points = [record.state] if key == "state" else record.goals
+            lost = [p for p in points if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
+            if lost and (context.given(record, key) or key == "state" or record.behavior is not None):
+                written = "waypoints" if key == "goal" and context.given(record, "waypoints") else key
+                yield hint(
+                    "outside-world",
+                    context.entry_path(record, written),
+                    f"{words} at ({lost[0][0]:g}, {lost[0][1]:g}), outside the world "
+                    f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
+                    + ("" if context.given(record, written) else f" (the default {key})"),
+                )
+                break

@@ -1,0 +1,73 @@
+"""Groups: which behavior counts, and whom it drives."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.behaviors._options import CustomOptions
+from irsim.diagnostics import Edit
+from irsim.registry import BEHAVIORS
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, hint, warning
+from irsim.scenario.objects import ObjectRecord
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """By group."""
+    groups: dict[int, list[ObjectRecord]] = defaultdict(list)
+    for record in context.resolved.objects:
+        groups[record.group].append(record)
+    for group, members in groups.items():
+        yield from _not_for_groups(context, members)
+        leader = members[0]
+        if leader.group_behavior is None:
+            yield from _unused(context, group, members)
+        elif leader.role == "robot":
+            yield from _driven_obstacles(group, members)
+
+
+def _not_for_groups(context: Context, members: list[ObjectRecord]) -> Iterator[Finding]:
+    seen = set()
+    for record in members:
+        options: Any = record.group_behavior
+        if options is None or isinstance(options, CustomOptions) or options.in_group or record.path in seen:
+            continue
+        seen.add(record.path)
+        path = context.entry_path(record, "group_behavior")
+        able = [f.name for f in BEHAVIORS.features() if getattr(f.options, "in_group", False)]
+        yield error(
+            "not-a-group-behavior",
+            (*path, "name"),
+            f"'{options.name}' decides for one object, not for a group",
+            given=options.name,
+            allowed=able,
+            fix="write it under 'behavior'",
+            carry_on=Edit("remove", (*record.path, "group_behavior")),
+        )
+
+
+def _unused(context: Context, group: int, members: list[ObjectRecord]) -> Iterator[Finding]:
+    later = next((m for m in members if m.group_behavior is not None), None)
+    if later is not None:
+        yield hint(
+            "group-behavior-unused",
+            context.entry_path(later, "group_behavior"),
+            f"group {group} takes the group behavior of its first member, '{members[0].name}', which has none",
+        )
+
+
+def _driven_obstacles(group: int, members: list[ObjectRecord]) -> Iterator[Finding]:
+    seen = set()
+    for member in members:
+        if member.role == "obstacle" and not member.static and member.path not in seen:
+            seen.add(member.path)
+            name = getattr(members[0].group_behavior, "name", "")
+            yield warning(
+                "group-drives-obstacle",
+                member.path,
+                f"this obstacle is in group {group}, so the robots' group behavior '{name}' drives it too",
+                fix="write 'obstacle' as a list, or give it a 'group' of its own",
+                edit=Edit("add", (*member.path, "group"), group + 1),
+            )

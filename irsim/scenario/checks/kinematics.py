@@ -1,0 +1,116 @@
+"""Drives: limits, vectors of control, heading interval, parameters that surprise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.diagnostics import Edit
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, hint
+from irsim.scenario.objects import ObjectRecord
+
+_CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
+_ROUNDING = 1e-6
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """One finding per entry and key, whatever the number of its objects."""
+    seen: set[tuple[Any, ...]] = set()
+    for record in context.resolved.objects:
+        for finding in _of_object(context, record):
+            key = (finding.diagnostic.code, finding.diagnostic.path)
+            if key not in seen:
+                seen.add(key)
+                yield finding
+
+
+def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    wrong = [finding for key in _CONTROL_KEYS if (finding := _length(context, record, key)) is not None]
+    yield from wrong
+    if not wrong:
+        yield from _limits(context, record)
+    if context.given(record, "angle_range"):
+        yield from _angle_range(context, record)
+    if record.kinematics is None:
+        return
+    options: Any = record.kinematics
+    if options.name == "acker" and not record.wheelbase:
+        yield hint(
+            "wheelbase-default",
+            (*context.entry_path(record, "kinematics"), "name"),
+            "no wheelbase is given: it counts as 1 m",
+            fix="add 'wheelbase' to the shape or to the kinematics",
+        )
+    if options.name in ("omni", "omni_angular") and options.noise:
+        yield hint(
+            "omni-noise",
+            (*context.entry_path(record, "kinematics"), "noise"),
+            "this noise does not vanish at standstill: the object trembles even when commanded to rest",
+            fix="lower 'alpha', or leave noise out",
+        )
+
+
+def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
+    values: list[float] = getattr(record, key)
+    if len(values) == record.vel_dim:
+        return None
+    drive: Any = record.kinematics
+    rows = f" ({', '.join(drive.control_rows)})" if drive is not None and record.vel_dim == len(drive.control_rows) else ""
+    name = f"'{drive.name}'" if drive is not None else "an object without kinematics"
+    return error(
+        "wrong-length",
+        context.entry_path(record, key),
+        f"{len(values)} number{'s' if len(values) != 1 else ''}; {name} takes {record.vel_dim}{rows}",
+        given=values,
+        allowed=f"{record.vel_dim} numbers{rows}",
+    )
+
+
+def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    for i, (low, high) in enumerate(zip(record.vel_min, record.vel_max, strict=True)):
+        if low > high:
+            written = "vel_min" if context.given(record, "vel_min") else "vel_max"
+            other = "" if context.given(record, "vel_min") else ", which is the default"
+            yield error(
+                "limits-order",
+                context.entry_path(record, written),
+                f"component {i}: the lower limit {low:g}{other} is above the upper limit {high:g}",
+                given=getattr(record, written),
+                fix="vel_min must not be greater than vel_max, component by component",
+            )
+            return
+    if record.kinematics is None or context.given(record, "vel_min") or not context.given(record, "vel_max"):
+        return
+    if any(high > 1 for high in record.vel_max):
+        lower = [-value for value in record.vel_max]
+        yield hint(
+            "vel-min-default",
+            context.entry_path(record, "vel_max"),
+            "only the upper limits are raised: vel_min stays at -1 for each component",
+            given=record.vel_max,
+            fix=f"add 'vel_min: {[_short(v) for v in lower]}' if it should be as fast backwards and turning right",
+            edit=Edit("add", (*record.path, "vel_min"), lower),
+        )
+
+
+def _short(value: float) -> float | int:
+    return int(value) if value == int(value) else value
+
+
+def _angle_range(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    entry = context.scenario.entries(record.role)
+    given = next(item for path, item in entry if path == record.path).angle_range
+    values: Any = given[min(record.index, len(given) - 1)] if isinstance(given[0], list) else given
+    if abs(values[1] - values[0] - 2 * math.pi) > _ROUNDING:
+        path = context.entry_path(record, "angle_range")
+        yield error(
+            "angle-range",
+            path,
+            f"this interval is {values[1] - values[0]:.6g} rad wide; it must be one full turn",
+            given=values,
+            allowed="[low, low + 6.283185307]",
+            fix=f"[{values[0]:g}, {values[0] + 2 * math.pi:.9f}], or [-3.141592654, 3.141592654]",
+            edit=Edit("replace", path, [values[0], values[0] + 2 * math.pi]),
+        )

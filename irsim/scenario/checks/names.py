@@ -1,0 +1,44 @@
+"""Names: unique, and known where they are referred to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from irsim.diagnostics import Edit, nearest
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Duplicate names; a viewpoint that names no object."""
+    first: dict[str, int] = {}
+    reported: set[tuple[object, ...]] = set()
+    for record in context.resolved.objects:
+        other = first.setdefault(record.name, record.id)
+        if other == record.id:
+            continue
+        path = context.entry_path(record, "name")
+        if path in reported:
+            continue
+        reported.add(path)
+        yield error(
+            "duplicate-name",
+            path,
+            f"'{record.name}' is also the name of object {other}",
+            given=record.name,
+            fix="give every object its own name: a list with one per object, or no name",
+        )
+    viewpoint = context.scenario.world.plot.viewpoint
+    if isinstance(viewpoint, str) and viewpoint not in first:
+        near = nearest(viewpoint, first)
+        path = ("world", "plot", "viewpoint")
+        yield error(
+            "unknown-object",
+            path,
+            f"no object is called '{viewpoint}'",
+            given=viewpoint,
+            allowed=sorted(first)[:20],
+            fix=f"viewpoint: {near}" if near else None,
+            edit=Edit("replace", path, near) if near else None,
+            carry_on=Edit("remove", path),
+        )

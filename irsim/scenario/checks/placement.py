@@ -1,0 +1,79 @@
+"""Where objects start: on top of each other, or in ranges that make no sense."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.diagnostics import Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, warning
+from irsim.scenario.model import Entry
+from irsim.scenario.objects import ObjectRecord
+
+_NEAR = 1e-9
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """By entry."""
+    for path, entry, records in context.entries():
+        name = entry.distribution.name if entry.distribution is not None else "manual"
+        if name == "random":
+            yield from _ranges(context, path)
+        elif name == "circle" and len(records) > 1:
+            yield from _circle(path, records)
+        elif name == "manual" and len(records) > 1:
+            yield from _stacked(path, entry, records)
+
+
+def _ranges(context: Context, path: Path) -> Iterator[Finding]:
+    placement = next((p for p in context.resolved.placements if p.path == path), None)
+    if placement is None:
+        return
+    for i, axis in enumerate(("x", "y", "theta")):
+        low, high = placement.range_low[i], placement.range_high[i]
+        if low > high:
+            entry: Any = next(item for where, item in context.scenario.entries(path[0]) if where == path)  # type: ignore[arg-type]
+            key = "range_low" if entry.distribution.range_low is not None else "range_high"
+            given = getattr(entry.distribution, key) is not None
+            yield error(
+                "range-order",
+                (*path, "distribution", key) if given else (*path, "distribution"),
+                f"{axis}: the lower bound {low:g} is above the upper bound {high:g}",
+                given=getattr(entry.distribution, key),
+                fix="range_low must not be greater than range_high; the defaults end half a metre inside the world",
+            )
+            return
+
+
+def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
+    a, b = records[0].state, records[1].state
+    gap = math.hypot(a[0] - b[0], a[1] - b[1])
+    widths = [2 * getattr(record.shape, "radius", 0.0) for record in records[:2] if record.shape.name == "circle"]  # type: ignore[attr-defined]
+    if len(widths) == 2 and gap < sum(widths) / 2:
+        yield warning(
+            "circle-overlap",
+            (*path, "distribution"),
+            f"neighbours on the circle are {gap:.3g} m apart and overlap",
+            fix="a larger 'radius', fewer objects or smaller ones",
+        )
+
+
+def _stacked(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+    if isinstance(entry.shape, list):  # polygons with vertices in world coordinates share a state on purpose
+        return
+    places: dict[tuple[float, ...], int] = defaultdict(int)
+    for record in records:
+        places[tuple(round(v, 9) for v in record.state[:2])] += 1
+    most = max(places.values())
+    if most > 1:
+        where = next(pose for pose, count in places.items() if count == most)
+        key = "state" if entry.state is not None else "number"
+        yield warning(
+            "stacked",
+            (*path, key),
+            f"{most} objects of this entry start at the same place ({where[0]:g}, {where[1]:g})",
+            fix="give 'state' one vector per object, or a 'distribution': {name: random} or {name: circle}",
+        )

@@ -1,0 +1,142 @@
+"""Shapes: outlines that are no outlines, and defaults that surprise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from irsim.diagnostics import Edit, Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._outline import crosses_itself, repaired
+from irsim.scenario.expand import DEFAULT_RADIUS
+from irsim.scenario.findings import Finding, error, hint
+
+_RANGES = (
+    "radius_range",
+    "avg_radius_range",
+    "irregularity_range",
+    "spikeyness_range",
+    "num_vertices_range",
+)
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Every shape that is written once is looked at once."""
+    seen: set[Path] = set()
+    for record in context.resolved.objects:
+        if not context.given(record, "shape"):
+            if record.path not in seen:
+                seen.add(record.path)
+                yield hint(
+                    "default-shape",
+                    record.path,
+                    f"without 'shape' it is a circle of radius {DEFAULT_RADIUS:g} m",
+                    fix="add 'shape: {name: circle, radius: 0.2}'",
+                )
+            continue
+        path = context.entry_path(record, "shape")
+        if path not in seen:
+            seen.add(path)
+            yield from _shape(path, record.shape)
+
+
+def _shape(path: Path, shape: Any) -> Iterator[Finding]:
+    for key in _RANGES:
+        values = getattr(shape, key, None)
+        if values is not None and values[0] > values[1]:
+            yield error(
+                "range-order",
+                (*path, key),
+                f"the lower bound {values[0]:g} is above the upper bound {values[1]:g}",
+                given=values,
+                edit=Edit("replace", (*path, key), [values[1], values[0]]),
+            )
+    if shape.name == "polygon":
+        yield from _polygon(path, shape)
+    elif shape.name == "linestring":
+        yield from _linestring(path, shape)
+    elif shape.name == "compound":
+        for index, part in enumerate(shape.parts):
+            yield from _shape((*path, "parts", index), part)
+    if getattr(shape, "num_vertices_range", [0, 1])[0] == getattr(shape, "num_vertices_range", [0, 1])[1]:
+        yield error(
+            "range-order",
+            (*path, "num_vertices_range"),
+            "the upper bound is exclusive, so this range holds no number",
+            given=shape.num_vertices_range,
+            fix=f"[{shape.num_vertices_range[0]}, {shape.num_vertices_range[0] + 1}]",
+        )
+
+
+def _polygon(path: Path, shape: Any) -> Iterator[Finding]:
+    if shape.random_shape:
+        return
+    if shape.vertices is None:
+        yield hint("default-vertices", path, "without 'vertices' the polygon is a square of 2 m")
+        return
+    corners = _open(shape.vertices)
+    where = (*path, "vertices")
+    if len(corners) < 3:
+        yield error(
+            "too-few-vertices",
+            where,
+            f"{len(corners)} corner{'s' if len(corners) != 1 else ''}; a polygon has at least 3",
+            given=shape.vertices,
+        )
+        return
+    if not crosses_itself(corners):
+        return
+    better = repaired(shape.vertices)
+    if better is None:
+        yield error("invalid-polygon", where, "this outline encloses no area", given=shape.vertices)
+    elif len(better) == 1:
+        edit = Edit("replace", where, better[0])
+        yield _invalid(where, shape.vertices, f"vertices: {better[0]}", edit)
+    else:
+        parts = [{"name": "polygon", "vertices": vertices} for vertices in better]
+        edit = Edit("replace", path, {"name": "compound", "parts": parts})
+        yield _invalid(where, shape.vertices, f"shape: {{name: compound, parts: {parts}}}", edit)
+
+
+def _invalid(path: Path, vertices: Sequence[Sequence[float]], fix: str, edit: Edit) -> Finding:
+    fix = fix if len(fix) < 400 else "see the edit: the area it encloses, as valid polygons"
+    return error(
+        "invalid-polygon",
+        path,
+        "this outline crosses or touches itself",
+        given=vertices,
+        allowed="corners in order around the polygon",
+        fix=fix,
+        edit=edit,
+        carry_on=edit,
+    )
+
+
+def _linestring(path: Path, shape: Any) -> Iterator[Finding]:
+    if shape.random_shape:
+        return
+    if shape.vertices is None:
+        yield error(
+            "missing-key",
+            (*path, "vertices"),
+            "'vertices' is missing",
+            fix="add 'vertices: [[0, 0], [3, 0]]', or 'random_shape: true'",
+        )
+    elif len({tuple(point) for point in shape.vertices}) < 2:
+        yield error(
+            "too-few-vertices",
+            (*path, "vertices"),
+            "a linestring has at least 2 different points",
+            given=shape.vertices,
+        )
+
+
+def _open(vertices: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    """Without repeated neighbours and without the closing repetition of the first corner."""
+    corners: list[tuple[float, float]] = []
+    for x, y in vertices:
+        if not corners or corners[-1] != (x, y):
+            corners.append((x, y))
+    if len(corners) > 1 and corners[0] == corners[-1]:
+        corners.pop()
+    return corners

@@ -1,0 +1,76 @@
+"""What the language has and this version does not compute yet: said before anything runs, never silently left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.behaviors._options import CustomOptions
+from irsim.diagnostics import Path
+from irsim.registry import BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Registry
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Features without a kernel, and modes that nothing implements."""
+    world = context.scenario.world
+    if world.obstacle_map is not None:
+        yield _not_yet(("world", "obstacle_map"), "grid maps")
+    if world.fog_map:
+        yield _not_yet(("world", "fog_map"), "fog")
+    if world.collision_mode == "contact":
+        yield _not_yet(("world", "collision_mode"), "pushing and sliding contacts")
+    if world.control_mode == "keyboard":
+        yield _not_yet(("world", "control_mode"), "keyboard control")
+    if world.boundary != "none":
+        yield _not_yet(("world", "boundary"), "walls at the world's edge")
+    seen: set[tuple[Any, ...]] = set()
+    for path, feature in _uses(context):
+        if (path, feature) not in seen:
+            seen.add((path, feature))
+            yield _not_yet(path, feature)
+
+
+def _uses(context: Context) -> Iterator[tuple[Path, str]]:
+    """Paths of features that are only part of the language."""
+    for record in context.resolved.objects:
+        for key, registry in (("kinematics", KINEMATICS), ("shape", SHAPES)):
+            options: Any = getattr(record, key)
+            if options is not None and not _computed(registry, options.name):
+                yield (*context.entry_path(record, key), "name"), f"the {registry.kind} '{options.name}'"
+        for key in ("behavior", "group_behavior"):
+            options = getattr(record, key)
+            if options is None or record.kinematics is None or isinstance(options, CustomOptions):
+                continue
+            if not _computed(BEHAVIORS, options.name):
+                yield (*context.entry_path(record, key), "name"), f"the behavior '{options.name}'"
+        for index, sensor in enumerate(record.sensors):
+            name: str = getattr(sensor, "name", "")
+            if not _computed(SENSORS, name):
+                yield (*context.entry_path(record, "sensors"), index), f"the sensor '{name}'"
+        if record.shape.name == "compound":  # type: ignore[attr-defined]
+            yield from _posed_random_parts(context.entry_path(record, "shape"), record.shape)
+    for path, entry, _ in context.entries():
+        if entry.fov_occlusion:
+            yield (*path, "fov_occlusion"), "occlusion in the field of view"
+
+
+def _posed_random_parts(path: Path, shape: Any) -> Iterator[tuple[Path, str]]:
+    for index, part in enumerate(shape.parts):
+        if part.name == "polygon" and part.random_shape and any(part.pose):
+            yield (*path, "parts", index, "pose"), "a pose of a random part"
+
+
+def _computed(registry: Registry, name: str) -> bool:
+    feature = registry.get(name)
+    return feature is not None and feature.simulated
+
+
+def _not_yet(path: Path, what: str) -> Finding:
+    return error(
+        "not-yet-simulated",
+        path,
+        f"this version does not simulate {what} yet",
+        fix="leave it out for now; the scenario itself is fine",
+    )

@@ -1,0 +1,48 @@
+"""The world: periods and modes that do not fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, error, hint, warning
+
+_WHOLE = 1e-6
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Sampling period, view point, keyboard, role keys."""
+    world = context.scenario.world
+    if world.sample_time is not None:
+        ratio = world.sample_time / world.step_time
+        if ratio < 1 - _WHOLE:
+            yield hint(
+                "sample-time",
+                ("world", "sample_time"),
+                f"shorter than step_time ({world.step_time:g} s): every step is drawn",
+                given=world.sample_time,
+            )
+        elif abs(ratio - round(ratio)) > _WHOLE:
+            yield hint(
+                "sample-time",
+                ("world", "sample_time"),
+                f"not a multiple of step_time ({world.step_time:g} s): drawn every {int(ratio)} steps",
+                given=world.sample_time,
+            )
+    if world.time_limit is not None and world.time_limit < world.step_time:
+        yield warning(
+            "time-limit",
+            ("world", "time_limit"),
+            f"shorter than one step ({world.step_time:g} s)",
+            given=world.time_limit,
+        )
+    for path, entry, _ in context.entries():
+        if entry.role is not None and entry.role != path[0]:
+            yield error(
+                "role-mismatch",
+                (*path, "role"),
+                f"'{entry.role}' stands in the section '{path[0]}'",
+                given=entry.role,
+                allowed=[str(path[0])],
+                fix=f"move the entry to '{entry.role}:', or remove the key",
+            )

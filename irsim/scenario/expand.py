@@ -1,0 +1,269 @@
+"""From a validated scenario to one record per object: spread, defaulted, numbered."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Literal
+
+from pydantic import BaseModel
+
+from irsim.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
+from irsim.diagnostics import Path
+from irsim.kinematics._options import KinematicsOptions
+from irsim.registry import DISTRIBUTIONS
+from irsim.scenario.model import Entry, Scenario, WorldModel
+from irsim.scenario.objects import ObjectRecord, Placement, ResolvedScenario
+from irsim.scenario.spread import kind_of, spread
+
+__all__ = ["resolve"]
+
+Role = Literal["robot", "obstacle"]
+DEFAULT_STATE = [1.0, 1.0, 0.0]
+DEFAULT_GOAL = [1.0, 9.0, 0.0]
+DEFAULT_RADIUS = 1.0
+ACKER_PICTURE = "car_green.png"
+_MARGIN = 0.5  # of random placement and the circle distribution, from the world's edge [m]
+
+
+def resolve(
+    scenario: Scenario,
+    *,
+    name: str = "world",
+    document: dict[str, Any] | None = None,
+    source: str | None = None,
+    text: str | None = None,
+) -> ResolvedScenario:
+    """Every object of a scenario with its own value of every key.
+
+    Robots get their ids first, in file order, then obstacles.
+
+    Args:
+        scenario: A validated scenario.
+        name: Name of the world unless the scenario gives one.
+        document: The scenario as parsed, kept for ``env.config``.
+        source: Path of the file, kept.
+        text: Text of the file, kept.
+    """
+    objects: list[ObjectRecord] = []
+    placements: list[Placement] = []
+    first_group = 0
+    for role in ("robot", "obstacle"):
+        for path, entry in scenario.entries(role):
+            group = entry.group
+            if group is None:
+                group = first_group + int(path[1]) if len(path) > 1 else 0
+            made = _Maker(scenario.world, role, path, entry, group, len(objects))
+            objects += made.records()
+            if (placement := made.placement()) is not None:
+                placements.append(placement)
+        if objects:
+            first_group = max(record.group for record in objects) + 1
+    return ResolvedScenario(
+        name=scenario.world.name or name,
+        world=scenario.world,
+        objects=objects,
+        placements=placements,
+        gui=scenario.gui,
+        custom=scenario.custom,
+        document=document if document is not None else {},
+        source=source,
+        text=text,
+    )
+
+
+class _Maker:
+    """Makes the objects of one entry."""
+
+    def __init__(self, world: WorldModel, role: Role, path: Path, entry: Entry, group: int, first_id: int) -> None:
+        self.world, self.role, self.path, self.entry, self.group = world, role, path, entry, group
+        self.first_id, self.count = first_id, entry.number
+        self.columns = {key: self._column(key) for key in _SPREAD_KEYS}
+
+    def _column(self, key: str) -> Sequence[Any]:
+        return spread(getattr(self.entry, key), self.count, kind_of(key))
+
+    def records(self) -> list[ObjectRecord]:
+        """One record per object."""
+        placed = self._placed()
+        return [self._record(i, placed[i] if placed is not None else None) for i in range(self.count)]
+
+    def placement(self) -> Placement | None:
+        """The random placement of the entry, if it has one."""
+        if not self._is_random() or not self.count:
+            return None
+        options: Any = self.entry.distribution
+        x0, y0, x1, y1 = self.world.bounds
+        return Placement(
+            objects=list(range(self.first_id, self.first_id + self.count)),
+            range_low=options.range_low or [x0 + _MARGIN, y0 + _MARGIN, -math.pi],
+            range_high=options.range_high or [x1 - _MARGIN, y1 - _MARGIN, math.pi],
+            min_distance=options.min_distance,
+            path=self.path,
+        )
+
+    def _is_random(self) -> bool:
+        options = self.entry.distribution
+        if options is None:
+            return False
+        feature = DISTRIBUTIONS.get(options.name)
+        return feature is not None and feature.kernel is not None
+
+    def _placed(self) -> list[tuple[list[float], list[float]]] | None:
+        """Start and goal of each object where the distribution computes them now."""
+        options = self.entry.distribution
+        feature = DISTRIBUTIONS.get(options.name) if options is not None else None
+        if feature is None or feature.function is None or not self.count:
+            return None
+        poses: list[tuple[list[float], list[float]]] | None = feature.function(options, self.count, self.world)
+        return poses
+
+    def _record(self, i: int, placed: tuple[list[float], list[float]] | None) -> ObjectRecord:
+        entry, role, object_id = self.entry, self.role, self.first_id + i
+        value = {key: column[i] for key, column in self.columns.items()}
+        kinematics = _drive(value["kinematics"])
+        shape = value["shape"] if value["shape"] is not None else _default_shape()
+        state_dim = entry.state_dim or (len(kinematics.state_rows) if kinematics else 3)
+        vel_dim = entry.vel_dim or (len(kinematics.control_rows) if kinematics else 2)
+        random = self._is_random()
+        state = placed[0] if placed is not None else self.world.center if random else value["state"]
+        options = value["behavior"] if value["behavior"] is not None else value["group_behavior"]
+        low, high = self._wander_box(options)
+        mass = value["mass"]
+        angles = value["angle_range"] or [-math.pi, math.pi]
+        fov, fov_radius = _view(entry, value["sensors"] or [])
+        return ObjectRecord(
+            id=object_id,
+            role=role,
+            name=value["name"] if value["name"] is not None else f"{role}_{object_id}",
+            group=self.group,
+            group_name=value["group_name"] or f"{role}_{self.group}",
+            path=self.path,
+            index=i,
+            kinematics=kinematics,
+            shape=shape,
+            state=_fitted(DEFAULT_STATE if state is None else state, state_dim),
+            goals=[] if random else self._goals(value, placed),
+            velocity=[0.0] * vel_dim if value["velocity"] is None else list(value["velocity"]),
+            vel_min=[-1.0] * vel_dim if value["vel_min"] is None else list(value["vel_min"]),
+            vel_max=[1.0] * vel_dim if value["vel_max"] is None else list(value["vel_max"]),
+            acce=[math.inf] * vel_dim if value["acce"] is None else list(value["acce"]),
+            state_dim=state_dim,
+            vel_dim=vel_dim,
+            angle_range=(angles[0], angles[0] + 2 * math.pi) if value["angle_range"] else (-math.pi, math.pi),
+            goal_threshold=entry.goal_threshold,
+            arrive_mode=value["arrive_mode"],
+            static=entry.static or kinematics is None,
+            unobstructed=entry.unobstructed,
+            behavior=value["behavior"],
+            group_behavior=value["group_behavior"],
+            wander=options is not None and options.wander,
+            loop=options is not None and options.loop,
+            range_low=low,
+            range_high=high,
+            target_roles=options.target_roles if options is not None else "all",
+            sensors=list(value["sensors"] or []),
+            plot=value["plot"],
+            color=self._color(i, value, kinematics),
+            description=_picture(value["description"], role, kinematics),
+            fov=fov,
+            fov_radius=fov_radius,
+            wheelbase=_wheelbase(kinematics, shape),
+            mass=(1.0 if kinematics else math.inf) if mass is None else mass,
+            friction=self.world.friction if value["friction"] is None else value["friction"],
+            inertia=value["inertia"],
+            restitution=self.world.restitution if value["restitution"] is None else value["restitution"],
+            tags=tuple(value["tags"]),
+        )
+
+    def _goals(self, value: dict[str, Any], placed: tuple[list[float], list[float]] | None) -> list[list[float]]:
+        if value["waypoints"] is not None:
+            return [list(point) for point in value["waypoints"]]
+        goal = value["goal"]
+        if goal is None:
+            return [placed[1] if placed is not None else list(DEFAULT_GOAL)]
+        return [list(point) for point in goal] if isinstance(goal[0], list) else [list(goal)]
+
+    def _wander_box(self, options: Any) -> tuple[list[float], list[float]]:
+        x0, y0, x1, y1 = self.world.bounds
+        low = getattr(options, "range_low", None) or [x0, y0]
+        high = getattr(options, "range_high", None) or [x1, y1]
+        return [*low, -math.pi][:3], [*high, math.pi][:3]
+
+    def _color(self, i: int, value: dict[str, Any], kinematics: KinematicsOptions | None) -> Any:
+        color = value["color"]
+        if color == "cycle":
+            return cycle_color(i)
+        if color is not None:
+            return color
+        if kinematics is None:
+            pushable = not self.entry.static and value["mass"] is not None and math.isfinite(value["mass"])
+            return PUSHABLE_COLOR if pushable else OBSTACLE_COLOR
+        if self.role == "obstacle":
+            return OBSTACLE_COLOR
+        return ACKER_COLOR if kinematics.name == "acker" else ROBOT_COLOR
+
+
+_SPREAD_KEYS = (
+    "name",
+    "tags",
+    "state",
+    "goal",
+    "waypoints",
+    "velocity",
+    "kinematics",
+    "shape",
+    "behavior",
+    "group_behavior",
+    "sensors",
+    "plot",
+    "color",
+    "description",
+    "vel_min",
+    "vel_max",
+    "acce",
+    "angle_range",
+    "arrive_mode",
+    "group_name",
+    "mass",
+    "friction",
+    "inertia",
+    "restitution",
+)
+
+
+def _drive(options: Any) -> KinematicsOptions | None:
+    return None if options is None or options.name == "static" else options
+
+
+def _default_shape() -> BaseModel:
+    from irsim.shapes.circle import Circle
+
+    return Circle(radius=DEFAULT_RADIUS)
+
+
+def _fitted(values: Sequence[float], length: int) -> list[float]:
+    """Cut, or filled up with zeros, to ``length`` numbers."""
+    return [*(float(v) for v in values[:length]), *([0.0] * (length - len(values)))]
+
+
+def _picture(given: str | None, role: Role, kinematics: KinematicsOptions | None) -> str | None:
+    if given is None and role == "robot" and kinematics is not None and kinematics.name == "acker":
+        return ACKER_PICTURE
+    return given
+
+
+def _wheelbase(kinematics: KinematicsOptions | None, shape: BaseModel) -> float | None:
+    own = kinematics.wheelbase if kinematics is not None else None
+    return own if own is not None else getattr(shape, "wheelbase", None)
+
+
+def _view(entry: Entry, sensors: Sequence[Any]) -> tuple[float | None, float | None]:
+    """Field of view: the entry's own, else the lidar's; without an own angle an own radius does not count."""
+    lidar = next((sensor for sensor in sensors if sensor.is_lidar), None)
+    reach = lidar.range_max if lidar is not None else None
+    if entry.fov is None:
+        return (lidar.angle_range if lidar is not None else None), reach
+    return entry.fov, entry.fov_radius if entry.fov_radius is not None else reach
+
+

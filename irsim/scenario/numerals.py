@@ -1,0 +1,83 @@
+"""Text where a number should be: what was meant."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+__all__ = ["Reading", "read_number"]
+
+
+class Reading(NamedTuple):
+    """The number that a text stands for.
+
+    Attributes:
+        value: The number, None if there is no telling.
+        note: Something to add to "write <value>".
+        is_number: The text is a number in most languages, only not in YAML 1.1.
+    """
+
+    value: float | None
+    note: str = ""
+    is_number: bool = False
+
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITY = re.compile(rf"({_NUMBER})\s*([a-zA-Zµ°/²^0-9]+|%)\Z")
+_PI = re.compile(
+    r"([-+]?)\s*(?:(\d+\.?\d*|\.\d+)\s*\*?\s*)?(?:np\.|numpy\.|math\.)?(?:pi|PI|Pi|π)\s*(?:/\s*(\d+\.?\d*))?"
+    r"(?:\s*\*\s*(\d+\.?\d*))?\Z"
+)
+_FRACTION = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})\Z")
+_INFINITE = {"inf": math.inf, "infinity": math.inf, "-inf": -math.inf, "+inf": math.inf}
+_FACTORS = {
+    ("m", "m"): 1.0,
+    ("cm", "m"): 0.01,
+    ("mm", "m"): 0.001,
+    ("km", "m"): 1000.0,
+    ("s", "s"): 1.0,
+    ("sec", "s"): 1.0,
+    ("ms", "s"): 0.001,
+    ("min", "s"): 60.0,
+    ("rad", "rad"): 1.0,
+    ("deg", "rad"): math.pi / 180,
+    ("degrees", "rad"): math.pi / 180,
+    ("°", "rad"): math.pi / 180,
+    ("m/s", "m/s"): 1.0,
+    ("km/h", "m/s"): 1 / 3.6,
+    ("kmh", "m/s"): 1 / 3.6,
+    ("rad/s", "rad/s"): 1.0,
+    ("deg/s", "rad/s"): math.pi / 180,
+    ("kg", "kg"): 1.0,
+    ("g", "kg"): 0.001,
+}
+
+
+def read_number(text: str, unit: str | None) -> Reading:
+    """What number a text stands for.
+
+    Args:
+        text: What was written.
+        unit: Unit of the key, as in the schema.
+    """
+    text = text.strip()[:200]
+    if text.lower() in _INFINITE:
+        return Reading(None, "infinity is .inf in YAML")
+    if re.fullmatch(_NUMBER, text):
+        value = float(text)
+        return Reading(value, is_number=True) if math.isfinite(value) else Reading(None, "this number is too large")
+    if pi := _PI.match(text):
+        sign, before, divisor, after = pi.groups()
+        value = math.pi * float(before or 1) * float(after or 1) * (-1 if sign == "-" else 1)
+        if divisor is None or float(divisor) != 0:
+            return Reading(value / float(divisor or 1), " (YAML knows no pi)")
+    if (fraction := _FRACTION.match(text)) and float(fraction.group(2)) != 0:
+        return Reading(float(fraction.group(1)) / float(fraction.group(2)), " (YAML does not calculate)")
+    if quantity := _QUANTITY.match(text):
+        number, given = quantity.groups()
+        factor = _FACTORS.get((given.lower(), unit or ""))
+        if factor is not None:
+            return Reading(float(f"{float(number) * factor:.12g}"), f": numbers stand alone, here in {unit}")
+        return Reading(None, f"write the number alone{f', in {unit}' if unit else ''}")
+    return Reading(None)

@@ -1,0 +1,210 @@
+"""The one way in: source → document → validated, checked and resolved scenario, with everything that was found."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from irsim.diagnostics import Diagnostic, Edit, Path, by_severity
+from irsim.scenario.checks import KEY_CODES, Context, run_checks
+from irsim.scenario.expand import resolve
+from irsim.scenario.findings import Finding, error
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.load import Document, load_data, load_path, load_text
+from irsim.scenario.model import Scenario
+from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.repair import applied, removal
+from irsim.scenario.translate import translate
+
+__all__ = ["Reading", "read"]
+
+_ROUNDS = 6  # of repairing and validating again; each finds what the errors before had hidden
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What reading a scenario gave.
+
+    Attributes:
+        scenario: Ready to build; None if an error stands in the way.
+        diagnostics: Everything found: errors, then warnings, then hints, each in the order of the file.
+        document: The scenario as written.
+    """
+
+    scenario: ResolvedScenario | None
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+    document: Document = field(default_factory=lambda: Document(None))
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        """The findings that stand in the way."""
+        return [item for item in self.diagnostics if item.severity == "error"]
+
+
+def read(
+    source: Document | str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    strict: bool = False,
+    limits: Limits = DEFAULT_LIMITS,
+    name: str | None = None,
+) -> Reading:
+    """Read, validate, check and resolve a scenario. Every problem is found in one go; nothing is raised for any.
+
+    Args:
+        source: A document, a path, YAML text (a string with a line break), or the data itself.
+        strict: Keep as errors what IR-SIM 2.12 carries on with; otherwise do what it does, and warn.
+        limits: What to refuse.
+        name: What to call a text in messages.
+    """
+    document = _document(source, limits, name)
+    findings = [Finding(problem) for problem in document.problems]
+    if document.data is None and document.fatal:
+        return Reading(None, _diagnostics(findings, document, strict), document)
+    resolved = _Reader(document, limits, findings).resolved()
+    blocked = document.fatal or any(f.blocking or (strict and f.diagnostic.severity == "error") for f in findings)
+    return Reading(None if blocked else resolved, _diagnostics(findings, document, strict), document)
+
+
+def _document(source: Any, limits: Limits, name: str | None) -> Document:
+    if isinstance(source, Document):
+        return source
+    if isinstance(source, str) and "\n" in source:
+        return load_text(source, name=name, limits=limits)
+    if isinstance(source, (str, os.PathLike)):
+        return load_path(source, limits)
+    return load_data(source, name, limits)
+
+
+class _Reader:
+    """Validates, repairs what is wrong on a copy, and goes on, so that one error does not hide the next."""
+
+    def __init__(self, document: Document, limits: Limits, findings: list[Finding]) -> None:
+        self.document, self.limits, self.findings = document, limits, findings
+        self.data = document.data
+        self.touched: list[Path] = []
+
+    def resolved(self) -> ResolvedScenario | None:
+        """The scenario with every tolerated problem carried on with; meaningless if a finding is blocking."""
+        if not isinstance(self.data, Mapping):
+            self._add([_no_mapping(self.data)])
+            return None
+        crowd = _too_many(self.data, self.limits.objects)
+        if crowd is not None:
+            self._add([crowd])
+            return None
+        scenario = self._validated()
+        if scenario is None:
+            return None
+        resolved = self._resolve(scenario)
+        found = run_checks(Context(scenario, resolved, self.data, self.document))
+        found = [f for f in found if not self._under_repair(f.diagnostic.path)]
+        self._add(found)
+        edits = [f.carry_on for f in found if f.carry_on is not None]
+        if edits:
+            self.data = applied(self.data, edits)
+            scenario = self._validated()
+            return self._resolve(scenario) if scenario is not None else None
+        return resolved
+
+    def _validated(self) -> Scenario | None:
+        for _ in range(_ROUNDS):
+            try:
+                return Scenario.model_validate(self.data)
+            except ValidationError as failure:
+                found = translate(failure, self.data, self.document, self.limits.problems)
+            self._add(found)
+            edits = [self._repair(f) for f in found]
+            self.touched += [edit.path for edit in edits]
+            self.data = applied(self.data, edits)
+        return None
+
+    def _repair(self, finding: Finding) -> Edit:
+        """What lets reading go on: 2.12's own reaction, else the suggested value, else leaving the thing out."""
+        item = finding.diagnostic
+        if finding.carry_on is not None:
+            return finding.carry_on
+        if item.edit is not None and item.edit.action in ("replace", "rename"):
+            return item.edit
+        return removal(item.path[:-1] if item.code == "missing-key" else item.path)
+
+    def _resolve(self, scenario: Scenario) -> ResolvedScenario:
+        document = self.document
+        stem = os.path.basename(document.path or document.name or "world").split(".")[0] or "world"
+        data = dict(document.data) if isinstance(document.data, Mapping) else {}
+        return resolve(scenario, name=stem, document=data, source=document.path, text=document.text)
+
+    def _under_repair(self, path: Path) -> bool:
+        return any(path[: len(other)] == other or other[: len(path)] == path for other in self.touched)
+
+    def _add(self, found: list[Finding]) -> None:
+        known = {(f.diagnostic.code, f.diagnostic.path) for f in self.findings}
+        for finding in found:
+            key = (finding.diagnostic.code, finding.diagnostic.path)
+            if key not in known:
+                known.add(key)
+                self.findings.append(finding)
+
+
+def _no_mapping(data: Any) -> Finding:
+    kind = "a list" if isinstance(data, (list, tuple)) else "text" if isinstance(data, str) else type(data).__name__
+    return error(
+        "not-a-scenario",
+        (),
+        f"this is {kind}, not a scenario",
+        allowed="a mapping with the keys world, robot, obstacle, gui, custom",
+        fix="start with 'world: {width: 10, height: 10}'",
+    )
+
+
+def _too_many(data: Mapping[str, Any], most: int) -> Finding | None:
+    """Refuse a crowd before anything is made for it."""
+    total = 0
+    for role in ("robot", "obstacle"):
+        section = data.get(role)
+        for index, entry in enumerate(section if isinstance(section, (list, tuple)) else [section]):
+            number = entry.get("number", 1) if isinstance(entry, Mapping) else 1
+            if not isinstance(number, int) or number < 0:
+                continue
+            total += number
+            if total > most:
+                path: Path = (role, index) if isinstance(section, (list, tuple)) else (role,)
+                has_number = isinstance(entry, Mapping) and "number" in entry
+                return error(
+                    "too-many-objects",
+                    (*path, "number") if has_number else path,
+                    f"{total:,} objects so far; at most {most:,} are read",
+                    given=number,
+                    allowed=f"at most {most:,} objects in all",
+                    fix="lower 'number', or raise the limit of objects",
+                )
+    return None
+
+
+def _diagnostics(findings: list[Finding], document: Document, strict: bool) -> list[Diagnostic]:
+    """Findings with their positions, in order; tolerated errors are warnings unless strict."""
+    shown = []
+    for finding in findings:
+        item = finding.diagnostic
+        changes: dict[str, Any] = {"file": document.name}
+        path = item.path
+        if item.line is None:
+            mark = document.mark((*document.prefix, *path), key=item.code in KEY_CODES)
+            if mark is not None:
+                changes.update(line=mark.line, column=mark.column, length=mark.length)
+            changes["path"] = (*document.prefix, *path)
+            if item.edit is not None and document.prefix:
+                changes["edit"] = replace(item.edit, path=(*document.prefix, *item.edit.path))
+        if item.tolerated and item.severity == "error" and not strict:
+            changes["severity"] = "warning"
+        shown.append(replace(item, **changes))
+    ordered = by_severity(shown)
+    most = document.limits.problems
+    if len(ordered) > most:
+        rest = len(ordered) - most
+        last = Diagnostic("too-many-problems", "error", (), f"and {rest} more problems", file=document.name)
+        ordered = [*ordered[:most], last]
+    return ordered

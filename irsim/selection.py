@@ -1,0 +1,164 @@
+"""Mappings that pick their model by name: ``kinematics: {name: diff, ...}`` becomes the options model of ``diff``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
+
+from irsim._options import problem
+from irsim.diagnostics import nearest
+from irsim.registry import CustomBehaviors, Registry
+
+__all__ = ["Choices", "Select"]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a fixed set of models."""
+
+    name: str
+    options: type[BaseModel]
+
+
+class Choices:
+    """A fixed set of models with the interface of a registry, for places that take only these.
+
+    Args:
+        kind: Singular word for messages: ``part``.
+        models: Model by name.
+    """
+
+    def __init__(self, kind: str, models: Mapping[str, type[BaseModel]]) -> None:
+        self.kind, self.models = kind, dict(models)
+
+    def names(self) -> list[str]:
+        """All names, sorted."""
+        return sorted(self.models)
+
+    def get(self, name: str) -> Choice | None:
+        """The choice of that name."""
+        return Choice(name, self.models[name]) if name in self.models else None
+
+
+class Select:
+    """Type metadata: a mapping validated by the options model that a registry has under its ``name``.
+
+    Args:
+        registry: Where names come from; a feature is imported when a scenario names it.
+        default: Name of a mapping without one; None if the name is required.
+        folded: Names are compared in lower case.
+        alias: Another key that may hold the name.
+        custom: Names registered by user code; their mappings become ``fallback``.
+        fallback: Model of custom and unknown names, which are accepted where it is given.
+        exclude: Names of the registry that are not accepted here.
+        null: null is accepted and stays None.
+        empty: An empty mapping is accepted and becomes None.
+    """
+
+    def __init__(
+        self,
+        registry: Registry | Choices,
+        *,
+        default: str | None = None,
+        folded: bool = False,
+        alias: str | None = None,
+        custom: CustomBehaviors | None = None,
+        fallback: type[BaseModel] | None = None,
+        exclude: tuple[str, ...] = (),
+        null: bool = False,
+        empty: bool = False,
+    ) -> None:
+        self.registry, self.default, self.folded, self.alias = registry, default, folded, alias
+        self.custom, self.fallback, self.exclude = custom, fallback, exclude
+        self.null, self.empty = null, empty
+
+    def names(self) -> list[str]:
+        """Every name accepted here, user code's included."""
+        custom = self.custom.names() if self.custom is not None else []
+        return sorted({*(n for n in self.registry.names() if n not in self.exclude), *custom})
+
+    def name_of(self, value: Mapping[str, Any]) -> Any:
+        """The name a mapping goes by."""
+        name = value.get("name")
+        if name is None and self.alias is not None:
+            name = value.get(self.alias)
+        if name is None:
+            name = self.default
+        if self.folded and isinstance(name, str) and self.registry.get(name) is None:
+            return name.lower()
+        return name
+
+    def model_for(self, value: Mapping[str, Any]) -> type[BaseModel] | None:
+        """The model that validates ``value``, or None if its name is unknown."""
+        name = self.name_of(value)
+        if not isinstance(name, str) or name in self.exclude:
+            return None
+        if self.custom is not None and name in self.custom.names():
+            return self.fallback
+        feature = self.registry.get(name)
+        return feature.options if feature is not None else self.fallback
+
+    def validate(self, value: Any) -> BaseModel | None:
+        """The options model for ``value``; None for null or ``{}`` where these are accepted.
+
+        Raises:
+            PydanticCustomError, ValidationError: Not a mapping, no or an unknown name, or wrong keys.
+        """
+        if isinstance(value, BaseModel) or (value is None and self.null):
+            return value
+        if self.empty and isinstance(value, Mapping) and not value:
+            return None
+        kind = self.registry.kind
+        if isinstance(value, str):
+            raise problem(
+                "not-a-mapping",
+                f"a {kind} is a mapping with a name, not the name alone",
+                fix=f"write {{name: {value}}}",
+                replace={"name": value},
+            )
+        if not isinstance(value, Mapping):
+            raise problem("not-a-mapping", f"a {kind} is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
+        name = self.name_of(value)
+        if name is None:
+            raise _at(kind, problem("missing-key", f"this {kind} has no name", allowed=self.names()), value)
+        model = self.model_for(value)
+        if model is None:
+            raise _at(kind, self._unknown(name), name, "name" if "name" in value else self.alias or "name")
+        return model.model_validate(self._prepared(value, name))
+
+    def _prepared(self, value: Mapping[str, Any], name: str) -> dict[str, Any]:
+        return {**value, "name": name}
+
+    def _unknown(self, name: Any) -> PydanticCustomError:
+        names = self.names()
+        near = nearest(name, names)
+        article = "an" if self.registry.kind[0] in "aeiou" else "a"
+        return problem(
+            f"unknown-{self.registry.kind}",
+            f"'{name}' is not {article} {self.registry.kind}",
+            allowed=names,
+            fix=f"name: {near}" if near else None,
+            replace=near,
+        )
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            self.validate,
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda value: value.model_dump() if isinstance(value, BaseModel) else value
+            ),
+        )
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        from irsim.scenario.schema import selection_schema
+
+        return selection_schema(self, handler)
+
+
+def _at(kind: str, error: PydanticCustomError, given: Any, *location: str) -> ValidationError:
+    return ValidationError.from_exception_data(kind, [InitErrorDetails(type=error, loc=location, input=given)])

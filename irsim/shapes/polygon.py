@@ -1,0 +1,28 @@
+"""``polygon``: any simple outline, filled."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from irsim import _core as core
+from irsim.registry import SHAPES
+from irsim.shapes._options import RandomOutline, random_polygon
+from irsim.units import Bool
+
+SQUARE = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+
+
+class Polygon(RandomOutline):
+    """A filled outline of three or more corners, convex or not; without `vertices` a square of 2 m."""
+
+    name: Literal["polygon"] = "polygon"
+    is_convex: Bool = False
+    """With `random_shape`: all vertices on a circle."""
+
+
+@SHAPES.register(Polygon)
+def parts(options: Polygon) -> list[core.Part]:
+    """Geometry for the core, body frame."""
+    if options.random_shape:
+        return [random_polygon(options, options.is_convex, closed=True)]
+    return [core.Polygon(vertices=options.vertices or SQUARE)]

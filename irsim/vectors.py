@@ -1,0 +1,112 @@
+"""Vectors of the scenario language, and values that may be given once or per object."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from irsim.units import Meters, Number
+
+__all__ = [
+    "ONE",
+    "PER_OBJECT",
+    "Offset",
+    "OrNull",
+    "PerObject",
+    "Point",
+    "Pose",
+    "Range",
+    "Vector",
+    "is_vector",
+    "vector",
+]
+
+ONE, PER_OBJECT = "<one>", "<per object>"
+"""Tags in the location of a validation error; they name no part of the document."""
+
+
+def vector(units: Sequence[str], low: int, high: int | None = None) -> Any:
+    """Field metadata of a list of ``low`` to ``high`` numbers with these units."""
+    most = low if high is None else high
+    return Field(min_length=low, max_length=most, json_schema_extra={"x-units": list(units)})
+
+
+Point = Annotated[list[Meters], vector(("m", "m"), 2)]
+Offset = Annotated[list[Number], vector(("m", "m", "rad"), 3)]
+Pose = Annotated[list[Number], vector(("m", "m", "rad"), 2, 3)]
+Vector = Annotated[list[Number], Field(min_length=1)]
+Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
+
+
+def is_vector(value: Any) -> bool:
+    """Whether a list is one vector by the spreading rule: all its elements are numbers (also when it is empty)."""
+    return isinstance(value, (list, tuple)) and all(isinstance(item, (int, float)) for item in value)
+
+
+def _tag(value: Any) -> str:
+    return PER_OBJECT if isinstance(value, (list, tuple)) and not is_vector(value) else ONE
+
+
+def _tag_numbers(value: Any) -> str:
+    return PER_OBJECT if isinstance(value, (list, tuple)) else ONE
+
+
+def _tag_lists(value: Any) -> str:
+    """For keys that take a list of things: a list that holds lists is one list per object."""
+    return PER_OBJECT if _holds_list(value) else ONE
+
+
+def _tag_paths(value: Any) -> str:
+    """For keys that take a list of vectors: a list that holds lists of vectors is one list per object."""
+    return PER_OBJECT if isinstance(value, (list, tuple)) and any(_holds_list(item) for item in value) else ONE
+
+
+def _holds_list(value: Any) -> bool:
+    return isinstance(value, (list, tuple)) and any(isinstance(item, (list, tuple)) for item in value)
+
+
+_DISCRIMINATORS = {"value": _tag, "number": _tag_numbers, "list": _tag_lists, "path": _tag_paths}
+
+
+class PerObject:
+    """Type metadata: one value for all objects of an entry, or a list with one per object.
+
+    Args:
+        kind: What one value is. ``value``: not a list, or a vector, by the general rule. ``number``: a list of plain
+            numbers is one number per object, not a vector. ``list``: a list of things. ``path``: a list of vectors.
+    """
+
+    def __init__(self, kind: Literal["value", "number", "list", "path"] = "value") -> None:
+        self._discriminate = _DISCRIMINATORS[kind]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        item = handler(source)
+        many = core_schema.list_schema(item, min_length=1)
+        return core_schema.tagged_union_schema({ONE: item, PER_OBJECT: many}, self._discriminate)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        choices: Any = schema
+        item = handler(choices["choices"][ONE])
+        options = item["anyOf"] if set(item) == {"anyOf"} else [item]
+        return {"anyOf": [*options, {"type": "array", "items": item, "minItems": 1}]}
+
+
+class OrNull:
+    """Type metadata: null is accepted and means ``default``."""
+
+    def __init__(self, default: Any) -> None:
+        self.default = default
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(
+            lambda value: self.default if value is None else value, handler(source)
+        )
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        inner = handler(schema)
+        options = inner["anyOf"] if set(inner) == {"anyOf"} else [inner]
+        return {"anyOf": [*options, {"type": "null"}]}
