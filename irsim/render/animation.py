@@ -121,6 +121,7 @@ class FrameBuffer:
         self._gif: GifWriter | None = None
         if indexed:
             self._gif = GifWriter(self._file, duration=1 / options.fps, loop=options.loop, colors=colors)
+        self._finished = False
         self._last: Pixels | None = None
         self._offsets: list[int] = []
         self._size: tuple[int, int] | None = None
@@ -159,8 +160,7 @@ class FrameBuffer:
             raise ValueError("there are no frames to make an animation of")
         same = (options.fps, options.loop) == (self.options.fps, self.options.loop)
         if path.suffix.lower() == ".gif" and self._gif is not None and same:
-            self._gif.close(options.last)
-            self._file.seek(0)
+            self._finish(self._gif, options.last)
             with replacing(path) as temporary, temporary.open("wb") as target:
                 shutil.copyfileobj(self._file, target)
             return
@@ -171,8 +171,7 @@ class FrameBuffer:
     def read(self) -> Iterator[Pixels]:
         """The frames, in order; the buffer takes no more after that."""
         if self._gif is not None:
-            self._gif.close(self.options.last)
-            self._file.seek(0)
+            self._finish(self._gif, self.options.last)
             with Image.open(self._file) as image:
                 for index in range(self.frames):
                     image.seek(index)
@@ -186,6 +185,12 @@ class FrameBuffer:
             self._file.seek(start)
             frame = frame ^ np.frombuffer(zlib.decompress(self._file.read(end - start)), np.uint8).reshape(frame.shape)
             yield frame
+
+    def _finish(self, gif: GifWriter, last_duration: float) -> None:
+        if not self._finished:
+            gif.close(last_duration)
+        self._finished = True
+        self._file.seek(0)
 
     def close(self) -> None:
         """Let go of the temporary file."""

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.render.scene import Circle, Floats, Geometry, Line, Region
+from irsim.render.scene import Circle, Floats, Geometry, Line, Picture, Region, Sector
 
 if TYPE_CHECKING:
     from irsim._core import State
 
-__all__ = ["Body", "Pose", "arrow", "box", "ellipse", "place", "read_body"]
+__all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline", "place", "read_body"]
 
 Pose = tuple[float, float, float]
 """x, y [m] and heading [rad]."""
@@ -66,7 +66,7 @@ def read_body(state: State, row: int) -> Body:
         else:
             vertices = np.array(state.vertices(row, part, False), dtype=np.float64)
             geometries.append(Region([vertices]) if kind == "polygon" else Line(vertices))
-    corners = [_bounds(geometry) for geometry in geometries]
+    corners = [bounds(geometry) for geometry in geometries]
     low = min(c[0] for c in corners), min(c[1] for c in corners)
     high = max(c[2] for c in corners), max(c[3] for c in corners)
     single = len(geometries) == 1
@@ -108,14 +108,19 @@ def ellipse(body: Body) -> Region:
     return Region([np.stack([x + rx * np.cos(angles), y + ry * np.sin(angles)], axis=1)])
 
 
-def _bounds(geometry: Geometry) -> tuple[float, float, float, float]:
-    if isinstance(geometry, Circle):
+def picture_outline(picture: Picture) -> Geometry:
+    """The rectangle an image covers."""
+    x, y, length, width = picture.box
+    corners = [(x, y), (x + length, y), (x + length, y + width), (x, y + width)]
+    return place(Region([np.array(corners, dtype=np.float64)]), picture.pose)
+
+
+def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top."""
+    if isinstance(geometry, Circle | Sector):
         x, y, r = geometry.x, geometry.y, geometry.radius
         return x - r, y - r, x + r, y + r
-    points = (
-        geometry.rings[0] if isinstance(geometry, Region) else geometry.points if isinstance(geometry, Line) else None
-    )
-    assert points is not None
+    points = geometry.points if isinstance(geometry, Line) else np.concatenate(geometry.rings)
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return float(x0), float(y0), float(x1), float(y1)
 

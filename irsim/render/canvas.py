@@ -58,7 +58,9 @@ class Compositor:
             draw_all(canvas)
             self.forget()
             return
-        furniture = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
+        furniture: tuple[Artist, ...] = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
+        if not self.ax.axison:
+            furniture += tuple(self.ax.spines.values())
         artists = [a for a in self.ax.get_children() if a not in furniture and a.get_visible()]
         artists.sort(key=lambda artist: artist.get_zorder())
         self._draw_furniture(canvas)
@@ -81,10 +83,9 @@ class Compositor:
             artist.draw(renderer)
 
     def _canvas(self) -> Any:
-        canvas = self.figure.canvas
-        if not isinstance(canvas, FigureCanvasAgg):
-            raise TypeError(f"cannot read pixels from a {type(canvas).__name__}")
-        return canvas
+        if not isinstance(self.figure.canvas, FigureCanvasAgg):
+            FigureCanvasAgg(self.figure)  # its window was closed
+        return self.figure.canvas
 
     def _draw_furniture(self, canvas: Any) -> None:
         ax, figure = self.ax, self.figure

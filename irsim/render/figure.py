@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
 from matplotlib.transforms import Affine2D
 
@@ -26,6 +27,7 @@ _TITLE_SIZE = 12.0
 _SMALLEST_TITLE = 6.0
 _LABEL_MARGIN = 4.0
 _LABEL_RANK = 0.01
+_HALO = 2.0
 _POINTS_PER_INCH = 72.0
 _MARGINS = {True: (0.75, 0.85), False: (0.25, 0.45)}
 """Room beside and above and below the axes [inch], with ticks and labels and without."""
@@ -43,6 +45,7 @@ class SceneFigure:
         tight: Fit the axes to the figure.
         figure: A figure to use (of a window); default: a new one without a window.
         folder: Where images of the scenario may lie.
+        halo: Labels have a white rim, to be read on dark ground too.
 
     Attributes:
         figure, ax: For drawing more into it.
@@ -57,12 +60,14 @@ class SceneFigure:
         tight: bool = True,
         figure: Figure | None = None,
         folder: str | None = None,
+        halo: bool = False,
     ) -> None:
         if figure is None:
             figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
             FigureCanvasAgg(figure)
         self.figure = figure
         self.axis, self.tight, self.folder = axis, tight, folder
+        self._effects: list[AbstractPathEffect] = [withStroke(linewidth=_HALO, foreground="white")] if halo else []
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
         self._images: dict[str, Any] = {}
@@ -180,7 +185,7 @@ class SceneFigure:
             if artist is None or artist.get_label() != picture.name:
                 if artist is not None:
                     artist.remove()
-                artist = AxesImage(self.ax, interpolation="bilinear", label=picture.name)
+                artist = AxesImage(self.ax, interpolation="auto", label=picture.name)
                 artist.set_data(self._image(picture.name))
                 self.ax.add_image(artist)
                 self._pictures[picture.object] = artist
@@ -209,6 +214,7 @@ class SceneFigure:
             text = self._labels.get(key)
             if text is None:
                 text = self._labels[key] = self.ax.text(0, 0, "", parse_math=False, ha="left", va="baseline")
+                text.set_path_effects(self._effects)
             shown.add(key)
             text.set_visible(True)
             text.set_text(label.text)

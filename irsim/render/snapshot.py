@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
+from irsim.render.bodies import bounds, picture_outline
 from irsim.render.builder import SceneBuilder
 from irsim.render.figure import SceneFigure, fitting_size
 from irsim.render.files import replacing
 from irsim.render.pictures import find_picture
 from irsim.render.pixels import to_image
+from irsim.render.scene import Scene
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -22,6 +24,8 @@ __all__ = ["render_scene"]
 
 _DPI = 100.0
 _COLORS = 128
+_LABEL_GAP = 0.01
+"""Between a label and what it names, as a share of the world's height."""
 
 
 def render_scene(
@@ -59,11 +63,9 @@ def render_scene(
         viewpoint=options.viewpoint if viewpoint is None else viewpoint, overrides={**chosen, **(overrides or {})}
     )
     if labels:
-        robots = {record.id for record in simulation.scenario.objects if record.role == "robot"}
-        scene.marks = [mark for mark in scene.marks if mark.part != "goal" or mark.object in robots]
-        scene.labels = [label for label in scene.labels if label.part != "goal" or label.object in robots]
-    size = fitting_size(extent.width, extent.height, size_px, _DPI, axis=not options.no_axis)
-    figure = SceneFigure(size, _DPI, axis=not options.no_axis, folder=folder)
+        _tidy_labels(scene, {record.id for record in simulation.scenario.objects if record.role == "robot"})
+    size = fitting_size(extent.width, extent.height, size_px, _DPI)
+    figure = SceneFigure(size, _DPI, folder=folder, halo=True)
     figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
     pixels, _ = figure.pixels(tight=True, pad_inches=0.05)
     data = io.BytesIO()
@@ -73,3 +75,18 @@ def render_scene(
         with replacing(Path(out)) as temporary:
             temporary.write_bytes(data.getvalue())
     return data.getvalue()
+
+
+def _tidy_labels(scene: Scene, robots: set[int]) -> None:
+    """Labels on top of what they name; goals of robots only."""
+    scene.marks = [mark for mark in scene.marks if mark.part != "goal" or mark.object in robots]
+    scene.labels = [label for label in scene.labels if label.part != "goal" or label.object in robots]
+    gap = _LABEL_GAP * (scene.extent[3] - scene.extent[2])
+    pictures = {picture.object: picture for picture in scene.pictures}
+    for label in scene.labels:
+        shapes = [mark.geometry for mark in scene.of(label.object, "goal" if label.part == "goal" else "body")]
+        if not shapes and label.object in pictures:
+            shapes = [picture_outline(pictures[label.object])]
+        if shapes:
+            left, _, _, top = bounds(shapes[0])
+            label.x, label.y = left, top + gap
