@@ -52,6 +52,7 @@ class _Decision:
                 if values.size != view.vel_dim:
                     raise ValueError(f"behavior {name!r} returned {values.size} numbers, {view.name!r} takes {view.vel_dim}")
                 simulation.command[row, : values.size] = values
+                simulation.given[row] = 1
 
 
 def attach_python_behaviors(simulation: Simulation) -> None:

@@ -54,7 +54,7 @@ class Lidar:
         self._hits = simulation.hits[self._beams]
         self._valid = simulation.valid[self._beams]
         self.angle_list: Floats = simulation.state.beam_angles[self._beams].copy()
-        self.angle_min, self.angle_max = -self.angle_range / 2, self.angle_range / 2
+        self.angle_min, self.angle_max = float(self.angle_list[0]), float(self.angle_list[-1])
         self.angle_inc = self.angle_range / (self.number - 1) if self.number > 1 else 0.0
         self.time_inc = 0.0
         self.colors: dict[int, tuple[str, float]] = {}

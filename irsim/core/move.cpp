@@ -20,7 +20,8 @@ void limit(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) {
     Vec3& u = state.control[first + i];
-    if (world.is_static[i] || state.stopped[first + i]) {
+    const bool idle = !world.behaves[i] && !state.given[first + i];  // stands still at once, as in IR-SIM
+    if (world.is_static[i] || state.stopped[first + i] || idle) {
       u = {};
       continue;
     }

@@ -102,6 +102,7 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     random_shapes = random_shapes || is_random(s);
     is_robot.push_back(s.role == 0);
     is_static.push_back(s.is_static);
+    behaves.push_back(!std::holds_alternative<std::monostate>(s.behavior));
     unobstructed.push_back(s.unobstructed);
     wander.push_back(s.wander);
     loop.push_back(s.loop);

@@ -43,7 +43,7 @@ struct World {
   int extra_rows;  // E
 
   // (N,) each
-  std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles;
+  std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles, behaves;
   std::vector<int> group;
   std::vector<Drive> drive;
   std::vector<Vec3> vel_min, vel_max, acce;
