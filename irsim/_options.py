@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 import inspect
+import itertools
 import textwrap
-from functools import lru_cache
+from functools import cache
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
@@ -31,8 +32,11 @@ class Options(BaseModel):
         produced = handler(schema)
         target = handler.resolve_ref_schema(produced)
         docs = field_docs(cls)
+        target.pop("title", None)
         for name, value in target.get("properties", {}).items():
             value.pop("title", None)
+            if isinstance(cls.model_fields[name].default, BaseModel):
+                value["default"] = {}
             if docs.get(name) and "description" not in value:
                 value["description"] = docs[name]
         if cls.__doc__:
@@ -53,7 +57,7 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
     return PydanticCustomError(code, "{message}", {"message": message, **details})  # type: ignore[arg-type]
 
 
-@lru_cache(maxsize=None)
+@cache
 def field_docs(model: type[BaseModel]) -> dict[str, str]:
     """The documentation of each field of ``model``, its own and inherited; missing ones are left out."""
     docs: dict[str, str] = {}
@@ -76,7 +80,7 @@ def _own_docs(cls: type) -> dict[str, str]:
         return {}
     body = getattr(tree.body[0], "body", [])
     found: dict[str, str] = {}
-    for statement, following in zip(body, body[1:], strict=False):
+    for statement, following in itertools.pairwise(body):
         if (
             isinstance(statement, ast.AnnAssign)
             and isinstance(statement.target, ast.Name)

@@ -23,9 +23,10 @@ def _is_one(action: Any) -> bool:
 
 def _find(objects: Sequence[ObjectView], key: Any) -> ObjectView:
     if isinstance(key, (int, np.integer)) and not isinstance(key, bool):
-        if 0 <= key < len(objects) and objects[key].id == key:
-            return objects[key]
-        found = [view for view in objects if view.id == key]
+        index = int(key)
+        if 0 <= index < len(objects) and objects[index].id == index:
+            return objects[index]
+        found = [view for view in objects if view.id == index]
     else:
         found = [view for view in objects if view.name == key]
     if not found:
@@ -44,7 +45,7 @@ def _control(view: ObjectView, action: Any) -> list[float]:
         raise ValueError(f"{view.name!r} ({kind}) takes {view.vel_dim} numbers per action, got {values.size}")
     if not np.isfinite(values).all():
         raise ValueError(f"the action for {view.name!r} is not finite: {values.tolist()}")
-    return values.tolist()  # type: ignore[no-any-return]
+    return list(map(float, values))
 
 
 def assign_actions(

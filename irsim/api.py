@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import itertools
 import math
 import shlex
 import sys
@@ -18,8 +19,8 @@ from irsim.observers.events import Event, first_events
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, RenderResult, RobotResult, RunResult, ValidationReport
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.locate import locate
 from irsim.scenario.load import Document, load_text
+from irsim.scenario.locate import locate
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
 from irsim.scenario.read import read
@@ -133,7 +134,7 @@ def render(
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RenderResult:
-    """Draw a scenario: one picture (png, svg, pdf, jpg) after ``steps``, or an animation (gif, mp4, apng) of an episode.
+    """Draw a scenario: a picture (png, svg, pdf, jpg) after ``steps``, or an animation (gif, mp4, apng) of an episode.
 
     Args:
         path: Scenario file.
@@ -141,7 +142,10 @@ def render(
         seed: Over the file's.
         steps: Steps before the picture (default 0: the start), or the longest an animation goes on.
         size: Longer side of the picture [px]; default from ``world.plot``.
-        strict, imports, limits, progress: As for :func:`run`.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first.
+        limits: Limits of the loader.
+        progress: Told how far it is.
 
     Raises:
         ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes.
@@ -203,7 +207,7 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
     longest = 0.0
     for view in env.robot_list:
         points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
-        way = sum(math.dist(a, b) for a, b in zip(points, points[1:], strict=False))
+        way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
     return max(_MIN_HORIZON, _HORIZON_FACTOR * longest)
@@ -298,7 +302,7 @@ def _run_result(
                 collision_count=sum(e.kind == "collision" and view.name in (e.object, e.partner) for e in events),
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
-                pose=tuple(map(float, view.state[:3, 0])),
+                pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
             )
         )
     ends = [robot.outcome for robot in robots]
@@ -339,9 +343,11 @@ def _summary(robots: list[RobotResult], events: Sequence[Event], sim_time: float
     arrived = sum(robot.outcome == "success" for robot in robots)
     text = f"{arrived} of {len(robots)} robots arrived" if len(robots) > 1 else ""
     if len(robots) == 1:
-        text = {"success": "the robot arrived", "collision": "the robot collided", "timeout": "the robot did not arrive"}[
-            robots[0].outcome
-        ]
+        text = {
+            "success": "the robot arrived",
+            "collision": "the robot collided",
+            "timeout": "the robot did not arrive",
+        }[robots[0].outcome]
     text += f" within {sim_time:.1f} s"
     names = {robot.name for robot in robots}
     first = next((e for e in events if e.kind == "collision" and names & {e.object, e.partner}), None)

@@ -93,7 +93,9 @@ class Batch:
         robots = len(self.robots)
         if actions.ndim != 3 or actions.shape[0] != self.n or not 1 <= actions.shape[1] <= robots:
             raise ValueError(f"actions are ({self.n}, up to {robots}, controls), not {actions.shape}")
-        if actions.shape[2] > 3 or actions.shape[2] < max(self.scenario.objects[i].vel_dim for i in range(actions.shape[1])):
+        if actions.shape[2] > 3 or actions.shape[2] < max(
+            self.scenario.objects[i].vel_dim for i in range(actions.shape[1])
+        ):
             raise ValueError(f"actions have {actions.shape[2]} numbers each; these drives take another number")
         acting, width = actions.shape[1], actions.shape[2]
         given = ~np.isnan(actions[:, :, 0])
@@ -101,7 +103,11 @@ class Batch:
         self._given[:, :acting] = given
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
-        """Let behaviors drive for ``steps`` periods in one go; returns the periods of the world that went on longest."""
+        """Let behaviors drive for ``steps`` periods in one go.
+
+        Returns:
+            Periods executed by the world that went on longest.
+        """
         return self._simulation.advance(steps, until_done=until_done)
 
     def reset(self, mask: Any = None, *, random: bool | None = None) -> None:

@@ -153,9 +153,7 @@ CODES: dict[str, Code] = {
         "A scenario may have 100,000 objects (servers may allow less); the limit can be raised where it is read.",
     ),
     "limits-order": Code("lower limit above upper limit", "vel_min must not exceed vel_max in any component."),
-    "angle-range": Code(
-        "heading interval is not one turn wide", "angle_range is [low, low + 2π], by default [-π, π]."
-    ),
+    "angle-range": Code("heading interval is not one turn wide", "angle_range is [low, low + 2π], by default [-π, π]."),
     "invalid-polygon": Code(
         "polygon crosses itself",
         "The corners must go around the polygon once. irsim.make uses the area the outline encloses and warns.",

@@ -11,7 +11,6 @@ import numpy as np
 
 from irsim.actions import assign_actions
 from irsim.diagnostics import Diagnostic, format_path
-from irsim.env_access import EnvAccess
 from irsim.env_drawing import EnvDrawing
 from irsim.errors import NotSimulatedError
 from irsim.log import LEVELS, Logger
@@ -24,7 +23,7 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed, generator
-from irsim.views import ObjectView, views
+from irsim.views import views
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -51,14 +50,18 @@ def make(
     chosen = (projection or "2d").lower()
     if chosen == "3d":
         raise NotSimulatedError(
-            [Diagnostic("not-yet-simulated", "error", (), "projection='3d' is not drawn yet", fix="use projection='2d'")]
+            [
+                Diagnostic(
+                    "not-yet-simulated", "error", (), "projection='3d' is not drawn yet", fix="use projection='2d'"
+                )
+            ]
         )
     if chosen != "2d":
         raise ValueError(f"unknown projection {projection!r}: choose '2d'")
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvAccess, EnvDrawing):
+class Env(EnvDrawing):
     """One world, stepped from Python.
 
     Args:
@@ -137,9 +140,8 @@ class Env(EnvAccess, EnvDrawing):
             ValueError: Unknown target, wrong number of numbers, or an action in external mode.
             RuntimeError: The environment has ended.
         """
-        if self.pause_flag or self.quit_flag or self.debug_flag or self._ended:
-            if self._held():
-                return
+        if (self.pause_flag or self.quit_flag or self.debug_flag or self._ended) and self._held():
+            return
         simulation = self._simulation
         if self._external:
             if action is not None:
@@ -282,30 +284,11 @@ class Env(EnvAccess, EnvDrawing):
 
     @property
     def outcome(self) -> Outcome:
-        """``running``, ``success`` (all arrived, none collided before), ``collision``, or ``timeout`` past
-        ``world.time_limit``."""
+        """How it ended: ``running``, ``success``, ``collision`` or ``timeout``.
+
+        Success means that every robot arrived and none collided before; ``timeout`` needs ``world.time_limit``.
+        """
         return outcome_of(self._simulation)
-
-    @property
-    def status(self) -> str:
-        """One word for titles: Arrived, Collision, Pause, Running, …"""
-        if self.pause_flag:
-            return "Pause"
-        simulation = self._simulation
-        if simulation.robots.any():
-            if simulation.arrived[simulation.robots].all():
-                return "Arrived"
-            if simulation.collided[simulation.robots].any():
-                return "Collision"
-        if self._label is not None:
-            return self._label
-        if self.debug_flag:
-            return "Pause (Debugging)"
-        return "Running (keyboard)" if self.world_param.control_mode == "keyboard" else "Running"
-
-    def set_status(self, status: str) -> None:
-        """Label shown until the next step."""
-        self._label = str(status)
 
     # seeds -----------------------------------------------------------------------------------------------------------
     def set_random_seed(self, seed: int | None = None, reload: bool = False) -> None:

@@ -6,21 +6,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irsim.parameters import PathParam, WorldView
+from irsim.env_access import EnvAccess
+from irsim.parameters import PathParam, WorldParam
 
 if TYPE_CHECKING:
     from irsim.log import Logger
     from irsim.render.plot import EnvPlot
-    from irsim.scenario.objects import ResolvedScenario
-    from irsim.simulation import Simulation
 
 __all__ = ["EnvDrawing"]
 
 
-class EnvDrawing:
-    """render, save_figure, draw_* and the animation of an environment."""
+class EnvDrawing(EnvAccess):
+    """Status, render, save_figure, draw_* and the animation of an environment."""
 
-    scenario: ResolvedScenario
     logger: Logger
     path_param: PathParam
     display: bool
@@ -28,12 +26,35 @@ class EnvDrawing:
     save_ani: bool
     full: bool
     ani_kwargs: dict[str, Any]
-    _simulation: Simulation
-    _world: WorldView
+    world_param: WorldParam
+    pause_flag: bool
+    debug_flag: bool
+    _label: str | None
 
     def _start_drawing(self) -> None:
         self._plot: EnvPlot | None = None
         self._title: str | None = None
+
+    @property
+    def status(self) -> str:
+        """One word for titles: Arrived, Collision, Pause, Running, …."""
+        if self.pause_flag:
+            return "Pause"
+        simulation = self._simulation
+        if simulation.robots.any():
+            if simulation.arrived[simulation.robots].all():
+                return "Arrived"
+            if simulation.collided[simulation.robots].any():
+                return "Collision"
+        if self._label is not None:
+            return self._label
+        if self.debug_flag:
+            return "Pause (Debugging)"
+        return "Running (keyboard)" if self.world_param.control_mode == "keyboard" else "Running"
+
+    def set_status(self, status: str) -> None:
+        """Label shown until the next step."""
+        self._label = str(status)
 
     @property
     def disable_all_plot(self) -> bool:
@@ -81,8 +102,8 @@ class EnvDrawing:
         """Save the present picture.
 
         Args:
-            save_name: File name with format (default ``<world>.png``), in the ``figure`` folder beside the script unless
-                it is an absolute path.
+            save_name: File name with format (default ``<world>.png``), in the folder ``figure`` beside the script
+                unless it is an absolute path.
             include_index: Append ``_<step, 4 digits>``.
             save_gif: Save into the animation buffer folder instead.
             **kwargs: Options of Matplotlib's ``savefig``: ``dpi``, ``bbox_inches``, ``transparent``, …
@@ -111,7 +132,7 @@ class EnvDrawing:
             self._plot.reset()
 
     def draw_trajectory(self, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
-        """Draw a path: a list of columns or an array (2 or more, N) [m]; ``refresh=True`` removes it with the next frame."""
+        """Draw a path: a list of columns or (2 or more, N) [m]; ``refresh=True`` removes it with the next frame."""
         if not self.headless:
             self._env_plot.draw_trajectory(traj, traj_type, **kwargs)
 

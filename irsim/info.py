@@ -20,8 +20,9 @@ def convex_inequality(view: ObjectView) -> tuple[Floats | None, Floats | None, s
     """The body as ``G p <= h`` in the body frame, for convex optimisation.
 
     Returns:
-        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone ``"Rpositive"``.
-        Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Otherwise None, None, None, False.
+        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone
+        ``"Rpositive"``. Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Otherwise
+        None, None, None, False.
     """
     state = view._simulation.state
     kinds = state.parts(view.row)

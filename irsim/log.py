@@ -1,4 +1,4 @@
-"""A logger per environment: lines ``YYYY-MM-DD HH:mm | LEVEL | message`` on standard output and, if asked, in a file."""
+"""A logger per environment: lines ``YYYY-MM-DD HH:mm | LEVEL | message`` on standard output, and in a file if asked."""
 
 from __future__ import annotations
 

@@ -50,7 +50,9 @@ class _Decision:
                 control = function(ego_object=view, external_objects=others, **options.model_dump())
                 values = np.asarray(control, dtype=np.float64).reshape(-1)
                 if values.size != view.vel_dim:
-                    raise ValueError(f"behavior {name!r} returned {values.size} numbers, {view.name!r} takes {view.vel_dim}")
+                    raise ValueError(
+                        f"behavior {name!r} returned {values.size} numbers, {view.name!r} takes {view.vel_dim}"
+                    )
                 simulation.command[row, : values.size] = values
                 simulation.given[row] = 1
 

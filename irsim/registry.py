@@ -185,6 +185,5 @@ CUSTOM_BEHAVIORS = CustomBehaviors("behavior", BEHAVIORS)
 CUSTOM_GROUP_BEHAVIORS = CustomBehaviors("group behavior", BEHAVIORS)
 
 REGISTRIES = {
-    registry.kind: registry
-    for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
+    registry.kind: registry for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
 }

@@ -92,7 +92,9 @@ class Lidar:
         if self.has_velocity:
             first = self.parent.world * self._simulation.objects
             for hit in np.unique(self._hits[self._hits >= 0]):
-                result[:, self._hits == hit] = np.array(self._simulation.state.velocity_world(first + int(hit)))[:, None]
+                result[:, self._hits == hit] = np.array(self._simulation.state.velocity_world(first + int(hit)))[
+                    :, None
+                ]
         return result
 
     @property
@@ -108,9 +110,9 @@ class Lidar:
         """The scan as a dictionary; arrays are copies of your own.
 
         Returns:
-            ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``time_increment``, ``scan_time`` [s], ``range_min``,
-            ``range_max``, ``ranges`` (number,) [m], ``intensities`` None, ``velocity`` (2, number) [m/s], ``valid``
-            (number,) bool.
+            ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``time_increment``, ``scan_time`` [s],
+            ``range_min``, ``range_max``, ``ranges`` (number,) [m], ``intensities`` None, ``velocity`` (2, number)
+            [m/s], ``valid`` (number,) bool.
         """
         scan: dict[str, Any] = dict(self._fixed)
         scan["ranges"] = self._ranges.copy()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,10 @@ from irsim._options import problem
 from irsim.diagnostics import nearest
 from irsim.registry import CustomBehaviors, Registry
 
-__all__ = ["Choices", "Select"]
+__all__ = ["COLLECTED_MODELS", "Choices", "Select"]
+
+COLLECTED_MODELS: ContextVar[dict[str, type[BaseModel]] | None] = ContextVar("COLLECTED_MODELS", default=None)
+"""Models that a schema in the making refers to; None when nobody makes one."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,9 @@ class Select:
         exclude: Names of the registry that are not accepted here.
         null: null is accepted and stays None.
         empty: An empty mapping is accepted and becomes None.
+        short: A text alone stands for a mapping with this name (None: the text is the name) and the text under this
+            key.
+        trait: Class attribute that must be true of the models the schema offers; the checks say so of others.
     """
 
     def __init__(
@@ -72,10 +79,12 @@ class Select:
         exclude: tuple[str, ...] = (),
         null: bool = False,
         empty: bool = False,
+        short: tuple[str | None, str] | None = None,
+        trait: str | None = None,
     ) -> None:
         self.registry, self.default, self.folded, self.alias = registry, default, folded, alias
         self.custom, self.fallback, self.exclude = custom, fallback, exclude
-        self.null, self.empty = null, empty
+        self.null, self.empty, self.short, self.trait = null, empty, short, trait
 
     def names(self) -> list[str]:
         """Every name accepted here, user code's included."""
@@ -114,6 +123,9 @@ class Select:
         if self.empty and isinstance(value, Mapping) and not value:
             return None
         kind = self.registry.kind
+        if self.short is not None and isinstance(value, str):
+            name, key = self.short
+            value = {"name": name, key: value} if name is not None else {key: value}
         if isinstance(value, str):
             raise problem(
                 "not-a-mapping",
@@ -155,9 +167,51 @@ class Select:
         )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        from irsim.scenario.schema import selection_schema
+        options = [self._option_schema(name) for name in self._schema_names()]
+        if self.custom is not None and self.fallback is not None and (names := self.custom.names()):
+            option = self._model_schema(self.fallback)
+            options.append({**option, "properties": {"name": {"enum": names}}, "required": ["name"]})
+        if self.short is not None:
+            name = self.short[0]
+            options.append({"type": "string"} if name is not None else {"enum": self._schema_names()})
+        if self.empty:
+            options.append({"type": "object", "maxProperties": 0})
+        if self.null:
+            options.append({"type": "null"})
+        return {"anyOf": options}
 
-        return selection_schema(self, handler)
+    def _schema_names(self) -> list[str]:
+        names = []
+        for name in self.registry.names():
+            feature = self.registry.get(name)
+            if feature is None or name in self.exclude:
+                continue
+            if self.trait is None or getattr(feature.options, self.trait, False):
+                names.append(name)
+        return names
+
+    def _model_schema(self, model: type[BaseModel]) -> JsonSchemaValue:
+        """A reference to the model where someone collects them, else the model itself."""
+        collected = COLLECTED_MODELS.get()
+        if collected is None:
+            return model.model_json_schema()
+        collected[model.__name__] = model
+        return {"$ref": f"#/$defs/{model.__name__}"}
+
+    def _option_schema(self, name: str) -> JsonSchemaValue:
+        """The model of one name, with what makes a mapping be of that name."""
+        feature = self.registry.get(name)
+        assert feature is not None
+        reference = self._model_schema(feature.options)
+        fields = feature.options.model_fields
+        required = [key for key, field in fields.items() if field.is_required() and key != "name"]
+        is_default = name == self.default
+        if self.alias is None:
+            return reference if is_default else {**reference, "required": [*required, "name"]}
+        by_alias: JsonSchemaValue = {"properties": {self.alias: {"enum": [name]}}}
+        if not is_default:
+            by_alias["required"] = [self.alias]
+        return {**reference, "if": {"required": ["name"]}, "else": by_alias}
 
 
 def _at(kind: str, error: PydanticCustomError, given: Any, *location: str) -> ValidationError:

@@ -113,7 +113,9 @@ class Simulation:
     def done(self) -> NDArray[np.bool_]:
         """(W,) whether every robot of a world has arrived or stopped; False without robots."""
         ended = (self.arrived | self.stopped).astype(bool).reshape(self.copies, self.objects)[:, self.robots]
-        return ended.all(axis=1) if ended.shape[1] else np.zeros(self.copies, dtype=bool)
+        if not ended.shape[1]:
+            return np.zeros(self.copies, dtype=bool)
+        return np.asarray(ended.all(axis=1))
 
     def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
         """Put worlds back to their start.
@@ -159,8 +161,8 @@ class Simulation:
             severity="error",
             path=(*record.path, "distribution"),
             message=(
-                f"no room for {record.name!r} (object {len(placement.objects)} of this entry compete for {area:.3g} m2) "
-                f"with seed {seed}"
+                f"no room for {record.name!r} with seed {seed}: {len(placement.objects)} objects of this entry "
+                f"share {area:.3g} m2"
             ),
             given=len(placement.objects),
             fix="lower `number` or `min_distance`, make the shapes smaller, or widen range_low/range_high",

@@ -40,7 +40,8 @@ def generator(seed: int, scene: int, noise: int, stream: str, object_id: int = 0
 
     Args:
         seed: Seed of the world, 64 bits.
-        scene, noise: Counters of the world (``reset(random=True)`` and ``reset()``).
+        scene: Counter of ``reset(random=True)``.
+        noise: Counter of ``reset()`` since then.
         stream: Name in ``irsim._core.STREAMS``.
         object_id: Whose draws.
     """

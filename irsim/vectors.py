@@ -21,6 +21,7 @@ __all__ = [
     "Pose",
     "Range",
     "Vector",
+    "any_of",
     "is_vector",
     "vector",
 ]
@@ -89,10 +90,16 @@ class PerObject:
         return core_schema.tagged_union_schema({ONE: item, PER_OBJECT: many}, self._discriminate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        choices: Any = schema
-        item = handler(choices["choices"][ONE])
-        options = item["anyOf"] if set(item) == {"anyOf"} else [item]
-        return {"anyOf": [*options, {"type": "array", "items": item, "minItems": 1}]}
+        return any_of(handler(schema))
+
+
+def any_of(union: JsonSchemaValue) -> JsonSchemaValue:
+    """A tagged union's schema without the claim that exactly one choice matches; unions inside it are flattened."""
+    options: list[JsonSchemaValue] = []
+    if "oneOf" not in union: print("NO", union)
+    for option in union.pop("oneOf", []):
+        options += option["anyOf"] if set(option) == {"anyOf"} else [option]
+    return {**union, "anyOf": options}
 
 
 class OrNull:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.body import ObjectBody, column
 from irsim.info import ObjectInfo, ObstacleInfo
 from irsim.scans import Lidar
 
@@ -19,18 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["ObjectView", "views"]
 
 Floats = NDArray[np.float64]
-_RADIUS_MARGIN = 0.1
-"""What avoidance methods of IR-SIM add to a body's radius [m]."""
 
 
-def _column(values: Any) -> Floats:
-    """(n, 1) read-only copy."""
-    column = np.array(values, dtype=np.float64).reshape(-1, 1)
-    column.setflags(write=False)
-    return column
-
-
-class ObjectView:
+class ObjectView(ObjectBody):
     """One robot or obstacle.
 
     Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
@@ -82,12 +74,12 @@ class ObjectView:
     @property
     def init_state(self) -> Floats:
         """(state_dim, 1) the state that ``reset`` returns to."""
-        return _column(self._simulation.state.initial_state(self.row)[: self.state_dim])
+        return column(self._simulation.state.initial_state(self.row)[: self.state_dim])
 
     @property
     def position(self) -> Floats:
         """(2, 1) x, y [m], world frame."""
-        return _column(self._pose[:2])
+        return column(self._pose[:2])
 
     @property
     def orientation(self) -> float:
@@ -105,12 +97,12 @@ class ObjectView:
     @property
     def velocity(self) -> Floats:
         """(vel_dim, 1) executed control, in the command frame of the drive."""
-        return _column(self._simulation.control[self.row, : self.vel_dim])
+        return column(self._simulation.control[self.row, : self.vel_dim])
 
     @property
     def velocity_xy(self) -> Floats:
         """(2, 1) velocity in the world frame [m/s] that the present control gives."""
-        return _column(self._simulation.state.velocity_world(self.row))
+        return column(self._simulation.state.velocity_world(self.row))
 
     @property
     def max_speed(self) -> float:
@@ -125,7 +117,7 @@ class ObjectView:
     @property
     def trajectory(self) -> list[Floats]:
         """States after each executed step, (state_dim, 1) each, without the initial one."""
-        return [_column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
+        return [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
 
     def set_state(self, state: Any, init: bool = False) -> None:
         """Put the object somewhere else.
@@ -168,12 +160,12 @@ class ObjectView:
     def goal(self) -> Floats | None:
         """(2 or 3, 1) the present goal, None without one."""
         goals = self._simulation.state.goals(self.row)
-        return _column(goals[0]) if goals else None
+        return column(goals[0]) if goals else None
 
     @property
     def goals(self) -> list[Floats]:
         """The present goal and those still to come, (2 or 3, 1) each."""
-        return [_column(goal) for goal in self._simulation.state.goals(self.row)]
+        return [column(goal) for goal in self._simulation.state.goals(self.row)]
 
     def set_goal(self, goal: Any, init: bool = False) -> None:
         """Give a new goal.
@@ -239,95 +231,27 @@ class ObjectView:
         """Itself."""
         return self
 
-    # body ------------------------------------------------------------------------------------------------------------
-    @property
-    def shape(self) -> str:
-        """Name of the shape."""
-        return str(getattr(self.record.shape, "name", ""))
-
-    @property
-    def kinematics(self) -> str | None:
-        """Name of the drive; None for objects that have none."""
-        return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
-
-    @property
-    def radius(self) -> float:
-        """Radius of the smallest circle round the body [m]."""
-        return float(self._simulation.radius[self.row])
-
-    @property
-    def radius_extend(self) -> float:
-        """``radius`` plus the margin that avoidance methods keep."""
-        return self.radius + _RADIUS_MARGIN
-
-    @property
-    def vertices(self) -> Floats | None:
-        """(2, M) outline in the world frame: 64 points for a circle, None for a compound."""
-        return self._outline(world_frame=True)
-
-    @property
-    def original_vertices(self) -> Floats | None:
-        """(2, M) outline in the body frame."""
-        return self._outline(world_frame=False)
-
-    @property
-    def part_vertices(self) -> list[Floats] | None:
-        """Outlines of the parts of a compound, (2, M) each, world frame; None for simple shapes."""
-        if self.shape != "compound":
-            return None
-        return [self._part(i, world_frame=True) for i in range(len(self._simulation.state.parts(self.row)))]
-
-    @property
-    def length(self) -> float:
-        """Extent of the body along its x axis [m]."""
-        return self._extent(0)
-
-    @property
-    def width(self) -> float:
-        """Extent of the body along its y axis [m]."""
-        return self._extent(1)
-
-    @property
-    def geometry(self) -> Any:
-        """The body as a shapely geometry, world frame (circles as polygons of 64 vertices)."""
-        from irsim.world.geometry import shapely_geometry
-
-        return shapely_geometry(self._simulation, self.row, world_frame=True)
-
-    @property
-    def original_geometry(self) -> Any:
-        """The body as a shapely geometry, body frame."""
-        from irsim.world.geometry import shapely_geometry
-
-        return shapely_geometry(self._simulation, self.row, world_frame=False)
-
-    @property
-    def centroid(self) -> Floats:
-        """(2, 1) centre of the body's area, world frame."""
-        point = self.geometry.centroid
-        return _column([point.x, point.y])
-
     # limits and description ------------------------------------------------------------------------------------------
     @property
     def vel_min(self) -> Floats:
         """(vel_dim, 1) lower control limits."""
-        return _column(self.record.vel_min)
+        return column(self.record.vel_min)
 
     @property
     def vel_max(self) -> Floats:
         """(vel_dim, 1) upper control limits."""
-        return _column(self.record.vel_max)
+        return column(self.record.vel_max)
 
     @property
     def acce(self) -> Floats:
         """(vel_dim, 1) limits on the change of each control per second."""
-        return _column(self.record.acce)
+        return column(self.record.acce)
 
     def get_vel_range(self) -> tuple[Floats, Floats]:
         """(lower, upper) controls that the limits allow in the next step, (vel_dim, 1) each."""
         change = np.asarray(self.acce) * self._simulation.scenario.world.step_time
         now = self.velocity
-        return _column(np.maximum(self.vel_min, now - change)), _column(np.minimum(self.vel_max, now + change))
+        return column(np.maximum(self.vel_min, now - change)), column(np.minimum(self.vel_max, now + change))
 
     @property
     def abbr(self) -> str:
@@ -397,30 +321,6 @@ class ObjectView:
             raise AttributeError(f"{self.name!r} has no lidar: add one under `sensors` in its scenario entry")
         return self.lidar
 
-    def _part(self, part: int, *, world_frame: bool) -> Floats:
-        state = self._simulation.state
-        if state.parts(self.row)[part] == "circle":
-            x, y, radius = state.circle(self.row, part, world_frame)
-            turn = self.orientation if world_frame else 0.0
-            angles = turn - np.arange(64) * (2 * math.pi / 64)
-            return np.vstack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
-        return state.vertices(self.row, part, world_frame).T.copy()
-
-    def _outline(self, *, world_frame: bool) -> Floats | None:
-        return None if self.shape == "compound" else self._part(0, world_frame=world_frame)
-
-    def _extent(self, axis: int) -> float:
-        state = self._simulation.state
-        low, high = math.inf, -math.inf
-        for part, kind in enumerate(state.parts(self.row)):
-            if kind == "circle":
-                *centre, radius = state.circle(self.row, part, False)
-                low, high = min(low, centre[axis] - radius), max(high, centre[axis] + radius)
-            else:
-                along = state.vertices(self.row, part, False)[:, axis]
-                low, high = min(low, float(along.min())), max(high, float(along.max()))
-        return high - low
-
 
 def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
     """The views of one world, made once per simulation."""
@@ -438,10 +338,9 @@ def _sensors(simulation: Simulation, view: ObjectView) -> list[Lidar]:
 def _goal_list(goal: Any) -> list[list[float]]:
     if goal is None:
         return []
+    queue = hasattr(goal, "popleft")
     several = isinstance(goal, Sequence) and not isinstance(goal, str) and len(goal) > 0
-    if several and all(isinstance(g, (Sequence, np.ndarray)) and np.size(g) in (2, 3) for g in goal):
-        goals = [np.asarray(g, dtype=np.float64).reshape(-1).tolist() for g in goal]
-    elif hasattr(goal, "popleft"):
+    if queue or (several and all(isinstance(g, (Sequence, np.ndarray)) and np.size(g) in (2, 3) for g in goal)):
         goals = [np.asarray(g, dtype=np.float64).reshape(-1).tolist() for g in goal]
     else:
         goals = [np.asarray(goal, dtype=np.float64).reshape(-1).tolist()]

@@ -50,13 +50,20 @@ def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> R
             if until_done and simulation.state.done(0):
                 break
             simulation.step()
-            rows.append((simulation.pose.copy(), simulation.control.copy(), simulation.arrived.copy(), simulation.collided.copy()))
+            rows.append(
+                (
+                    simulation.pose.copy(),
+                    simulation.control.copy(),
+                    simulation.arrived.copy(),
+                    simulation.collided.copy(),
+                )
+            )
         count = simulation.objects
         pose, control = (np.array([row[i] for row in rows]).reshape(-1, count, 3) for i in (0, 1))
         arrived, collided = (np.array([row[i] for row in rows], dtype=np.uint8).reshape(-1, count) for i in (2, 3))
     else:
         trace = core.rollout(simulation.world, simulation.state, steps, until_done=until_done)
         pose, control, arrived, collided = trace.pose, trace.control, trace.arrived, trace.collided
-    time = (begin + 1 + np.arange(len(pose))) * simulation.scenario.world.step_time
+    time = np.arange(begin + 1, begin + 1 + len(pose), dtype=np.float64) * simulation.scenario.world.step_time
     names = tuple(record.name for record in simulation.scenario.objects)
     return Rollout(time, pose, control, arrived.astype(bool), collided.astype(bool), names)

@@ -20,7 +20,7 @@ def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> 
     import shapely
 
     state = simulation.state
-    parts = []
+    parts: list[Any] = []
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":
             x, y, radius = state.circle(row, part, world_frame)

@@ -60,11 +60,14 @@ def test_a_collision_stops_and_is_told(make: Make) -> None:
             break
     # the disc touches x = 3.5 when its centre is at 3.0
     assert env.robot.state[0, 0] == pytest.approx(3.0, abs=0.11)
-    assert env.robot.collision and env.robot.stop_flag and env.status == "Collision"
+    assert env.robot.collision
+    assert env.robot.stop_flag
+    assert env.status == "Collision"
     assert env.outcome == "collision"
     (event,) = env.events
     assert (event.kind, event.object, event.partner) == ("collision", "robot_0", "obstacle_1")
-    assert event.x == pytest.approx(3.5, abs=0.11) and event.y == pytest.approx(1.0, abs=0.3)
+    assert event.x == pytest.approx(3.5, abs=0.11)
+    assert event.y == pytest.approx(1.0, abs=0.3)
     assert [o.name for o in env.robot.collision_obj] == ["obstacle_1"]
     before = env.robot.state
     env.step()
@@ -74,7 +77,9 @@ def test_a_collision_stops_and_is_told(make: Make) -> None:
 
 def test_initial_overlap_is_visible_at_once(make: Make) -> None:
     env = make(WALL.replace("state: [1, 1, 0]", "state: [4, 1, 0]"))
-    assert env.robot.collision and env.status == "Collision" and env.done()
+    assert env.robot.collision
+    assert env.status == "Collision"
+    assert env.done()
     before = env.robot.state
     env.step()
     assert np.array_equal(env.robot.state, before)
@@ -84,7 +89,10 @@ def test_reset_repeats_the_scene(make: Make) -> None:
     env = make(ONE)
     first = [env.step() or env.robot.state for _ in range(5)]
     env.reset()
-    assert env.time == 0 and env.status == "Reset" and env.robot.trajectory == [] and env.events == []
+    assert env.time == 0
+    assert env.status == "Reset"
+    assert env.robot.trajectory == []
+    assert env.events == []
     again = [env.step() or env.robot.state for _ in range(5)]
     assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
 
@@ -93,7 +101,8 @@ def test_state_is_a_snapshot_that_cannot_be_written(make: Make) -> None:
     env = make(ONE)
     kept = env.get_robot_state()
     env.step()
-    assert kept[0, 0] == 1.0 and env.robot.state[0, 0] == pytest.approx(1.1)
+    assert kept[0, 0] == 1.0
+    assert env.robot.state[0, 0] == pytest.approx(1.1)
     with pytest.raises(ValueError, match="read-only"):
         kept[0, 0] = 5.0
 
@@ -106,7 +115,9 @@ def test_trajectory_holds_every_step(make: Make) -> None:
     assert env.robot.trajectory[0].shape == (3, 1)
 
 
-@pytest.mark.parametrize("action", [[0.5, 0.2], (0.5, 0.2), np.array([0.5, 0.2]), np.array([[0.5], [0.2]]), [[0.5, 0.2]]])
+@pytest.mark.parametrize(
+    "action", [[0.5, 0.2], (0.5, 0.2), np.array([0.5, 0.2]), np.array([[0.5], [0.2]]), [[0.5, 0.2]]]
+)
 def test_one_action_in_every_spelling(make: Make, action: Any) -> None:
     env = make(ONE)
     env.step(action)
@@ -165,10 +176,12 @@ def test_bad_actions_say_what_is_wrong(make: Make, action: Any, target: Any, err
 def test_external_mode_moves_nothing_but_evaluates(make: Make) -> None:
     env = make(WALL, step_mode="external")
     env.step()
-    assert env.robot.state[0, 0] == 1.0 and env.time == 0.1
+    assert env.robot.state[0, 0] == 1.0
+    assert env.time == 0.1
     env.robot.set_state([4, 1, 0])
     env.step()
-    assert env.robot.collision and env.time == 0.2
+    assert env.robot.collision
+    assert env.time == 0.2
     with pytest.raises(ValueError, match="external"):
         env.step([0.1, 0.1])
 
@@ -180,7 +193,8 @@ def test_rollout_equals_steps(make: Make) -> None:
         stepped.step()
         poses.append(stepped.simulation.pose.copy())
     result = rolled.rollout(1000)
-    assert len(result) == len(poses) and np.array_equal(result.pose, np.array(poses))
+    assert len(result) == len(poses)
+    assert np.array_equal(result.pose, np.array(poses))
     assert rolled.events == stepped.events
     assert result.time[-1] == pytest.approx(stepped.sim_time)
     assert rolled.robot.trajectory[-1].tolist() == stepped.robot.trajectory[-1].tolist()
@@ -189,7 +203,8 @@ def test_rollout_equals_steps(make: Make) -> None:
 def test_environments_do_not_meet(make: Make) -> None:
     a, b = make(ONE), make(ONE)
     a.step()
-    assert b.time == 0 and b.robot.state[0, 0] == 1.0
+    assert b.time == 0
+    assert b.robot.state[0, 0] == 1.0
     a.end()
     b.step()
     assert b.time == 0.1
@@ -201,10 +216,12 @@ def test_pause_and_resume(make: Make) -> None:
     env = make(ONE)
     env.pause()
     env.step()
-    assert env.time == 0 and env.status == "Pause"
+    assert env.time == 0
+    assert env.status == "Pause"
     env.resume()
     env.step()
-    assert env.time == 0.1 and env.status == "Running"
+    assert env.time == 0.1
+    assert env.status == "Running"
 
 
 def test_missing_file_names_places_and_near_matches(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -220,7 +237,8 @@ def test_custom_behavior_registered_as_function(make: Make) -> None:
 
     @register_behavior("diff", "test_spin")
     def spin(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
-        assert len(external_objects) == 1 and kwargs["speed"] == 0.7
+        assert len(external_objects) == 1
+        assert kwargs["speed"] == 0.7
         return np.array([[0.0], [kwargs["speed"]]])
 
     env = make(WALL.replace("{name: dash}", "{name: test_spin, speed: 0.7}"))

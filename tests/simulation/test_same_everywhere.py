@@ -29,7 +29,11 @@ def scenarios(draw: st.DrawFn) -> str:
         low = "[" + ", ".join("-" + v.strip() for v in top.strip("[]").split(",")) + "]"
         behavior = draw(
             st.sampled_from(
-                ["{name: dash}", "{name: dash, loop: true}", "{name: dash, wander: true, range_low: [1, 1, -3], range_high: [11, 11, 3]}"]
+                [
+                    "{name: dash}",
+                    "{name: dash, loop: true}",
+                    "{name: dash, wander: true, range_low: [1, 1, -3], range_high: [11, 11, 3]}",
+                ]
             )
         )
         noise = draw(st.booleans())
@@ -45,7 +49,9 @@ def scenarios(draw: st.DrawFn) -> str:
         if draw(st.booleans()):
             lines.append(f"    acce: [{', '.join(['2.0'] * len(top.split(',')))}]")
         if draw(st.booleans()):
-            lines.append("    sensors: [{name: lidar2d, number: 11, range_max: 5, angle_range: 3.0, noise: true, angle_std: 0.01}]")
+            lines.append(
+                "    sensors: [{name: lidar2d, number: 11, range_max: 5, angle_range: 3, noise: true, angle_std: 0.01}]"
+            )
     lines += [
         "obstacle:",
         f"  - number: {draw(st.integers(0, 3))}",
@@ -90,7 +96,7 @@ def test_alone_in_batch_and_rolled_out_agree(tmp_path: Path, text: str, seed: in
 def test_masked_reset_touches_only_its_worlds(tmp_path: Path) -> None:
     path = tmp_path / "world.yaml"
     path.write_text(
-        "world: {}\nrobot:\n  - {number: 2, kinematics: {name: diff}, distribution: {name: random}, behavior: {name: dash}}\n"
+        "robot: [{number: 2, kinematics: {name: diff}, distribution: {name: random}, behavior: {name: dash}}]"
     )
     batch = irsim.batch(str(path), 3, seeds=[1, 2, 3], threads=2)
     start = batch.pose.copy()
@@ -109,7 +115,8 @@ def test_masked_reset_touches_only_its_worlds(tmp_path: Path) -> None:
 def test_the_seed_rules(tmp_path: Path) -> None:
     path = tmp_path / "world.yaml"
     path.write_text(
-        "world: {seed: 4}\nrobot:\n  - {kinematics: {name: diff, noise: true}, distribution: {name: random}, behavior: {name: dash}}\n"
+        "world: {seed: 4}\n"
+        "robot: {kinematics: {name: diff, noise: true}, distribution: {name: random}, behavior: {name: dash}}\n"
     )
 
     def make(**kwargs: int) -> irsim.Env:
@@ -118,7 +125,8 @@ def test_the_seed_rules(tmp_path: Path) -> None:
     def walk(env: irsim.Env) -> list[list[float]]:
         return [env.step() or env.simulation.pose[0].tolist() for _ in range(5)]
 
-    assert make().seed == 4 and make(seed=9).seed == 9
+    assert make().seed == 4
+    assert make(seed=9).seed == 9
     env = make()
     start, first = env.simulation.pose.copy(), walk(env)
     env.reset()
@@ -132,7 +140,8 @@ def test_the_seed_rules(tmp_path: Path) -> None:
     assert np.array_equal(other.simulation.pose, second), "the next scene is the same whatever happened before"
     env.set_random_seed(4)
     env.reset()
-    assert np.array_equal(env.simulation.pose, start) and walk(env) == first
+    assert np.array_equal(env.simulation.pose, start)
+    assert walk(env) == first
     with pytest.raises(ValueError, match="64"):
         make(seed=-1)
 
