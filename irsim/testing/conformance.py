@@ -1,0 +1,180 @@
+"""What every registered feature must hold, built-in or plug-in: call these from your own tests.
+
+Each function raises AssertionError with what is missing.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim._options import field_docs
+from irsim.registry import KINEMATICS, Feature
+from irsim.scenario.opening import or_raise
+from irsim.scenario.read import read
+from irsim.simulation import Simulation
+
+__all__ = [
+    "check_declaration_order",
+    "check_defaults",
+    "check_documented",
+    "check_finite",
+    "check_kernel",
+    "check_same_seed",
+    "check_turned_world",
+    "check_units",
+    "scenario_with",
+    "simulate",
+]
+
+_UNITLESS_NAMES = ("color",)
+_DRAWING = ("plot", "alpha", "color")
+
+
+def check_documented(feature: Feature) -> None:
+    """The options model and each of its fields say what they are."""
+    assert feature.options.__doc__, f"{feature.name}: the options model has no docstring"
+    docs = field_docs(feature.options)
+    missing = [name for name in feature.options.model_fields if not docs.get(name)]
+    assert not missing, f"{feature.name}: fields without a docstring: {missing}"
+
+
+def check_units(feature: Feature) -> None:
+    """Every number in the schema carries ``x-unit`` (``1`` for pure numbers)."""
+    schema = feature.options.model_json_schema()
+    missing = [
+        name
+        for name, field in schema.get("properties", {}).items()
+        if not any(word in name for word in _UNITLESS_NAMES) and _has_number(field) and "x-unit" not in str(field)
+    ]
+    assert not missing, f"{feature.name}: numbers without a unit: {missing}"
+
+
+def check_defaults(feature: Feature) -> None:
+    """The defaults are valid values, and what is required is said so."""
+    model = feature.options
+    required = [name for name, info in model.model_fields.items() if info.is_required()]
+    if not required:
+        model.model_validate(model().model_dump())
+
+
+def check_kernel(feature: Feature) -> None:
+    """A native kernel has fields of the same names as the options (those that need resolving included)."""
+    if feature.kernel is None:
+        return
+    unknown = set(getattr(feature.kernel, "fields", ())) - set(feature.options.model_fields)
+    assert not unknown, f"{feature.name}: the kernel has fields that the options lack: {sorted(unknown)}"
+
+
+def scenario_with(
+    *,
+    drive: str = "diff",
+    shape: str = "{name: circle, radius: 0.2}",
+    behavior: str = "{name: dash}",
+    sensor: str | None = None,
+    group: bool = False,
+    turn: float = 0.0,
+    shift: tuple[float, float] = (0.0, 0.0),
+    order: tuple[int, ...] = (0, 1, 2),
+) -> str:
+    """A small world in which three robots with the given features cross among two obstacles.
+
+    Args:
+        drive: Name of the kinematics.
+        shape: Shape mapping, YAML.
+        behavior: Behavior mapping, YAML.
+        sensor: Sensor mapping, YAML.
+        group: Put the behavior under ``group_behavior``.
+        turn: Turn the whole scene about the origin [rad].
+        shift: Then move it [m].
+        order: Order in which the robots are declared.
+    """
+    places = [((1.0, 1.0, 0.2), (8.0, 7.0)), ((8.5, 1.5, 2.0), (2.0, 8.0)), ((1.5, 8.5, -0.7), (8.5, 2.5))]
+    lines = [f"world: {{width: 10, height: 10, offset: [{shift[0]}, {shift[1]}]}}", "robot:"]
+    key = "group_behavior" if group else "behavior"
+    for index in order:
+        start, goal = places[index]
+        x, y = _moved(start[0], start[1], turn, shift)
+        gx, gy = _moved(*goal, turn, shift)
+        lines += [
+            f"  - name: robot_{'abc'[index]}",
+            f"    kinematics: {{name: {drive}}}",
+            f"    shape: {shape}",
+            f"    state: [{x!r}, {y!r}, {start[2] + turn!r}]",
+            f"    goal: [{gx!r}, {gy!r}, {turn!r}]",
+            f"    {key}: {behavior}",
+            "    group: 0",
+        ]
+        if sensor is not None:
+            lines.append(f"    sensors: [{sensor}]")
+    box, disc = _moved(5.0, 3.0, turn, shift), _moved(3.5, 6.0, turn, shift)
+    lines += [
+        "obstacle:",
+        f"  - {{shape: {{name: rectangle, length: 0.8, width: 0.5}}, state: [{box[0]!r}, {box[1]!r}, {turn!r}]}}",
+        f"  - {{shape: {{name: circle, radius: 0.3}}, state: [{disc[0]!r}, {disc[1]!r}, {turn!r}]}}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def simulate(text: str, steps: int = 40, seed: int = 7) -> tuple[Simulation, NDArray[np.float64]]:
+    """The simulation of a scenario text after ``steps``, and its poses (steps, N, 3)."""
+    scenario, _ = or_raise(read(text, strict=True))
+    simulation = Simulation(scenario, [seed])
+    poses = []
+    for _ in range(steps):
+        simulation.step()
+        poses.append(simulation.pose.copy())
+    return simulation, np.array(poses)
+
+
+def check_same_seed(**features: Any) -> None:
+    """The same seed gives the same episode, bit for bit."""
+    text = scenario_with(**features)
+    (one, first), (two, second) = simulate(text), simulate(text)
+    assert np.array_equal(first, second), f"{features}: the same seed gave another episode"
+    assert np.array_equal(one.ranges, two.ranges), f"{features}: the same seed gave other scans"
+
+
+def check_finite(**features: Any) -> None:
+    """Nothing non-finite comes out."""
+    simulation, poses = simulate(scenario_with(**features))
+    for name in ("control", "twist", "ranges"):
+        assert np.isfinite(getattr(simulation, name)).all(), f"{features}: {name} is not finite"
+    assert np.isfinite(poses).all(), f"{features}: a pose is not finite"
+
+
+def check_declaration_order(tolerance: float = 1e-9, **features: Any) -> None:
+    """The order in which objects are declared does not matter, to rounding."""
+    _, straight = simulate(scenario_with(**features))
+    _, shuffled = simulate(scenario_with(order=(2, 0, 1), **features))
+    assert np.allclose(shuffled[:, :3], straight[:, [2, 0, 1]], atol=tolerance), (
+        f"{features}: declaration order matters"
+    )
+
+
+def check_turned_world(tolerance: float = 1e-6, steps: int = 15, **features: Any) -> None:
+    """Turning and shifting the world turns and shifts the answer."""
+    turn, shift = 0.75, (3.0, -2.0)
+    _, plain = simulate(scenario_with(**features), steps)
+    _, moved = simulate(scenario_with(turn=turn, shift=shift, **features), steps)
+    c, s = np.cos(turn), np.sin(turn)
+    expected = plain[..., :2] @ np.array([[c, s], [-s, c]]) + np.array(shift)
+    assert np.allclose(moved[..., :2], expected, atol=tolerance), f"{features}: a turned world gives another motion"
+    heading = np.angle(np.exp(1j * (moved[..., 2] - plain[..., 2] - turn)))
+    assert np.allclose(heading, 0, atol=tolerance), f"{features}: a turned world gives other headings"
+
+
+def simulated_drives() -> list[str]:
+    """Names of the drives that move objects."""
+    return [feature.name for feature in KINEMATICS.features() if feature.kernel is not None]
+
+
+def _moved(x: float, y: float, turn: float, shift: tuple[float, float]) -> tuple[float, float]:
+    c, s = float(np.cos(turn)), float(np.sin(turn))
+    return c * x - s * y + shift[0], s * x + c * y + shift[1]
+
+
+def _has_number(field: dict[str, Any]) -> bool:
+    return "'number'" in str(field) or "'integer'" in str(field)
