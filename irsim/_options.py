@@ -6,6 +6,8 @@ import ast
 import inspect
 import itertools
 import textwrap
+from collections.abc import Callable
+from contextvars import ContextVar
 from functools import cache
 from typing import Any, ClassVar
 
@@ -13,7 +15,19 @@ from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 
-__all__ = ["Options", "field_docs", "problem"]
+__all__ = ["SHARED_SCHEMAS", "Options", "field_docs", "problem", "shared_schema"]
+
+SHARED_SCHEMAS: ContextVar[dict[str, Callable[[], dict[str, Any]]] | None] = ContextVar("SHARED_SCHEMAS", default=None)
+"""Parts that the schema in the making refers to by name, and what makes them; None when nobody makes one."""
+
+
+def shared_schema(name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """A reference to a part of the schema that occurs more than once; the part itself where none is collected."""
+    shared = SHARED_SCHEMAS.get()
+    if shared is None:
+        return make()
+    shared[name] = make
+    return {"x-shared": name}  # pydantic would look a $ref up among its own definitions
 
 
 class Options(BaseModel):
@@ -26,6 +40,9 @@ class Options(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, protected_namespaces=())
 
     schema_extra: ClassVar[dict[str, Any]] = {}
+    """What the schema says about the mapping besides its keys: examples."""
+    any_case: ClassVar[bool] = False
+    """Whether upper case is accepted in ``name``."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
@@ -37,6 +54,9 @@ class Options(BaseModel):
             value.pop("title", None)
             if isinstance(cls.model_fields[name].default, BaseModel):
                 value["default"] = {}
+            if name == "name" and cls.any_case and "const" in value:
+                pattern = "".join(f"[{c}{c.upper()}]" if c.isalpha() else c for c in value["const"])
+                value["anyOf"] = [{"const": value.pop("const")}, {"pattern": f"^{pattern}$"}]
             if docs.get(name) and "description" not in value:
                 value["description"] = docs[name]
         if cls.__doc__:
@@ -62,7 +82,7 @@ def field_docs(model: type[BaseModel]) -> dict[str, str]:
     """The documentation of each field of ``model``, its own and inherited; missing ones are left out."""
     docs: dict[str, str] = {}
     for cls in reversed(model.__mro__):
-        if not (issubclass(cls, BaseModel) and cls.__dict__.get("__annotations__")):
+        if not (issubclass(cls, BaseModel) and inspect.get_annotations(cls)):
             continue
         for name, text in _own_docs(cls).items():
             if name in model.model_fields:

@@ -9,7 +9,7 @@ from pydantic import GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from irsim._options import problem
+from irsim._options import problem, shared_schema
 from irsim.diagnostics import nearest
 
 __all__ = ["ACKER_COLOR", "CYCLE", "OBSTACLE_COLOR", "PUSHABLE_COLOR", "ROBOT_COLOR", "Color", "cycle_color"]
@@ -91,18 +91,23 @@ class _ColorSchema:
         return core_schema.no_info_plain_validator_function(_validate_object if self.cycle else _validate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return shared_schema("ObjectColor" if self.cycle else "Color", self._schema)
+
+    def _schema(self) -> JsonSchemaValue:
         words = [*(["cycle"] if self.cycle else []), *NAMES]
+        any_case = "|".join(f"[{name[0]}{name[0].upper()}]{name[1:]}" for name in _CSS.split())
         return {
+            "description": "A color: a name, '#RRGGBB', a grey level as text, or [r, g, b] with numbers from 0 to 1.",
             "anyOf": [
                 {"type": "string", "enum": words},
-                {"type": "string", "pattern": f"^({_HEX}|{_CYCLE_NAME}|{_XKCD}|{_GRAY})$"},
+                {"type": "string", "pattern": f"^({_HEX}|{_CYCLE_NAME}|{_XKCD}|{_GRAY}|{any_case})$"},
                 {
                     "type": "array",
                     "items": {"type": "number", "minimum": 0, "maximum": 1},
                     "minItems": 3,
                     "maxItems": 4,
                 },
-            ]
+            ],
         }
 
 

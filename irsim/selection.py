@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, get_origin
 
 from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
 
-from irsim._options import problem
+from irsim._options import problem, shared_schema
 from irsim.diagnostics import nearest
 from irsim.registry import CustomBehaviors, Registry
 
-__all__ = ["COLLECTED_MODELS", "Choices", "Select"]
-
-COLLECTED_MODELS: ContextVar[dict[str, type[BaseModel]] | None] = ContextVar("COLLECTED_MODELS", default=None)
-"""Models that a schema in the making refers to; None when nobody makes one."""
+__all__ = ["Choices", "Select"]
 
 
 @dataclass(frozen=True)
@@ -191,12 +187,7 @@ class Select:
         return names
 
     def _model_schema(self, model: type[BaseModel]) -> JsonSchemaValue:
-        """A reference to the model where someone collects them, else the model itself."""
-        collected = COLLECTED_MODELS.get()
-        if collected is None:
-            return model.model_json_schema()
-        collected[model.__name__] = model
-        return {"$ref": f"#/$defs/{model.__name__}"}
+        return shared_schema(model.__name__, model.model_json_schema)
 
     def _option_schema(self, name: str) -> JsonSchemaValue:
         """The model of one name, with what makes a mapping be of that name."""
@@ -206,6 +197,8 @@ class Select:
         fields = feature.options.model_fields
         required = [key for key, field in fields.items() if field.is_required() and key != "name"]
         is_default = name == self.default
+        if get_origin(fields["name"].annotation) is not Literal:  # one model for several names
+            reference = {**reference, "properties": {"name": {"const": name}}}
         if self.alias is None:
             return reference if is_default else {**reference, "required": [*required, "name"]}
         by_alias: JsonSchemaValue = {"properties": {self.alias: {"enum": [name]}}}

@@ -74,18 +74,20 @@ _DISCRIMINATORS = {"value": _tag, "number": _tag_numbers, "list": _tag_lists, "p
 
 
 class PerObject:
-    """Type metadata: one value for all objects of an entry, or a list with one per object.
+    """Type metadata of a key that takes one value for all objects of an entry, or a list with one per object.
 
     Args:
+        item: Type of one value.
         kind: What one value is. ``value``: not a list, or a vector, by the general rule. ``number``: a list of plain
             numbers is one number per object, not a vector. ``list``: a list of things. ``path``: a list of vectors.
     """
 
-    def __init__(self, kind: Literal["value", "number", "list", "path"] = "value") -> None:
+    def __init__(self, item: Any, kind: Literal["value", "number", "list", "path"] = "value") -> None:
+        self.item = item
         self._discriminate = _DISCRIMINATORS[kind]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
-        item = handler(source)
+        item = handler.generate_schema(self.item)
         many = core_schema.list_schema(item, min_length=1)
         return core_schema.tagged_union_schema({ONE: item, PER_OBJECT: many}, self._discriminate)
 
@@ -96,8 +98,7 @@ class PerObject:
 def any_of(union: JsonSchemaValue) -> JsonSchemaValue:
     """A tagged union's schema without the claim that exactly one choice matches; unions inside it are flattened."""
     options: list[JsonSchemaValue] = []
-    if "oneOf" not in union: print("NO", union)
-    for option in union.pop("oneOf", []):
+    for option in union.pop("oneOf"):
         options += option["anyOf"] if set(option) == {"anyOf"} else [option]
     return {**union, "anyOf": options}
 

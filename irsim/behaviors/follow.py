@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS, PLANNERS
@@ -12,19 +12,14 @@ from irsim.selection import Select
 from irsim.units import Meters, Seconds
 
 
-def _named(value: Any) -> Any:
-    """A name alone stands for a mapping with that name."""
-    return {"name": value} if isinstance(value, str) else value
-
-
 class Follow(BehaviorOptions):
     """Get there through the maze: plan on the map inflated by the footprint, then follow the path."""
 
     name: Literal["follow"] = "follow"
-    planner: Annotated[Any, Select(PLANNERS), BeforeValidator(_named), Field(validate_default=True)] = "astar"
+    planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"
     """Path planner: its name, or a mapping with its name and options."""
     local: Annotated[
-        Any, Select(BEHAVIORS, exclude=("follow",)), BeforeValidator(_named), Field(validate_default=True)
+        Any, Select(BEHAVIORS, exclude=("follow",), short=(None, "name")), Field(validate_default=True)
     ] = "dash"
     """Behavior that drives from one path point to the next: its name, or a mapping with its name and options."""
     replan: Annotated[Seconds, Field(gt=0)] | None = None

@@ -15,6 +15,8 @@ __all__ = ["CustomKinematics", "KinematicsOptions"]
 class KinematicsOptions(Options):
     """Keys that every drive takes."""
 
+    any_case: ClassVar[bool] = True
+
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta")
     """Names of the state rows."""
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "angular")

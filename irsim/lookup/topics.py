@@ -5,14 +5,14 @@ from __future__ import annotations
 import difflib
 import functools
 import re
-from typing import Any
 
 from irsim import templates
 from irsim.codes import CODES
 from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.walk import Node, components, key, mappings, paths, step, yaml_text
+from irsim.lookup.examples import example_of
+from irsim.lookup.walk import Node, component_name, components, key, mappings, paths, step, yaml_text
 from irsim.registry import REGISTRIES, Registry
-from irsim.scenario.schema import build_schema
+from irsim.scenario.schema import json_schema
 from irsim.templates import Template
 
 __all__ = ["lookup"]
@@ -50,7 +50,7 @@ def lookup(topic: str = "") -> Answer:
         return _code(topic.strip())
     if name in templates.names():
         return _template(templates.load(name))
-    schema = build_schema()
+    schema = json_schema()
     for path in _readings(schema, tuple(words)):
         nodes = [schema]
         for word in path:
@@ -71,7 +71,7 @@ def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
             found.append((*place, *words))
     if len(words) == 1:
         same = [path for path in paths(schema) if path[-1] == words[0]]
-        if len({path[-2:] for path in same}) == 1:
+        if len({path[1:] for path in same}) == 1:  # robots and obstacles have the same keys
             found += same
     return found
 
@@ -88,15 +88,8 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
     registry, feature_name = _registry_of(path)
     if len(names) > 1 and registry is not None and not feature_name:
         groups = {f"{registry.kind}, one of": [_component_line(registry, name) for name in names]}
-        example: str | None = f"{path[-1]}: {{name: {next(iter(names))}}}"
     else:
-        groups = {}
-        for option in mappings(schema, node):
-            required = option.get("required", [])
-            groups.setdefault("keys", []).extend(
-                key(schema, name, child, name in required) for name, child in option["properties"].items()
-            )
-        example = _example(path, node, registry, feature_name)
+        groups = _keys(schema, node, _siblings(schema, path) if feature_name and registry is not None else [])
     text, title = about.text, ".".join(path)
     if registry is not None and feature_name:
         title = f"{registry.kind} {feature_name}"
@@ -112,9 +105,30 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
         text=text,
         about=None if feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
         groups=groups,
-        example=example,
+        example=example_of(path, feature_name) or (f"{path[-2]}: {{name: {feature_name}}}" if feature_name else None),
         see=_related(path, registry, feature_name),
     )
+
+
+def _keys(schema: Node, node: Node, siblings: list[Node]) -> dict[str, list[Key]]:
+    """The keys of a mapping; those it has in common with all its siblings come last."""
+    common = set.intersection(*(set(option["properties"]) for option in siblings)) if len(siblings) > 1 else set()
+    own: dict[str, Key] = {}
+    shared: dict[str, Key] = {}
+    for option in mappings(schema, node):
+        required = option.get("required", [])
+        for name, child in option["properties"].items():
+            if name != "name" or component_name(option) is None:
+                (shared if name in common else own).setdefault(name, key(schema, name, child, name in required))
+    return {"keys": list(own.values()), "keys it has in common with the others": list(shared.values())}
+
+
+def _siblings(schema: Node, path: tuple[str, ...]) -> list[Node]:
+    """The components one may choose instead."""
+    nodes = [schema]
+    for word in path[:-1]:
+        nodes = step(schema, nodes, word)
+    return [option for node in nodes for option in components(schema, node).values()]
 
 
 def _registry_of(path: tuple[str, ...]) -> tuple[Registry | None, str | None]:
@@ -136,15 +150,6 @@ def _component_line(registry: Registry, name: str) -> Key:
     return Key(name=name, text=doc + later)
 
 
-def _example(path: tuple[str, ...], node: Node, registry: Registry | None, name: str | None) -> str | None:
-    examples = node.get("examples")
-    if name is not None and registry is not None:
-        value: Any = examples[0] if examples else {"name": name}
-        place = path[-2]
-        return f"{place}: [{yaml_text(value)}]" if place == "sensors" else f"{place}: {yaml_text(value)}"
-    return f"{path[-1]}: {yaml_text(examples[0])}" if examples else None
-
-
 def _related(path: tuple[str, ...], registry: Registry | None, name: str | None) -> list[str]:
     if registry is not None and name is not None:
         return [".".join(path[:-1]), *(f"{registry.kind} {other}" for other in registry.names() if other != name)][:6]
@@ -154,13 +159,14 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
 def _search(schema: Node, words: list[str]) -> Answer:
     """Everything that the words occur in; several keys of one name, too."""
     wanted = " ".join(words).lower()
-    hits = [Key(name=".".join(path)) for path in paths(schema) if path[-1].lower() == wanted]
+    everywhere = [path for path in paths(schema) if path[0] != "obstacle"]  # obstacles have the keys of robots
+    hits = [Key(name=".".join(path)) for path in everywhere if path[-1].lower() == wanted]
     if not hits:
         hits += [Key(name=template.name, text=template.purpose) for template in templates.find(words)]
         hits += [
             Key(name=name, text=code.title) for name, code in CODES.items() if wanted in f"{name} {code.title}".lower()
         ]
-        for path in paths(schema):
+        for path in everywhere:
             node = functools.reduce(lambda nodes, word: step(schema, nodes, word), path, [schema])[0]
             if wanted in str(node.get("description", "")).lower() or wanted in path[-1].lower():
                 hits.append(Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split())))
@@ -192,8 +198,9 @@ def _near(schema: Node, words: list[str]) -> list[str]:
 
 
 def _index() -> Answer:
-    schema = build_schema()
-    sections = [key(schema, name, node) for name, node in schema["properties"].items()]
+    schema = json_schema()
+    language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))
+    sections = [key(schema, name, node) for name, node in language["properties"].items()]
     kinds = [Key(name=kind, text=", ".join(registry.names())) for kind, registry in sorted(REGISTRIES.items())]
     return Answer(
         topic="",

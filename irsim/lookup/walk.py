@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.lookup.answer import Key
 
-__all__ = ["Node", "components", "key", "mappings", "paths", "step", "yaml_text"]
+__all__ = ["Node", "component_name", "components", "key", "mappings", "paths", "step", "yaml_text"]
 
 Node = dict[str, Any]
 """A schema node with references and siblings merged in."""
@@ -19,6 +19,8 @@ _NUMBER_BOUNDS = {
     "maximum": "at most",
     "exclusiveMaximum": "less than",
 }
+_NO_BOUND = 2.0**53  # bounds beyond are those of the number's storage
+_MOST_NAMES = 24
 _PLAIN = {
     "number": "a number",
     "integer": "an integer",
@@ -65,7 +67,8 @@ def mappings(root: Node, node: Node) -> list[Node]:
 def component_name(mapping: Node) -> str | None:
     """The name that picks this mapping among others: ``rvo``."""
     name = mapping["properties"].get("name", {})
-    names = [name["const"]] if "const" in name else name.get("enum", [])
+    name = name["anyOf"][0] if "anyOf" in name else name
+    names = [value for option in [name, *name.get("anyOf", [])] for value in _values(option)]
     return str(names[0]) if len(names) == 1 else None
 
 
@@ -105,13 +108,15 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
     allowed = [str(value) for option in options for value in _values(option)]
     ranges = [text for option in options if (text := _range(option))]
     texts = [str(option["description"]) for option in [node, *options] if option.get("description")]
+    kind, per_object = _type(root, options)
     return Key(
         name=name,
-        type=_type(root, options),
+        type=kind,
         unit=units[0] if units else None,
         default=None if default is None or default == {} else yaml_text(default),
         required=required,
-        allowed=", ".join(dict.fromkeys(allowed)) or "; ".join(dict.fromkeys(ranges)) or None,
+        allowed=_shortened(list(dict.fromkeys(allowed))) or "; ".join(dict.fromkeys(ranges)) or None,
+        per_object=per_object,
         text=" ".join(texts[0].split()) if texts else "",
     )
 
@@ -127,7 +132,13 @@ def yaml_text(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _type(root: Node, options: list[Node]) -> str:
+def _shortened(names: list[str]) -> str:
+    more = len(names) - _MOST_NAMES
+    return ", ".join(names[:_MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+
+
+def _type(root: Node, options: list[Node]) -> tuple[str, bool]:
+    """What the options take, in words, and whether a list of that is one per object."""
     words = []
     per_object = False
     plain = {_digest(option) for option in options}
@@ -142,15 +153,14 @@ def _type(root: Node, options: list[Node]) -> str:
         elif "properties" in option:
             words.append("a mapping")
         elif kind == "null":
-            words.append("null")
+            continue
         elif _values(option):
             words.append("a name" if isinstance(_values(option)[0], str) else "a value")
         elif kind in _PLAIN:
             words.append(_PLAIN[kind])
         elif isinstance(kind, list):
             words += [_PLAIN.get(str(each), str(each)) for each in kind]
-    text = " or ".join(dict.fromkeys(words)) or "anything"
-    return text + ("; also a list, one per object" if per_object else "")
+    return " or ".join(dict.fromkeys(words)) or "anything", per_object
 
 
 def _list_type(root: Node, option: Node, items: list[Node]) -> str:
@@ -182,7 +192,8 @@ def _values(option: Node) -> list[Any]:
 
 
 def _range(option: Node) -> str:
-    return ", ".join(f"{words} {option[bound]:g}" for bound, words in _NUMBER_BOUNDS.items() if bound in option)
+    bounds = [(words, option[bound]) for bound, words in _NUMBER_BOUNDS.items() if bound in option]
+    return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) < _NO_BOUND)
 
 
 def _digest(node: Node) -> str:

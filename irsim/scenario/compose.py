@@ -125,7 +125,7 @@ class _Composer:
             elif kind is sequence or kind is mapping:
                 self._open(event, kind is mapping)
             elif kind in ends:
-                self._close()
+                self._close(event)
             elif kind is yaml.AliasEvent:
                 self._alias(event)
             elif kind is yaml.DocumentStartEvent:
@@ -192,8 +192,12 @@ class _Composer:
         node = Node(_start_mark(event)) if self.positions else None
         self.stack.append(_Frame({} if mapping else [], mapping, anchor, node))
 
-    def _close(self) -> None:
+    def _close(self, event: Any) -> None:
         frame = self.stack.pop()
+        if frame.node is not None:
+            mark = frame.node.mark
+            if event.end_mark.line + 1 == mark.line and event.end_mark.column > mark.column:
+                frame.node.mark = Mark(mark.line, mark.column, event.end_mark.column + 1 - mark.column)
         if frame.merges:
             _merge(frame)
         if frame.anchor is not None:
@@ -252,9 +256,7 @@ class _Composer:
             frame.key = _MERGE
             return
         if isinstance(key, (list, dict)):
-            self._problem(
-                "bad-key", "a list or mapping is used as a key", event, fix="quote it if it is meant as text"
-            )
+            self._problem("bad-key", "a list or mapping is used as a key", event, fix="quote it if it is meant as text")
             key = str(key)[:40]
         elif key in frame.value:
             self._problem(
@@ -377,9 +379,9 @@ class _Composer:
 
 
 def _parser(text: str) -> Any:
-    """libyaml's event parser, or PyYAML's own where PyYAML was built without libyaml."""
+    """The event parser of libyaml, or PyYAML's own where PyYAML was built without libyaml."""
     if yaml.__with_libyaml__:
-        from yaml.cyaml import CParser
+        from yaml._yaml import CParser
 
         return CParser(text)
     return yaml.SafeLoader(text)  # used for its events only; nothing is constructed

@@ -21,24 +21,26 @@ from irsim.registry import (
 )
 from irsim.scenario.plot import ObjectPlot
 from irsim.selection import Select
-from irsim.units import Bool, Meters, Number
-from irsim.vectors import OrNull, PerObject, Pose, Range, Vector, vector
+from irsim.units import Bool, Fraction, Meters, Number
+from irsim.vectors import OrNull, PerObject, Pose, Range, Vector
 
 __all__ = ["Entry"]
 
 Text = Annotated[str, Field(strict=True)]
-Numbers = list[Number]
 Unbounded = Annotated[float, Field(strict=True, ge=0)]  # infinity is fine, NaN is not
-KinematicsField = Annotated[Any, Select(KINEMATICS, default="static", folded=True, null=True, empty=True), PerObject()]
-ShapeField = Annotated[Any, Select(SHAPES, default="circle", folded=True, null=True), PerObject()]
+Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
+Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
+Grip = Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})]
+KinematicsField = Annotated[Any, Select(KINEMATICS, default="static", folded=True, null=True, empty=True)]
+ShapeField = Annotated[Any, Select(SHAPES, default="circle", folded=True, null=True)]
 BehaviorField = Annotated[
-    Any, Select(BEHAVIORS, custom=CUSTOM_BEHAVIORS, fallback=CustomOptions, null=True, empty=True), PerObject()
+    Any, Select(BEHAVIORS, custom=CUSTOM_BEHAVIORS, fallback=CustomOptions, null=True, empty=True)
 ]
 GroupBehaviorField = Annotated[
-    Any, Select(BEHAVIORS, custom=CUSTOM_GROUP_BEHAVIORS, fallback=CustomOptions, null=True, empty=True), PerObject()
+    Any,
+    Select(BEHAVIORS, custom=CUSTOM_GROUP_BEHAVIORS, fallback=CustomOptions, null=True, empty=True, trait="in_group"),
 ]
 SensorField = Annotated[Any, Select(SENSORS, default="lidar2d", alias="type")]
-Control = Annotated[Numbers, vector(("control units",) * 3, 1, None)]
 
 
 class Entry(Options):
@@ -48,54 +50,54 @@ class Entry(Options):
     """How many objects this entry makes."""
     distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
     """How they are placed; null is `manual`: by `state` and `goal`."""
-    name: Annotated[Text | None, PerObject()] = None
+    name: Annotated[Any, PerObject(Text | None)] = None
     """Unique name; null is `<role>_<id>`."""
-    tags: Annotated[list[Text], PerObject("list")] = []
+    tags: Annotated[Any, PerObject(list[Text], "list")] = []
     """Free words; `pedestrian` is what metrics count as human."""
     role: Literal["robot", "obstacle"] | None = None
     """The section's own name; accepted because it is documented."""
-    state: Annotated[Vector | None, PerObject()] = None
+    state: Annotated[Any, PerObject(Vector | None)] = None
     """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
-    goal: Annotated[Annotated[Pose, PerObject()] | None, PerObject()] = None
+    goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose)] | None)] = None
     """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; waypoints take
     three levels of brackets, or `waypoints`."""
-    waypoints: Annotated[Annotated[list[Pose], Field(min_length=1)], PerObject("path")] | None = None
+    waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
-    velocity: Annotated[Vector | None, PerObject()] = None
+    velocity: Annotated[Any, PerObject(Vector | None)] = None
     """Initial control; null is zero."""
-    kinematics: KinematicsField = None
+    kinematics: Annotated[Any, PerObject(KinematicsField)] = None
     """How it moves; null never moves."""
-    shape: ShapeField = None
+    shape: Annotated[Any, PerObject(ShapeField)] = None
     """Its footprint; null is a circle of radius 1 m."""
-    behavior: BehaviorField = None
+    behavior: Annotated[Any, PerObject(BehaviorField)] = None
     """What it does when nobody commands it."""
-    group_behavior: GroupBehaviorField = None
+    group_behavior: Annotated[Any, PerObject(GroupBehaviorField)] = None
     """What all members of its group do together; the first member's counts."""
-    sensors: Annotated[list[SensorField], PerObject("list")] | None = None
+    sensors: Annotated[Any, PerObject(list[SensorField] | None, "list")] = None
     """Its sensors; the first lidar is its `lidar`."""
-    plot: Annotated[ObjectPlot, PerObject()] = ObjectPlot()
+    plot: Annotated[Any, PerObject(ObjectPlot)] = ObjectPlot()
     """How it is drawn."""
-    color: Annotated[ObjectColor | None, PerObject()] = None
+    color: Annotated[Any, PerObject(ObjectColor | None)] = None
     """Its colour, or `cycle` for one palette colour after the other; null depends on role and drive."""
-    description: Annotated[Text | None, PerObject()] = None
+    description: Annotated[Any, PerObject(Text | None)] = None
     """Picture drawn instead of the footprint: a bundled name or a file."""
     static: Annotated[Bool, OrNull(False)] = False
     """Never moves although it has kinematics."""
-    vel_min: Annotated[Vector | None, PerObject()] = None
+    vel_min: Annotated[Any, PerObject(Vector | None)] = None
     """Lower limits of the control components; null is -1 each."""
-    vel_max: Annotated[Vector | None, PerObject()] = None
+    vel_max: Annotated[Any, PerObject(Vector | None)] = None
     """Upper limits of the control components; null is 1 each."""
-    acce: Annotated[list[Unbounded] | None, PerObject()] = None
+    acce: Annotated[Any, PerObject(list[Unbounded] | None)] = None
     """Largest change of each control component per second; null is unlimited."""
-    angle_range: Annotated[Range | None, PerObject()] = None
+    angle_range: Annotated[Any, PerObject(Range | None)] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
     """Distance at which a goal counts as reached."""
-    arrive_mode: Annotated[Literal["position", "state"], PerObject()] = "position"
+    arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
     """What must match at the goal: the position, or the heading too."""
     group: Annotated[int, Field(strict=True)] | None = None
     """Group number; objects with the same number form a group. Null numbers the entries."""
-    group_name: Annotated[Text | None, PerObject()] = None
+    group_name: Annotated[Any, PerObject(Text | None)] = None
     """Name of the group; null is `<role>_<group>`."""
     unobstructed: Annotated[Bool, OrNull(False)] = False
     """Others do not collide with it and lidars do not see it."""
@@ -109,19 +111,11 @@ class Entry(Options):
     """Rows of the state; null is what the kinematics has. Surplus rows keep their value."""
     vel_dim: Annotated[int, Field(strict=True, ge=1, le=64)] | None = None
     """Components of the control; null is what the kinematics has."""
-    mass: Annotated[Annotated[Unbounded, Field(gt=0, json_schema_extra={"x-unit": "kg"})] | None, PerObject("number")] = (
-        None
-    )
+    mass: Annotated[Any, PerObject(Mass | None, "number")] = None
     """For `collision_mode: contact`; null is 1 with kinematics and infinite without."""
-    friction: Annotated[
-        Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})] | None, PerObject("number")
-    ] = None
+    friction: Annotated[Any, PerObject(Grip | None, "number")] = None
     """Grip on the ground, for `collision_mode: contact`; null is the world's."""
-    inertia: Annotated[
-        Annotated[Unbounded, Field(gt=0, json_schema_extra={"x-unit": "kg m^2"})] | None, PerObject("number")
-    ] = None
+    inertia: Annotated[Any, PerObject(Inertia | None, "number")] = None
     """Resistance to turning, for `collision_mode: contact`; null follows from shape and mass."""
-    restitution: Annotated[
-        Annotated[Number, Field(ge=0, le=1, json_schema_extra={"x-unit": "1"})] | None, PerObject("number")
-    ] = None
+    restitution: Annotated[Any, PerObject(Fraction | None, "number")] = None
     """Bounciness, for `collision_mode: contact`; null is the world's."""

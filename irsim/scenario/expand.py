@@ -265,5 +265,3 @@ def _view(entry: Entry, sensors: Sequence[Any]) -> tuple[float | None, float | N
     if entry.fov is None:
         return (lidar.angle_range if lidar is not None else None), reach
     return entry.fov, entry.fov_radius if entry.fov_radius is not None else reach
-
-

@@ -45,7 +45,9 @@ def error(
     carry_on: Edit | None = None,
 ) -> Finding:
     """An error; ``carry_on`` makes it one that 2.12 tolerates, ``tolerated`` one that needs no edit for that."""
-    return _finding("error", code, path, message, given, allowed, fix, edit, tolerated or carry_on is not None, carry_on)
+    return _finding(
+        "error", code, path, message, given, allowed, fix, edit, tolerated or carry_on is not None, carry_on
+    )
 
 
 def warning(

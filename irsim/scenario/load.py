@@ -1,4 +1,4 @@
-"""From a file, a text or a mapping to a :class:`Document`: data, what was wrong with the YAML, and where things stand."""
+"""From a file, a text or a mapping to a :class:`Document`: data, what was wrong with it, and where things stand."""
 
 from __future__ import annotations
 
@@ -133,9 +133,7 @@ def _content(name: str, limits: Limits) -> tuple[bytes | None, Diagnostic | None
         return None, Diagnostic("file-not-found", "error", (), f"there is no file '{name}'", given=name, file=name)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        return None, Diagnostic(
-            "unreadable", "error", (), f"'{name}' cannot be read: {reason}", given=name, file=name
-        )
+        return None, Diagnostic("unreadable", "error", (), f"'{name}' cannot be read: {reason}", given=name, file=name)
     if len(content) > limits.bytes:
         return None, _too_large(len(content), limits, name)
     return content, None
@@ -157,7 +155,7 @@ def _too_large(size: int, limits: Limits, name: str | None) -> Diagnostic:
 def _not_text(name: str, content: bytes, error: UnicodeDecodeError | None) -> Diagnostic:
     line = None
     message = f"'{name}' is not a text file"
-    if error is not None and not content.translate(None, _NO_TEXT) != content:
+    if error is not None and content.translate(None, _NO_TEXT) == content:
         line = content.count(b"\n", 0, error.start) + 1
         message = f"'{name}' is not UTF-8 text (byte {error.start})"
     return Diagnostic(

@@ -13,6 +13,7 @@ from irsim.scenario.entry import Entry
 from irsim.scenario.gui import Gui, Keyboard, Mouse
 from irsim.scenario.plot import ObjectPlot
 from irsim.scenario.world import SavedFigure, WorldModel, WorldPlot
+from irsim.vectors import any_of
 
 __all__ = ["Entry", "Gui", "Keyboard", "Mouse", "ObjectPlot", "SavedFigure", "Scenario", "WorldModel", "WorldPlot"]
 
@@ -31,9 +32,7 @@ class _OneOrList:
         )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        choices: Any = schema
-        item = handler(choices["choices"]["<mapping>"])
-        return {"anyOf": [item, {"type": "array", "items": item}]}
+        return any_of(handler(schema))
 
 
 class Scenario(Options):

@@ -118,5 +118,3 @@ class ObjectPlot(Options):
     """Opacity of the field of view."""
     fov_zorder: Number = 1
     """Drawing order of the field of view."""
-
-

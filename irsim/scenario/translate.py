@@ -249,9 +249,7 @@ class _Translator:
         else:
             message = f"this key takes {expected} for all objects of the entry, not a list"
             fix = "write one entry per value, each with its own number"
-        return error(
-            "scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix
-        )
+        return error("scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix)
 
     def _boolean_as_text(self) -> Finding:
         written = self.document.source_text((*self.document.prefix, *self.path)) or str(self.value).lower()

@@ -10,6 +10,7 @@ from pydantic.fields import FieldInfo
 
 from irsim.diagnostics import Path
 from irsim.selection import Select
+from irsim.vectors import PerObject
 
 __all__ = ["at", "field_at", "literals", "model_at", "unit_of"]
 
@@ -54,12 +55,12 @@ def field_at(root: type[BaseModel], path: Path, data: Any) -> FieldInfo | None:
 
 def literals(field: FieldInfo) -> list[str]:
     """The words a field accepts, empty if it is not a choice of words."""
-    return [str(word) for part in _parts(field.annotation) if get_origin(part) is Literal for word in get_args(part)]
+    return [str(word) for part in _all_parts(field) if get_origin(part) is Literal for word in get_args(part)]
 
 
 def unit_of(field: FieldInfo) -> str | None:
     """The unit of a field's number, as the schema has it; None without one."""
-    for extra in (field.json_schema_extra, *(getattr(p, "json_schema_extra", None) for p in _parts(field.annotation))):
+    for extra in (field.json_schema_extra, *(getattr(p, "json_schema_extra", None) for p in _all_parts(field))):
         if isinstance(extra, Mapping) and "x-unit" in extra:
             unit = str(extra["x-unit"])
             return None if unit == "1" else unit
@@ -67,7 +68,7 @@ def unit_of(field: FieldInfo) -> str | None:
 
 
 def _target(field: FieldInfo) -> Select | type[BaseModel] | None:
-    for part in (*field.metadata, *_parts(field.annotation)):
+    for part in _all_parts(field):
         if isinstance(part, Select):
             return part
         model = getattr(part, "model", part)
@@ -76,8 +77,13 @@ def _target(field: FieldInfo) -> Select | type[BaseModel] | None:
     return None
 
 
+def _all_parts(field: FieldInfo) -> Iterator[Any]:
+    for start in (field.annotation, *field.metadata):
+        yield from _parts(start)
+
+
 def _parts(annotation: Any) -> Iterator[Any]:
     """An annotation, what it is made of, and the metadata in it."""
     yield annotation
-    for part in get_args(annotation):
+    for part in (*get_args(annotation), *([annotation.item] if isinstance(annotation, PerObject) else [])):
         yield from _parts(part)

@@ -65,9 +65,7 @@ class SavedFigure(Options):
 class WorldPlot(Options):
     """How the world is drawn."""
 
-    figure_pixels: Annotated[
-        list[Annotated[Number, Field(ge=1, le=20_000)]], vector(("px", "px"), 2)
-    ] = [1000, 800]
+    figure_pixels: Annotated[list[Annotated[Number, Field(ge=1, le=20_000)]], vector(("px", "px"), 2)] = [1000, 800]
     """Size of the figure: [width, height]."""
     saved_figure: SavedFigure = SavedFigure()
     """How figures and animation frames are saved."""
@@ -81,11 +79,6 @@ class WorldPlot(Options):
     """Use the whole figure for the world."""
     viewpoint: Annotated[Any, PlainValidator(_viewpoint), WithJsonSchema(_VIEWPOINT)] = None
     """Keep the view centred on a point [x, y], or follow the object of that name."""
-
-
-def _short_map(value: Any) -> Any:
-    """A file name alone stands for an image map."""
-    return {"name": "image", "path": value} if isinstance(value, str) else value
 
 
 class _MapSelect(Select):
@@ -131,7 +124,7 @@ class WorldModel(Options):
     (`unobstructed_obstacles`), or push and slide (`contact`)."""
     boundary: Literal["none", "walls"] = "none"
     """What is at the world's edge: nothing, or four walls that collide, are seen and avoided."""
-    obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True), BeforeValidator(_short_map)] = None
+    obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
     mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1
     """Keep every so many rows and columns of the grid."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -16,6 +16,8 @@ __all__ = ["RandomOutline", "ShapeOptions", "random_polygon"]
 
 class ShapeOptions(Options):
     """A footprint in the body frame: the origin is the object's position, +x its heading."""
+
+    any_case: ClassVar[bool] = True
 
     name: str
     """Which shape."""

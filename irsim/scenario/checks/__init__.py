@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from irsim.scenario.checks import behaviors, goals, groups, kinematics, names, placement, sensors, shapes, simulated, world
+from irsim.scenario.checks import (
+    behaviors,
+    goals,
+    groups,
+    kinematics,
+    names,
+    placement,
+    sensors,
+    shapes,
+    simulated,
+    world,
+)
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding
 

@@ -77,7 +77,9 @@ def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehav
         f"'{options.name}' is not a {'group ' if key == 'group_behavior' else ''}behavior",
         given=options.name,
         allowed=known,
-        fix=f"name: {near}" if near else "register it before the scenario is read (--import MODULE on the command line)",
+        fix=f"name: {near}"
+        if near
+        else "register it before the scenario is read (--import MODULE on the command line)",
         edit=Edit("replace", path, near) if near else None,
         tolerated=True,
     )

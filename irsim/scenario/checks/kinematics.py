@@ -57,7 +57,9 @@ def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
     if len(values) == record.vel_dim:
         return None
     drive: Any = record.kinematics
-    rows = f" ({', '.join(drive.control_rows)})" if drive is not None and record.vel_dim == len(drive.control_rows) else ""
+    rows = (
+        f" ({', '.join(drive.control_rows)})" if drive is not None and record.vel_dim == len(drive.control_rows) else ""
+    )
     name = f"'{drive.name}'" if drive is not None else "an object without kinematics"
     return error(
         "wrong-length",
