@@ -38,9 +38,12 @@ inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
   return control;
 }
 
-/// Steers straight at the wanted direction; in mode `angular` the wheels turn there at a limited rate.
+/// Steers straight at the wanted direction (in mode `angular` the wheels turn there at a limited rate). A car turns
+/// only while it rolls, so it creeps where other drives would turn in place.
 inline Vec3 follow(const AckerOptions& options, const Wish& wish) {
-  const ForwardWish forward = forward_wish(wish);
+  constexpr double kCreep = 0.2;  // of the wanted speed
+  ForwardWish forward = forward_wish(wish);
+  if (forward.error != 0.0) forward.speed = std::max(forward.speed, kCreep * norm(wish.velocity));
   if (options.mode == Steering::steer) return {{forward.speed, forward.error, 0.0}};
   const double psi = clip(forward.error, -0.25 * kPi, 0.25 * kPi);
   return {{forward.speed, turn_rate(psi - wish.extra[0], wish.turning), 0.0}};

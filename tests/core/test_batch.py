@@ -1,0 +1,142 @@
+"""Batches, threads, rollouts, phases: the same numbers, bit for bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core.test_reset import crowd
+from tests.core.worlds import (
+    DRIVES,
+    assert_identical,
+    command,
+    everything,
+    lidar,
+    obstacle,
+    robot,
+    rows_of,
+    scene,
+)
+
+WORLD_SIZED = ("count", "scene", "noise", "seed")
+
+
+@settings(max_examples=15)
+@given(
+    seeds=st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=7),
+    threads=st.integers(1, 5),
+    steps=st.integers(0, 30),
+    until_done=st.booleans(),
+)
+def test_a_world_of_a_batch_is_that_world_alone(seeds, threads: int, steps: int, until_done: bool) -> None:
+    world, state = crowd(seeds)
+    core.advance(world, state, steps, threads=threads, until_done=until_done)
+    state.reset(np.arange(len(seeds)).astype(np.uint8) % 2, True)
+    core.advance(world, state, steps, threads=threads, until_done=until_done)
+    batch = everything(state)
+    for w, seed in enumerate(seeds):
+        world, alone = crowd([seed])
+        core.advance(world, alone, steps, until_done=until_done)
+        alone.reset(np.array([w % 2], np.uint8), True)
+        core.advance(world, alone, steps, until_done=until_done)
+        assert_identical(rows_of(batch, w, len(seeds)), everything(alone))
+        assert state.events(w) == alone.events(0)
+        assert state.collision_pairs(w).tolist() == alone.collision_pairs(0).tolist()
+
+
+@pytest.mark.parametrize("ranges", [False, True])
+def test_a_rollout_is_repeated_advance(ranges: bool) -> None:
+    world, state = crowd([4, 5, 6])
+    trace = core.rollout(world, state, 25, threads=2, ranges=ranges)
+    other_world, other = crowd([4, 5, 6])
+    for t in range(25):
+        core.advance(other_world, other, 1)
+        for name in ("pose", "control", "arrived", "collided"):
+            np.testing.assert_array_equal(getattr(trace, name)[t], getattr(other, name))
+        if ranges:
+            np.testing.assert_array_equal(trace.ranges[t], other.ranges)
+    assert_identical(everything(state), everything(other))
+    assert trace.pose.shape == (25, 21, 3)
+    assert trace.steps.tolist() == [25] * 3
+    assert trace.ranges.shape == (25 if ranges else 0, 60)
+
+
+def test_worlds_rest_when_their_robots_are_done() -> None:
+    world, state = scene(robot(goals=[[0.35, 0]]), seeds=[0, 1])
+    state.set_goals(1, [[0.95, 0]], True)
+    trace = core.rollout(world, state, 100, until_done=True)
+    assert trace.steps.tolist() == [3, 9]
+    assert trace.pose.shape == (9, 2, 3)
+    np.testing.assert_array_equal(trace.pose[3:, 0], trace.pose[[2] * 6, 0])
+    assert trace.arrived[-1].tolist() == [1, 1]
+    assert core.advance(world, state, 10, until_done=True) == 0
+    assert state.count.tolist() == [3, 9]
+    assert core.advance(world, state, 10) == 10
+
+
+def test_done_means_stopped_or_arrived_and_needs_a_robot() -> None:
+    world, state = scene(robot(), obstacle(pose=[0.1, 0, 0]), robot(pose=[5, 5, 0], goals=[[5, 5]]))
+    assert core.advance(world, state, 10, until_done=True) == 0
+    world, state = scene(obstacle())
+    assert core.advance(world, state, 10, until_done=True) == 10
+
+
+def test_given_commands_hold_for_one_step() -> None:
+    world, state = scene(robot(goals=[[9, 0]]), robot(pose=[0, 5, 0], behavior=None))
+    command(state, [-1, 0], [1, 0])
+    core.advance(world, state, 2)
+    assert state.given.tolist() == [0, 0]
+    np.testing.assert_allclose(state.pose[:, 0], [0.0, 0.1], atol=1e-15)  # back and forth; forth and rest
+
+
+def test_the_phases_make_a_step() -> None:
+    world, state = crowd([1, 2], history=True)
+    other_world, other = crowd([1, 2], history=True)
+    for _ in range(10):
+        core.advance(world, state, 1)
+        for phase in (
+            core.decide, core.limit, core.integrate, core.finish, core.collide, core.arrive, core.sense
+        ):  # fmt: skip
+            phase(other_world, other)
+    assert_identical(everything(state), everything(other))
+    assert state.events(1) == other.events(1)
+    np.testing.assert_array_equal(state.trajectory(0), other.trajectory(0))
+
+
+def test_external_motion() -> None:
+    world, state = scene(robot(goals=[[3, 0]], sensors=[lidar(1)]), obstacle(pose=[4, 0, 0]), history=True, seeds=[0])
+    state.pose[0, 0] = 3.0
+    state.control[0] = [0.5, 0, 0]
+    core.advance(world, state, 1, external=True)
+    assert state.count[0] == 1
+    assert state.arrived[0] == 1
+    assert state.ranges[0] == pytest.approx(0.8)
+    assert state.pose[0].tolist() == [3, 0, 0]
+    assert state.control[0, 0] == 0.5
+    assert state.trajectory(0)[:, 0].tolist() == [3.0]
+
+
+def test_every_drive_in_one_batch_on_threads() -> None:
+    objects = [
+        robot(drive=d, pose=[k, 0, 0], goals=[[k, 5]], loop=True, sensors=[lidar(9)])
+        for k, d in enumerate(DRIVES.values())
+    ]
+    results = []
+    for threads in (1, 2, 8):
+        world, state = scene(*objects, seeds=range(40))
+        core.advance(world, state, 50, threads=threads)
+        results.append(everything(state))
+    assert_identical(results[0], results[1])
+    assert_identical(results[0], results[2])
+
+
+def test_empty_worlds() -> None:
+    world, state = scene(seeds=[])
+    assert core.advance(world, state, 3, threads=4) == 0
+    assert state.pose.shape == (0, 3)
+    world, state = scene(seeds=[1, 2])
+    assert core.advance(world, state, 3) == 3
+    assert core.rollout(world, state, 2).pose.shape == (2, 0, 3)

@@ -1,0 +1,201 @@
+"""Lidar, against every beam times every edge."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core import oracle
+from tests.core.worlds import PI, circle, lidar, line, obstacle, polygon, rectangle, robot, scene
+
+SHAPES = [
+    circle(0.5),
+    circle(0.3, (0.2, -0.4)),
+    rectangle(1, 2),
+    rectangle(14, 12),  # around the sensor
+    polygon((0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)),
+    polygon((0, 0), (0, 1), (1, 1)),  # clockwise
+    line((-2, 0), (0, 1), (2, 0), (1, -1)),
+]
+
+
+@settings(max_examples=150)
+@given(st.data())
+def test_scans_are_those_of_every_beam_against_every_edge(data: st.DataObject) -> None:
+    coarse = data.draw(st.booleans())  # poses on a grid: beams meet corners and run along edges
+    rng = np.random.default_rng(data.draw(st.integers(0, 10_000)))
+    number = data.draw(st.sampled_from([1, 2, 3, 4, 8, 9, 37, 90]))
+    spread = data.draw(st.sampled_from([0.5 * PI, PI, 2.0, 2 * PI - 0.3, 2 * PI, 0.0]))
+    offset = data.draw(st.sampled_from([[0, 0, 0], [0.5, -0.25, 0], [0, 0, 0.5 * PI], [-1, 1, -2.5]]))
+    reach = data.draw(st.sampled_from([0.7, 6.0, 30.0]))
+    count = data.draw(st.integers(0, 12))
+    poses = rng.uniform([-5, -5, -PI], [5, 5, PI], (count, 3))
+    own = rng.uniform([-1, -1, -PI], [1, 1, PI])
+    if coarse:
+        poses[:, :2], own[:2] = np.round(poses[:, :2]), np.round(own[:2])
+        poses[:, 2], own[2] = np.round(poses[:, 2]) * PI / 2, round(own[2]) * PI / 4
+    sensor = lidar(number, range_max=reach, angle_range=spread, offset=offset)
+    _, state = scene(
+        robot(pose=own.tolist(), sensors=[sensor]),
+        *(
+            obstacle(pose=p, parts=[SHAPES[rng.integers(len(SHAPES))]], static=bool(k % 2))
+            for k, p in enumerate(poses.tolist())
+        ),
+        mode=1,
+    )
+    angles = state.beam_angles
+    np.testing.assert_allclose(
+        angles, np.linspace(-spread / 2, spread / 2, number) if number > 1 else [0.0], atol=1e-15
+    )
+    x, y, theta = state.pose[0]
+    origin = np.array([x, y]) + oracle.rotation(theta) @ offset[:2]
+    oracle.assert_scan(state, slice(None), range(1, count + 1), [*origin, theta + offset[2]], reach)
+
+
+def test_many_bodies_and_a_moving_sensor() -> None:
+    rng = np.random.default_rng(1)
+    poses = rng.uniform([-12, -12, -PI], [12, 12, PI], (100, 3)).tolist()
+    world, state = scene(
+        robot(sensors=[lidar(60), lidar(11, angle_range=1.0)], behavior=None, control=[1, 0.4, 0]),
+        *(obstacle(pose=p, parts=[SHAPES[k % 3]]) for k, p in enumerate(poses)),
+        mode=1,
+    )
+    assert world.scans() == [(0, 0, 60), (0, 60, 11)]
+    for _ in range(3):
+        state.command[0, :2], state.given[0] = [1.0, 0.4], 1
+        core.advance(world, state, 4)
+        for beams in (slice(0, 60), slice(60, 71)):
+            oracle.assert_scan(state, beams, range(1, 101), state.pose[0], 10.0)
+
+
+def look(*objects: core.ObjectSpec, number: int = 1, **options) -> core.State:
+    return scene(robot(sensors=[lidar(number, **options)]), *objects, mode=1)[1]
+
+
+def test_the_first_beam_is_the_rightmost() -> None:
+    state = look(obstacle(pose=[0, -2, 0], parts=[circle(0.5)]), number=3, angle_range=PI)
+    np.testing.assert_allclose(state.ranges, [1.5, 10, 10])
+    assert state.hits.tolist() == [1, -1, -1]
+
+
+def test_from_inside_the_exit_is_hit() -> None:
+    for part, distance in ((circle(2.0), 2.0), (rectangle(6, 4), 3.0)):
+        assert look(obstacle(parts=[part])).ranges[0] == pytest.approx(distance, abs=1e-15)
+
+
+def test_from_the_boundary_the_near_side_does_not_count() -> None:
+    assert look(obstacle(pose=[3, 0, 0], parts=[rectangle(6, 4)])).ranges[0] == 6.0
+    assert look(obstacle(pose=[2, 0, 0], parts=[circle(2.0)])).ranges[0] == 4.0
+
+
+def test_a_beam_along_an_edge_meets_its_nearest_end() -> None:
+    assert look(obstacle(parts=[line((2, 0), (4, 0))])).ranges[0] == 2.0
+    assert look(obstacle(parts=[line((4, 0), (-2, 0))])).ranges[0] == 4.0
+
+
+def test_beams_do_not_slip_through_corners() -> None:
+    ring = [(2 * math.cos(a), 2 * math.sin(a)) for a in np.linspace(0, 2 * PI, 361)[:-1]]
+    state = look(obstacle(parts=[polygon(*ring)]), number=721)
+    assert (state.hits == 1).all()
+
+
+def test_range_limits() -> None:
+    wall = obstacle(parts=[line((2, -1), (2, 1))])
+    assert look(wall, range_max=2.0).ranges[0] == 2.0
+    assert look(wall, range_max=2.0).hits[0] == 1  # at the limit is in reach
+    assert look(wall, range_max=1.9).hits[0] == -1
+    near = look(wall, range_min=3.0)
+    assert (near.ranges[0], near.hits[0]) == (3.0, 1)
+
+
+def test_what_is_seen() -> None:
+    ahead = {"pose": [2, 0, 0], "parts": [circle(0.5)]}
+    assert look(obstacle(**ahead)).hits[0] == 1
+    assert look(robot(**ahead)).hits[0] == 1
+    assert look(robot(**ahead, unobstructed=True)).hits[0] == -1
+    assert look().hits[0] == -1  # not itself
+
+
+def test_of_equally_near_objects_the_first_is_hit() -> None:
+    wall = {"parts": [line((2, -1), (2, 1))]}
+    assert look(obstacle(pose=[20, 0, 0]), obstacle(**wall), obstacle(**wall)).hits[0] == 2
+
+
+COMPOUNDS = [
+    [rectangle(2, 2), circle(1.2, (1, 0))],
+    [rectangle(4, 1), polygon((-0.5, -2), (0.5, -2), (0.5, 2), (-0.5, 2))],
+    [polygon((0, 0), (2, 0), (2, 2), (0, 2)), polygon((2, 0), (4, 0), (4, 2), (2, 2))],  # share an edge
+    [circle(1.0), circle(1.0, (0.5, 0.5)), circle(0.2)],
+    [polygon((0, 2), (2, 2), (2, 0), (0, 0)), line((-1, 1), (3, 1))],
+]
+
+
+def union_of(parts) -> shapely.Geometry:
+    geometry = []
+    for part in parts:
+        if isinstance(part, core.Circle):
+            geometry.append(shapely.Point(*part.center).buffer(part.radius, quad_segs=2000))
+        elif isinstance(part, core.Polygon):
+            geometry.append(shapely.Polygon(part.vertices))
+        else:
+            geometry.append(shapely.LineString(part.vertices))
+    whole = shapely.union_all(geometry)
+    if isinstance(whole, shapely.GeometryCollection):
+        return shapely.union_all([g if g.geom_type == "LineString" else g.boundary for g in whole.geoms])
+    return whole.boundary
+
+
+@pytest.mark.parametrize("parts", COMPOUNDS)
+@settings(max_examples=15)
+@given(x=st.floats(-3, 5), y=st.floats(-3, 4), theta=st.floats(-3, 3))
+def test_compounds_show_the_boundary_of_their_union(parts, x: float, y: float, theta: float) -> None:
+    _, state = scene(robot(pose=[x, y, theta], sensors=[lidar(40)]), obstacle(parts=parts), mode=1)
+    boundary, origin = union_of(parts), shapely.Point(x, y)
+    if boundary.distance(origin) < 1e-3:
+        return
+    wrong = 0
+    for angle, found in zip(state.beam_angles + theta, state.ranges, strict=True):
+        end = (x + 10 * math.cos(angle), y + 10 * math.sin(angle))
+        hit = shapely.LineString([(x, y), end]).intersection(boundary)
+        expected = 10.0 if hit.is_empty else origin.distance(hit)
+        wrong += abs(found - expected) > 1e-3
+    assert wrong <= 1  # a beam that grazes a round part, which shapely has as a polygon
+
+
+def scan_key(state: core.State, beam: int, number: int, index: int = 0) -> tuple[float, float]:
+    """Range and direction error of a beam, in standard deviations."""
+    first = 2 * (int(state.count[0]) * number + beam)
+    stream = core.STREAMS["sensor"] + 16 * index
+    block = [
+        core.random_bits(int(state.seed[0]), int(state.scene[0]), int(state.noise[0]), stream, 0, k // 4)
+        for k in (first, first + 1)
+    ]
+    return oracle.normals(block[0])[first % 4], oracle.normals(block[1])[(first + 1) % 4]
+
+
+@pytest.mark.parametrize("angle_std", [0.02, 0.5, 3.0])
+def test_noise(angle_std: float) -> None:
+    sensors = [lidar(5), lidar(24, noise=True, std=0.2, angle_std=angle_std, angle_range=4.0)]
+    boxes = [obstacle(pose=[3 * math.cos(a), 3 * math.sin(a), a], parts=[rectangle(1, 1)]) for a in range(5)]
+    world, state = scene(robot(sensors=sensors), *boxes, seeds=[6], mode=1)
+    for _ in range(2):
+        state.command[0], state.given[0] = [0.5, 0.2, 0], 1
+        core.advance(world, state, 1)
+        errors = np.array([scan_key(state, beam, 24, 1) for beam in range(24)])
+        nominal = np.linspace(-2, 2, 24)
+        np.testing.assert_allclose(state.beam_angles[5:], nominal, atol=1e-15)
+        aim, error = nominal + angle_std * errors[:, 1], 0.2 * errors[:, 0]
+        oracle.assert_scan(state, slice(5, None), range(1, 6), state.pose[0], 10.0, aim, error)
+        oracle.assert_scan(state, slice(0, 5), range(1, 6), state.pose[0], 10.0)  # std without noise is no noise
+
+
+def test_carriers_may_be_static_and_several() -> None:
+    _, state = scene(obstacle(sensors=[lidar(1)]), robot(pose=[3, 0, PI], sensors=[lidar(1)]), seeds=[1, 2], mode=1)
+    np.testing.assert_allclose(state.ranges, 2.8)
+    assert state.hits.tolist() == [1, 0, 1, 0]

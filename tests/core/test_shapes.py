@@ -1,0 +1,138 @@
+"""Bounding circles, vertices, random shapes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core import oracle
+from tests.core.worlds import circle, line, obstacle, polygon, rectangle, scene
+
+COORDINATE = st.floats(-5, 5).map(lambda v: round(v, 3))
+POINT = st.tuples(COORDINATE, COORDINATE)
+
+
+def radius_of(*parts) -> float:
+    _, state = scene(obstacle(parts=list(parts)))
+    return float(state.radius[0])
+
+
+def test_radius_of_simple_shapes() -> None:
+    assert radius_of(circle(0.7, (3, 4))) == 0.7
+    assert radius_of(rectangle(3, 4)) == pytest.approx(2.5)
+    assert radius_of(line((0, 0), (2, 0))) == pytest.approx(1.0)
+    assert radius_of(polygon((0, 0), (4, 0), (2, 0.5))) == pytest.approx(2.0)  # obtuse: two vertices hold it
+    assert radius_of(polygon((1, 1))) == 0.0
+
+
+@settings(max_examples=60)
+@given(st.lists(POINT, min_size=2, max_size=12))
+def test_radius_is_the_minimum_bounding_circle_of_the_vertices(points) -> None:
+    expected = shapely.minimum_bounding_radius(shapely.MultiPoint(points))
+    assert radius_of(line(*points)) == pytest.approx(expected, abs=1e-6)  # GEOS is the less exact one
+
+
+@settings(max_examples=40)
+@given(st.lists(st.tuples(COORDINATE, COORDINATE, st.floats(0, 3)), min_size=1, max_size=5))
+def test_radius_of_a_union_of_discs_is_the_smallest_that_holds_them(discs) -> None:
+    found = radius_of(*(circle(r, (x, y)) for x, y, r in discs))
+    edge = [
+        (x + r * math.cos(a), y + r * math.sin(a)) for x, y, r in discs for a in np.linspace(0, 2 * np.pi, 241)[:-1]
+    ]
+    inner = shapely.minimum_bounding_radius(shapely.MultiPoint(edge))
+    assert inner - 1e-6 <= found <= inner + 3e-3
+
+
+@settings(max_examples=40)
+@given(POINT, st.floats(-4, 4))
+def test_world_frame_vertices(position, theta: float) -> None:
+    _, state = scene(obstacle(pose=[*position, theta], parts=[polygon((0, 0), (2, 0), (0, 1)), circle(0.3, (1, 1))]))
+    turn = oracle.rotation(theta)
+    assert state.parts(0) == ["polygon", "circle"]
+    np.testing.assert_array_equal(state.vertices(0, 0, False), [(0, 0), (2, 0), (0, 1)])
+    np.testing.assert_allclose(
+        state.vertices(0, 0, True), [turn @ v + position for v in np.array([(0, 0), (2, 0), (0, 1)])], atol=1e-12
+    )
+    x, y, r = state.circle(0, 1, True)
+    np.testing.assert_allclose([x, y], turn @ [1, 1] + position, atol=1e-12)
+    assert r == 0.3
+    assert state.vertices(0, 1, True).shape == (0, 2)
+    with pytest.raises(ValueError, match="not a circle"):
+        state.circle(0, 0, True)
+    with pytest.raises(IndexError):
+        state.vertices(0, 2, True)
+
+
+def random_polygon(**overrides) -> core.RandomPolygon:
+    options = {
+        "center_range": [-1, -2, 1, 2],
+        "avg_radius_range": [0.5, 1.5],
+        "irregularity_range": [0, 1],
+        "spikeyness_range": [0, 1],
+        "num_vertices_range": [4, 10],
+        "closed": True,
+    }
+    return core.RandomPolygon(**{**options, **overrides})
+
+
+def test_random_polygons_are_simple_and_differ_by_object_and_scene() -> None:
+    _, state = scene(*(obstacle(parts=[random_polygon()]) for _ in range(60)), seeds=[3])
+    first = [state.vertices(i, 0, False) for i in range(60)]
+    assert all(shapely.Polygon(v).is_valid for v in first)
+    assert all(shapely.Polygon(v).exterior.is_ccw for v in first)
+    assert {len(v) for v in first} == set(range(4, 10))
+    assert len({v.tobytes() for v in first}) == 60
+    state.reset(np.ones(1, np.uint8), False)
+    assert all(np.array_equal(v, state.vertices(i, 0, False)) for i, v in enumerate(first))
+    state.reset(np.ones(1, np.uint8), True)
+    assert not any(np.array_equal(v, state.vertices(i, 0, False)) for i, v in enumerate(first))
+
+
+def test_convex_random_polygons_lie_on_a_circle() -> None:
+    part = random_polygon(spikeyness_range=[0, 0], center_range=[0, 0, 0, 0])
+    _, state = scene(*(obstacle(parts=[part]) for _ in range(20)))
+    for i in range(20):
+        v = state.vertices(i, 0, False)
+        distances = np.hypot(*v.T)
+        np.testing.assert_allclose(distances, distances[0], rtol=1e-12)
+        assert 0.5 <= distances[0] <= 1.5
+        assert shapely.Polygon(v).convex_hull.area == pytest.approx(shapely.Polygon(v).area)
+
+
+def test_random_polygons_follow_the_published_model() -> None:
+    part = random_polygon(irregularity_range=[0, 0], spikeyness_range=[0.2, 0.2], num_vertices_range=[6, 7])
+    _, state = scene(*(obstacle(parts=[part]) for _ in range(300)), seeds=[9])
+    u = oracle.draws(9, 0, 0, core.STREAMS["shape"], 4, 5)
+    centre = np.array([-1 + 2 * u[0], -2 + 4 * u[1]])
+    mean = 0.5 + u[2]
+    v = state.vertices(4, 0, False) - centre
+    angles = np.unwrap(np.arctan2(v[:, 1], v[:, 0]))
+    np.testing.assert_allclose(np.diff(angles), np.pi / 3, atol=1e-9)
+    assert np.hypot(*v.T).max() <= 2 * mean
+    spread = []
+    for i in range(300):
+        u = oracle.draws(9, 0, 0, core.STREAMS["shape"], i, 3)
+        v = state.vertices(i, 0, False) - [-1 + 2 * u[0], -2 + 4 * u[1]]
+        spread += list(np.hypot(*v.T) / (0.5 + u[2]))
+    assert np.mean(spread) == pytest.approx(1.0, abs=0.02)
+    assert np.std(spread) == pytest.approx(0.2, abs=0.02)
+
+
+def test_random_linestrings_are_open() -> None:
+    _, state = scene(obstacle(parts=[random_polygon(closed=False)]))
+    assert state.parts(0) == ["linestring"]
+
+
+def test_random_circles() -> None:
+    part = core.RandomCircle(radius_range=[0.5, 2.0], center=[1, 0])
+    _, state = scene(*(obstacle(parts=[part, part]) for _ in range(20)), seeds=[4])
+    for i in range(20):
+        u = oracle.draws(4, 0, 0, core.STREAMS["shape"], i, 1)[0]
+        assert state.circle(i, 0, False) == pytest.approx((1.0, 0.0, 0.5 + 1.5 * u))
+        assert state.circle(i, 1, False) != state.circle(i, 0, False)

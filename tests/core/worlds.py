@@ -1,0 +1,128 @@
+"""Small worlds for tests of the core, with everything that a test does not care about filled in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from irsim import _core as core
+
+PI = math.pi
+DRIVES: dict[str, Any] = {
+    "diff": core.DiffOptions(noise=False, alpha=[0.03, 0.0, 0.0, 0.03]),
+    "omni": core.OmniOptions(noise=False, alpha=[0.03, 0.03]),
+    "omni_angular": core.OmniAngularOptions(noise=False, alpha=[0.03, 0.03, 0.03]),
+    "steer": core.AckerOptions(
+        noise=False, alpha=[0.03, 0.0, 0.0, 0.03], mode="steer", wheelbase=1.2, psi_max=math.inf
+    ),
+    "angular": core.AckerOptions(noise=False, alpha=[0.03, 0.0, 0.0, 0.03], mode="angular", wheelbase=1.2, psi_max=0.9),
+}
+DASH = core.DashOptions(angle_tolerance=0.1)
+
+
+def circle(radius: float = 0.2, center: Sequence[float] = (0.0, 0.0)) -> core.Circle:
+    return core.Circle(radius=radius, center=center)
+
+
+def polygon(*vertices: Sequence[float]) -> core.Polygon:
+    return core.Polygon(vertices=vertices)
+
+
+def rectangle(length: float, width: float) -> core.Polygon:
+    x, y = length / 2, width / 2
+    return polygon((-x, -y), (x, -y), (x, y), (-x, y))
+
+
+def line(*vertices: Sequence[float]) -> core.Linestring:
+    return core.Linestring(vertices=vertices)
+
+
+def lidar(number: int = 60, **overrides: Any) -> core.Lidar2dOptions:
+    options: dict[str, Any] = {
+        "range_min": 0.0,
+        "range_max": 10.0,
+        "angle_range": 2 * PI,
+        "number": number,
+        "noise": False,
+        "std": 0.2,
+        "angle_std": 0.02,
+        "offset": [0.0, 0.0, 0.0],
+        "has_velocity": False,
+    }
+    return core.Lidar2dOptions(**{**options, **overrides})
+
+
+def robot(**overrides: Any) -> core.ObjectSpec:
+    options: dict[str, Any] = {
+        "role": 0,
+        "group": 0,
+        "drive": DRIVES["diff"],
+        "parts": [circle()],
+        "static": False,
+        "unobstructed": False,
+        "wander": False,
+        "loop": False,
+        "pose": [0.0, 0.0, 0.0],
+        "extra": [],
+        "control": [0.0, 0.0, 0.0],
+        "vel_min": [-1.0, -1.0, -1.0],
+        "vel_max": [1.0, 1.0, 1.0],
+        "acce": [math.inf] * 3,
+        "angle_range": [-PI, PI],
+        "goals": [],
+        "goal_threshold": 0.1,
+        "arrive_mode": 0,
+        "range_low": [0.0, 0.0, -PI],
+        "range_high": [10.0, 10.0, PI],
+        "target_roles": 0,
+        "behavior": DASH,
+        "sensors": [],
+    }
+    return core.ObjectSpec(**{**options, **overrides})
+
+
+def obstacle(**overrides: Any) -> core.ObjectSpec:
+    return robot(**{"role": 1, "static": True, "drive": None, "behavior": None, **overrides})
+
+
+def scene(
+    *objects: core.ObjectSpec,
+    seeds: Sequence[int] = (0,),
+    mode: int = 0,
+    step_time: float = 0.1,
+    placements: Sequence[core.RandomPlacement] = (),
+    history: bool = False,
+) -> tuple[core.World, core.State]:
+    """World and state of these objects; one copy per seed."""
+    world = core.World(
+        step_time=step_time, collision_mode=mode, objects=objects, placements=placements, copies=len(seeds)
+    )
+    return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
+
+
+def command(state: core.State, *controls: Sequence[float]) -> None:
+    """Give these controls to the first rows for the next step."""
+    for row, control in enumerate(controls):
+        state.command[row, : len(control)] = control
+        state.given[row] = 1
+
+
+def everything(state: core.State) -> dict[str, np.ndarray]:
+    """Copies of all arrays of a state."""
+    names = (
+        "pose extra control twist command given arrived collided stopped radius goal ranges hits count scene noise seed"
+    )
+    return {name: getattr(state, name).copy() for name in names.split()}
+
+
+def rows_of(values: dict[str, np.ndarray], world: int, worlds: int) -> dict[str, np.ndarray]:
+    """The part of `everything` that belongs to one world of a batch."""
+    return {name: np.array_split(array, worlds)[world] for name, array in values.items()}
+
+
+def assert_identical(a: dict[str, np.ndarray], b: dict[str, np.ndarray]) -> None:
+    for name in a:
+        assert a[name].tobytes() == b[name].tobytes(), name
