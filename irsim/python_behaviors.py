@@ -47,7 +47,7 @@ class _Decision:
                     )
                 roles = record.target_roles
                 others = [o for o in objects if o.id != index and roles in ("all", o.role)]
-                control = function(ego_object=view, external_objects=others, **options.model_dump())
+                control = function(ego_object=view, external_objects=others, **options.model_dump(exclude_unset=True))
                 values = np.asarray(control, dtype=np.float64).reshape(-1)
                 if values.size != view.vel_dim:
                     raise ValueError(
