@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["CODES", "Code"]
+__all__ = ["CODES", "TOOL_CODES", "Code"]
 
 
 class Code(NamedTuple):
@@ -232,3 +232,33 @@ CODES: dict[str, Code] = {
     ),
     "too-many-problems": Code("more problems than are shown", "Mend the first ones and validate again."),
 }
+
+TOOL_CODES: dict[str, Code] = {
+    "unknown-template": Code("unknown template", "No template of that name is bundled; irsim templates lists them."),
+    "unknown-parameter": Code(
+        "unknown parameter", "The template has no parameter of that name; irsim describe NAME lists them."
+    ),
+    "bad-parameter": Code(
+        "parameter not accepted", "The value is of the wrong type or out of range; the message says what is accepted."
+    ),
+    "unknown-topic": Code(
+        "unknown topic", "Neither the language nor its components, templates and codes have that name."
+    ),
+    "unknown-format": Code(
+        "unknown file format", "The suffix of the file says what to write; the message lists the suffixes known."
+    ),
+    "file-exists": Code("file exists", "Nothing is overwritten unless asked to with --force."),
+    "import-failed": Code(
+        "module cannot be imported", "A module named by --import raised an error; the message has it."
+    ),
+    "invalid-input": Code("input not usable", "The message says what is wrong with it."),
+    "file-access": Code(
+        "file cannot be read or written", "The system refuses: check the path, the permissions and the space left."
+    ),
+    "out-of-memory": Code("not enough memory", "Fewer objects, beams or frames need less."),
+    "internal-error": Code(
+        "unexpected error",
+        "A mistake in irsim or in user code; IRSIM_TRACEBACK=1 shows where. Please report it if it is ours.",
+    ),
+}
+"""Codes of errors outside scenarios: of the command line and other tools."""

@@ -4,22 +4,40 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
 from irsim.errors import IrsimError
 
-__all__ = ["TargetExistsError", "write_atomically", "write_new"]
+__all__ = ["TargetError", "check_suffix", "write_atomically", "write_new"]
 
 
-class TargetExistsError(IrsimError, FileExistsError):
-    """The file to write is there already.
+class TargetError(IrsimError, ValueError):
+    """A file that will not be written.
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.codes`.
     """
 
-    code = "file-exists"
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = code
+
+
+def check_suffix(target: Path, known: Iterable[str]) -> None:
+    """Refuse a file whose suffix nothing writes, before any work is done.
+
+    Args:
+        target: The file.
+        known: Suffixes, with or without the dot.
+
+    Raises:
+        TargetError: The suffix is not among them.
+    """
+    suffixes = [suffix.lstrip(".") for suffix in known]
+    if target.suffix.lower().lstrip(".") not in suffixes:
+        raise TargetError("unknown-format", f"{target} has none of the suffixes {', '.join(suffixes)}")
 
 
 def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
@@ -31,13 +49,13 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
         overwrite: Replace a file that exists.
 
     Raises:
-        TargetExistsError: There is one and ``overwrite`` is not set.
+        TargetError: There is one and ``overwrite`` is not set.
     """
     if not overwrite:
         try:
             target.open("x").close()  # claims the name, also against another process
         except FileExistsError:
-            raise TargetExistsError(f"{target} exists; --force overwrites it, -o names another file") from None
+            raise TargetError("file-exists", f"{target} exists; --force overwrites it, -o names another file") from None
     try:
         write_atomically(target, text)
     except BaseException:

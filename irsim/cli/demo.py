@@ -31,7 +31,9 @@ def demo(
 
     with progress("simulating and drawing") as report:
         from irsim import api
+        from irsim.files import check_suffix
 
+        check_suffix(out, api.VIDEO_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
     if json_output:
         print_json(result)

@@ -49,6 +49,8 @@ def _show(answer: Answer, out: Console) -> None:
         line(answer.text)
     if answer.about is not None:
         line(Text(_facts(answer.about), style="green"))
+        if answer.about.per_object:
+            line(Text("also a list of these, one per object of the entry", style="green"))
     for heading, keys in answer.groups.items():
         if keys:
             line()
@@ -56,18 +58,20 @@ def _show(answer: Answer, out: Console) -> None:
             line(_table(keys))
     if answer.example:
         line()
-        line(Text.assemble("for example: ", (answer.example, "cyan")))
+        line(Text("for example", style="dim"))
+        line(Text(answer.example, style="cyan"))
     if answer.see:
+        line()
         line(Text.assemble(("see also: ", "dim"), ", ".join(answer.see)))
 
 
 def _facts(key: Key) -> str:
     """Type, unit, range and default in one line."""
-    facts = [
-        key.type + (f" [{key.unit}]" if key.unit and not key.unit.startswith("[") else f" {key.unit or ''}".rstrip())
-    ]
-    if key.allowed:
-        facts.append(key.allowed)
+    unit = "" if not key.unit else f" {key.unit}" if key.unit.startswith("[") else f" [{key.unit}]"
+    if key.type in ("a name", "a value"):
+        facts = [f"one of {key.allowed}"]
+    else:
+        facts = [key.type + unit if key.type else "", key.allowed or ""]
     if key.required:
         facts.append("required")
     if key.default is not None:

@@ -37,7 +37,11 @@ def prepare_streams() -> None:
 
 def console(*, stderr: bool = False) -> Console:
     """A rich console on standard output or standard error, without markup, highlighting or wrapping."""
-    from rich.console import Console
+    from rich.console import Console as RichConsole
+
+    class Console(RichConsole):
+        def on_broken_pipe(self) -> None:  # instead of exiting: the guard of the verbs decides
+            raise BrokenPipeError
 
     return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=True)
 

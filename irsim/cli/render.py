@@ -41,7 +41,10 @@ def render(
     import_user_modules(imports)
     with progress("drawing") as report:
         from irsim import api
+        from irsim.files import check_suffix
+        from irsim.render.files import PICTURE_FORMATS
 
+        check_suffix(out, [*PICTURE_FORMATS, *api.VIDEO_SUFFIXES])
         result = api.render(
             file,
             out,

@@ -47,7 +47,10 @@ def run(
     import_user_modules(imports)
     with progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
+        from irsim.files import check_suffix
 
+        if save_gif is not None:
+            check_suffix(save_gif, api.VIDEO_SUFFIXES)
         result = api.run(
             file,
             seed=seed,

@@ -33,6 +33,8 @@ class Key(_Data):
     """Whether it must be given."""
     allowed: str | None = None
     """Names or range it is limited to."""
+    per_object: bool = False
+    """Whether a list gives one value to each object of an entry."""
     text: str = ""
     """What it means."""
 

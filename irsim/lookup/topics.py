@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import re
 
 from irsim import templates
-from irsim.codes import CODES
+from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
 from irsim.lookup.walk import Node, component_name, components, key, mappings, paths, step, yaml_text
@@ -22,7 +21,7 @@ _PLACES = {
     "distribution": ("robot", "distribution"),
     "kinematics": ("robot", "kinematics"),
     "map": ("world", "obstacle_map"),
-    "planner": ("robot", "behavior", "follow"),
+    "planner": ("robot", "behavior", "follow", "planner"),
     "sensor": ("robot", "sensors"),
     "shape": ("robot", "shape"),
 }
@@ -46,7 +45,7 @@ def lookup(topic: str = "") -> Answer:
         return _index()
     if name in ("codes", "templates"):
         return _codes() if name == "codes" else _templates()
-    if topic.strip() in CODES:
+    if topic.strip() in _all_codes():
         return _code(topic.strip())
     if name in templates.names():
         return _template(templates.load(name))
@@ -70,7 +69,7 @@ def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
         if words[0] in registry.names():
             found.append((*place, *words))
     if len(words) == 1:
-        same = [path for path in paths(schema) if path[-1] == words[0]]
+        same = [path for path, _ in paths(schema) if path[-1] == words[0]]
         if len({path[1:] for path in same}) == 1:  # robots and obstacles have the same keys
             found += same
     return found
@@ -105,7 +104,7 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
         text=text,
         about=None if feature_name or path in (("world",), ("robot",), ("obstacle",)) else about,
         groups=groups,
-        example=example_of(path, feature_name) or (f"{path[-2]}: {{name: {feature_name}}}" if feature_name else None),
+        example=example_of(path, feature_name) or _bare_example(path, node, feature_name),
         see=_related(path, registry, feature_name),
     )
 
@@ -136,7 +135,7 @@ def _registry_of(path: tuple[str, ...]) -> tuple[Registry | None, str | None]:
     for kind, place in _PLACES.items():
         section = ("obstacle", *place[1:]) if place[0] == "robot" else place
         for start in (place, section):
-            if path == start and kind != "planner":
+            if path == start:
                 return REGISTRIES[kind], None
             if path[:-1] == start and path[-1] in REGISTRIES[kind].names():
                 return REGISTRIES[kind], path[-1]
@@ -150,6 +149,13 @@ def _component_line(registry: Registry, name: str) -> Key:
     return Key(name=name, text=doc + later)
 
 
+def _bare_example(path: tuple[str, ...], node: Node, name: str | None) -> str | None:
+    """A component by its name alone, if it needs no other key."""
+    if name is None or set(node.get("required", [])) - {"name"}:
+        return None
+    return f"{path[-2]}: [{{name: {name}}}]" if path[-2] == "sensors" else f"{path[-2]}: {{name: {name}}}"
+
+
 def _related(path: tuple[str, ...], registry: Registry | None, name: str | None) -> list[str]:
     if registry is not None and name is not None:
         return [".".join(path[:-1]), *(f"{registry.kind} {other}" for other in registry.names() if other != name)][:6]
@@ -159,35 +165,46 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
 def _search(schema: Node, words: list[str]) -> Answer:
     """Everything that the words occur in; several keys of one name, too."""
     wanted = " ".join(words).lower()
-    everywhere = [path for path in paths(schema) if path[0] != "obstacle"]  # obstacles have the keys of robots
-    hits = [Key(name=".".join(path)) for path in everywhere if path[-1].lower() == wanted]
+    everywhere = [
+        _hit(path, node) for path, node in paths(schema) if path[0] != "obstacle"
+    ]  # robots have the same keys
+    everywhere.sort(key=lambda hit: len(hit.name))
+    hits = [hit for hit in everywhere if _last(hit) == wanted]
     if not hits:
-        hits += [Key(name=template.name, text=template.purpose) for template in templates.find(words)]
-        hits += [
-            Key(name=name, text=code.title) for name, code in CODES.items() if wanted in f"{name} {code.title}".lower()
-        ]
-        for path in everywhere:
-            node = functools.reduce(lambda nodes, word: step(schema, nodes, word), path, [schema])[0]
-            if wanted in str(node.get("description", "")).lower() or wanted in path[-1].lower():
-                hits.append(Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split())))
+        hits += [Key(name=template.name, text=template.purpose) for template in templates.find(words, every=True)]
+        titles = [Key(name=name, text=code.title) for name, code in _all_codes().items()]
+        hits += [hit for hit in titles if wanted in f"{hit.name} {hit.text}".lower()]
+        hits += [hit for hit in everywhere if wanted in f"{_last(hit)} {hit.text}".lower()]
+        hits = list({(_last(hit), hit.text): hit for hit in reversed(hits)}.values())[::-1]
     if not hits:
         raise TopicError(" ".join(words), _near(schema, words))
-    unique = list({hit.name: hit for hit in hits}.values())
-    more = len(unique) - _MOST_HITS
+    more = len(hits) - _MOST_HITS
     return Answer(
         topic=wanted,
         kind="search",
-        title=f"{len(unique)} topics about '{wanted}'" if len(unique) != 1 else f"1 topic about '{wanted}'",
+        title=f"{len(hits)} topics about '{wanted}'" if len(hits) != 1 else f"1 topic about '{wanted}'",
         text=f"The first {_MOST_HITS}; a more special word finds fewer." if more > 0 else "",
-        groups={"topics": unique[:_MOST_HITS]},
+        groups={"topics": hits[:_MOST_HITS]},
     )
+
+
+def _hit(path: tuple[str, ...], node: Node) -> Key:
+    return Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split()))
+
+
+def _last(hit: Key) -> str:
+    return hit.name.rpartition(".")[2].lower()
 
 
 def _near(schema: Node, words: list[str]) -> list[str]:
     """Topics with similar names: the wrong word of a path mended, or the nearest of all names."""
     asked = ".".join(words)
-    everything = {".".join(path) for path in paths(schema)}
-    everything |= {*CODES, *templates.names(), *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names())}
+    everything = {".".join(path) for path, _ in paths(schema)}
+    everything |= {
+        *_all_codes(),
+        *templates.names(),
+        *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
+    }
     near = difflib.get_close_matches(asked, everything, 3, 0.75)
     if not near:
         by_last: dict[str, str] = {}
@@ -210,19 +227,23 @@ def _index() -> Answer:
             "sections of a scenario": [Key(name=section.name, text=section.text) for section in sections],
             "components": kinds,
             "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
-            "codes": [Key(name="codes", text=f"the {len(CODES)} codes of errors and warnings")],
+            "codes": [Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings")],
         },
         example="irsim describe robot.sensors.lidar2d",
     )
 
 
 def _code(name: str) -> Answer:
-    code = CODES[name]
+    code = _all_codes()[name]
     return Answer(topic=name, kind="code", title=f"{name}: {code.title}", text=code.explanation, see=["codes"])
 
 
+def _all_codes() -> dict[str, Code]:
+    return {**CODES, **TOOL_CODES}
+
+
 def _codes() -> Answer:
-    lines = [Key(name=name, text=code.title) for name, code in CODES.items()]
+    lines = [Key(name=name, text=code.title) for name, code in _all_codes().items()]
     return Answer(topic="codes", kind="index", title="Codes of errors and warnings", groups={"codes": lines})
 
 
@@ -235,7 +256,7 @@ def _template(template: Template) -> Answer:
     keys = [
         Key(
             name=name,
-            type=parameter.type,
+            type="a name" if parameter.choices else "",
             unit=parameter.unit,
             default=yaml_text(parameter.default),
             allowed=parameter.allowed(),

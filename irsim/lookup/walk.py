@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -86,17 +87,17 @@ def step(root: Node, nodes: list[Node], word: str) -> list[Node]:
 
 def paths(
     root: Node, prefix: tuple[str, ...] = (), node: Node | None = None, depth: int = 6
-) -> Iterator[tuple[str, ...]]:
-    """All paths of the language, components included."""
+) -> Iterator[tuple[tuple[str, ...], Node]]:
+    """All paths of the language, components included, and where they lead."""
     if depth == 0:
         return
     for option in mappings(root, root if node is None else node):
         name = component_name(option)
         here = (*prefix, name) if name else prefix
         if name:
-            yield here
+            yield here, option
         for word, child in option["properties"].items():
-            yield (*here, word)
+            yield (*here, word), child
             yield from paths(root, (*here, word), child, depth - 1)
 
 
@@ -112,7 +113,7 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
     return Key(
         name=name,
         type=kind,
-        unit=units[0] if units else None,
+        unit=units[0] if units and units[0] != "1" else None,
         default=None if default is None or default == {} else yaml_text(default),
         required=required,
         allowed=_shortened(list(dict.fromkeys(allowed))) or "; ".join(dict.fromkeys(ranges)) or None,
@@ -129,7 +130,10 @@ def yaml_text(value: Any) -> str:
         return "[" + ", ".join(map(yaml_text, value)) + "]"
     if isinstance(value, bool) or value is None:
         return json.dumps(value)
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{value:g}"
+    plain = not isinstance(value, str) or re.fullmatch(r"[A-Za-z_][\w./-]*( [\w./-]+)*", value)
+    return str(value) if plain else json.dumps(value, ensure_ascii=False)
 
 
 def _shortened(names: list[str]) -> str:

@@ -44,17 +44,19 @@ def load_all() -> list[Template]:
     return [load(name) for name in names()]
 
 
-def find(words: Iterable[str]) -> list[Template]:
+def find(words: Iterable[str], *, every: bool = False) -> list[Template]:
     """The templates that are about some words: those whose name, title, purpose or tags hold the most of them.
 
-    Without words: all of them.
+    Args:
+        words: What to look for; without words all templates are found.
+        every: Only templates that hold every word.
     """
     wanted = [word.lower() for phrase in words for word in phrase.split()]
     templates = load_all()
     if not wanted:
         return templates
     scores = {template.name: sum(word in _searched(template) for word in wanted) for template in templates}
-    best = max(scores.values(), default=0)
+    best = len(wanted) if every else max(scores.values(), default=0)
     return [template for template in templates if best and scores[template.name] == best]
 
 

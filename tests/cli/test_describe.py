@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from irsim import templates
-from irsim.codes import CODES
+from irsim.codes import CODES, TOOL_CODES
 from irsim.lookup import lookup
 from irsim.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
@@ -66,7 +66,7 @@ def test_a_kind_lists_its_components(topic: str) -> None:
 def test_codes_are_explained(irsim: Run) -> None:
     shown = irsim("describe", "unknown-key").stdout
     assert CODES["unknown-key"].explanation.split(".")[0] in " ".join(shown.split())
-    assert set(CODES) == {key.name for keys in lookup("codes").groups.values() for key in keys}
+    assert {*CODES, *TOOL_CODES} == {key.name for keys in lookup("codes").groups.values() for key in keys}
 
 
 def test_templates_show_their_parameters(irsim: Run) -> None:

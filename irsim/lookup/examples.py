@@ -1,0 +1,65 @@
+"""Examples for a topic, taken from the bundled templates: they are known to work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import yaml
+
+from irsim import templates
+from irsim.lookup.walk import yaml_text
+
+__all__ = ["example_of"]
+
+_LONGEST_LINE = 90
+
+
+def example_of(path: tuple[str, ...], component: str | None = None) -> str | None:
+    """YAML for a path of the language, as some template has it; None if none does.
+
+    Args:
+        path: Such as ``("robot", "vel_max")``.
+        component: The name of the component that the path ends with, if it does.
+    """
+    names = path[:-1] if component is not None else path
+    for section in dict.fromkeys((path[0], "robot" if path[0] == "obstacle" else path[0], "obstacle")):
+        words = (section, *path[1:]) if path[0] in ("robot", "obstacle") else path
+        values = [value for data in _scenarios() for value in _values(data, words)]
+        lines = {yaml_text(value): value for value in values if value not in (None, {}, [])}
+        if lines:
+            fitting = [line for line in lines if len(line) <= _LONGEST_LINE] or [min(lines, key=len)]
+            best = lines[max(fitting, key=len) if component is not None else fitting[0]]
+            return _written(names[-1], best, component)
+    return None
+
+
+def _scenarios() -> Iterator[Any]:
+    for name in templates.names():
+        text = templates.scenario_file(name).read_text(encoding="utf-8")
+        yield yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+
+
+def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
+    """What stands at a path; lists are looked through, names of components select mappings."""
+    if isinstance(data, list):
+        if not words and not any(isinstance(item, dict) for item in data):
+            yield data
+        for item in data if words or any(isinstance(item, dict) for item in data) else []:
+            yield from _values(item, words)
+    elif not words:
+        yield data
+    elif isinstance(data, dict):
+        if words[0] in data:
+            yield from _values(data[words[0]], words[1:])
+        elif data.get("name", data.get("type")) == words[0]:
+            yield from _values(data, words[1:])
+
+
+def _written(name: str, value: Any, component: str | None) -> str:
+    one = [value] if name == "sensors" and isinstance(value, dict) else value
+    line = f"{name}: {yaml_text(one)}"
+    if len(line) <= _LONGEST_LINE + len(name) or not isinstance(value, dict):
+        return line
+    whole = {name: [value] if name in ("robot", "obstacle", "sensors") else value}
+    return yaml.safe_dump(whole, sort_keys=False, default_flow_style=None, width=_LONGEST_LINE).rstrip()
