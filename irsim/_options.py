@@ -9,11 +9,14 @@ import textwrap
 from collections.abc import Callable
 from contextvars import ContextVar
 from functools import cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 __all__ = ["SHARED_SCHEMAS", "Options", "field_docs", "problem", "shared_schema"]
 
@@ -38,6 +41,10 @@ class Options(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, protected_namespaces=())
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        """Itself: options never change, so defaults need no copies."""
+        return self
 
     schema_extra: ClassVar[dict[str, Any]] = {}
     """What the schema says about the mapping besides its keys: examples."""

@@ -64,7 +64,7 @@ def _text(value: str) -> str:
         "unknown-color",
         f"'{value}' is not a color",
         allowed=_EXPECTED,
-        fix=f"did you mean '{near}'?" if near else None,
+        fix=f"write {near}" if near else None,
         replace=near,
     )
 

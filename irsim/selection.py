@@ -119,36 +119,39 @@ class Select:
         if self.empty and isinstance(value, Mapping) and not value:
             return None
         kind = self.registry.kind
+        where: tuple[str, ...] = ("name",)
         if self.short is not None and isinstance(value, str):
             name, key = self.short
+            where = ()
             value = {"name": name, key: value} if name is not None else {key: value}
         if isinstance(value, str):
             raise problem(
                 "not-a-mapping",
-                f"a {kind} is a mapping with a name, not the name alone",
+                f"'{kind}' is a mapping with a name, not the name alone",
                 fix=f"write {{name: {value}}}",
                 replace={"name": value},
             )
         if not isinstance(value, Mapping):
-            raise problem("not-a-mapping", f"a {kind} is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
+            raise problem("not-a-mapping", f"'{kind}' is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
         name = self.name_of(value)
         if name is None:
-            raise _at(kind, problem("missing-key", f"this {kind} has no name", allowed=self.names()), value)
+            missing = problem("missing-key", "'name' is missing", allowed=self.names(), fix="add 'name: ...'")
+            raise _at(kind, missing, value, "name")
         model = self.model_for(value)
         if model is None:
-            raise _at(kind, self._unknown(name), name, "name" if "name" in value else self.alias or "name")
+            at_alias = where and "name" not in value and self.alias is not None
+            raise _at(kind, self._unknown(name), name, *((self.alias,) if at_alias else where))
         return model.model_validate(self._prepared(value, name))
 
     def _prepared(self, value: Mapping[str, Any], name: str) -> dict[str, Any]:
         return {**value, "name": name}
 
     def _unknown(self, name: Any) -> PydanticCustomError:
-        names = self.names()
+        names, kind = self.names(), self.registry.kind
         near = nearest(name, names)
-        article = "an" if self.registry.kind[0] in "aeiou" else "a"
         return problem(
-            f"unknown-{self.registry.kind}",
-            f"'{name}' is not {article} {self.registry.kind}",
+            f"unknown-{kind}",
+            f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}",
             allowed=names,
             fix=f"name: {near}" if near else None,
             replace=near,

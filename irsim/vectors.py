@@ -70,7 +70,16 @@ def _holds_list(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and any(isinstance(item, (list, tuple)) for item in value)
 
 
-_DISCRIMINATORS = {"value": _tag, "number": _tag_numbers, "list": _tag_lists, "path": _tag_paths}
+def _tag_vectors(value: Any) -> str:
+    """For keys that take a vector: text or booleans among the numbers are wrong numbers, not values per object."""
+    return PER_OBJECT if isinstance(value, (list, tuple)) and any(_separate(item) for item in value) else ONE
+
+
+def _separate(item: Any) -> bool:
+    return item is None or isinstance(item, (list, tuple))
+
+
+_DISCRIMINATORS = {"vector": _tag_vectors, "value": _tag, "number": _tag_numbers, "list": _tag_lists, "path": _tag_paths}
 
 
 class PerObject:
@@ -78,11 +87,12 @@ class PerObject:
 
     Args:
         item: Type of one value.
-        kind: What one value is. ``value``: not a list, or a vector, by the general rule. ``number``: a list of plain
+        kind: What one value is. ``value``: not a list, or a vector, by the general rule. ``vector``: the same, and
+            certainly a vector. ``number``: a list of plain
             numbers is one number per object, not a vector. ``list``: a list of things. ``path``: a list of vectors.
     """
 
-    def __init__(self, item: Any, kind: Literal["value", "number", "list", "path"] = "value") -> None:
+    def __init__(self, item: Any, kind: Literal["value", "vector", "number", "list", "path"] = "value") -> None:
         self.item = item
         self._discriminate = _DISCRIMINATORS[kind]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,8 @@ from irsim.units import Radians
 
 class Dash(BehaviorOptions):
     """Drive straight to the goal at full speed, looking at nobody."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "dash"}, {"name": "dash", "loop": True}]}
 
     name: Literal["dash"] = "dash"
     angle_tolerance: Annotated[Radians, Field(ge=0)] = 0.1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,8 @@ from irsim.units import Meters, Seconds
 
 class Follow(BehaviorOptions):
     """Get there through the maze: plan on the map inflated by the footprint, then follow the path."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}
 
     name: Literal["follow"] = "follow"
     planner: Annotated[Any, Select(PLANNERS, short=(None, "name")), Field(validate_default=True)] = "astar"

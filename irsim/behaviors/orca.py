@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,8 @@ class Orca(BehaviorOptions):
     """Each member of a group takes half of the smallest change of velocity that avoids every collision."""
 
     in_group: ClassVar[bool] = True
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "orca", "neighborDist": 10.0, "timeHorizon": 5.0}]}
 
     name: Literal["orca"] = "orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 15.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,6 +13,10 @@ from irsim.units import Meters, MetersPerSecond, Number
 
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]
+    }
 
     name: Literal["rvo"] = "rvo"
     vxmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5

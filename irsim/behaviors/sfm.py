@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,8 @@ class Sfm(BehaviorOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by others and by walls (social force model)."""
 
     in_group: ClassVar[bool] = True
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "sfm", "vmax": 1.3}]}
 
     name: Literal["sfm"] = "sfm"
     vmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 class CircleDistribution(DistributionOptions):
     """Evenly on a circle, facing its middle; goals are the opposite points unless the entry has a `goal`."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "circle", "center": [5, 5], "radius": 4.0}]}
 
     name: Literal["circle"] = "circle"
     center: Pose | None = None

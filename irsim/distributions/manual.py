@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from irsim.distributions._options import DistributionOptions
 from irsim.registry import DISTRIBUTIONS
@@ -10,6 +10,8 @@ from irsim.registry import DISTRIBUTIONS
 
 class Manual(DistributionOptions):
     """The entry's own `state` and `goal`: one vector for all objects, or a list with one per object."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "manual"}]}
 
     name: Literal["manual"] = "manual"
 

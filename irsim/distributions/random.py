@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,10 @@ from irsim.vectors import Offset
 
 class RandomDistribution(DistributionOptions):
     """Uniform draws of poses and then goals, clear of everything placed before; the entry's own are ignored."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "random", "range_low": [1, 1, -3.14159], "range_high": [9, 9, 3.14159]}]
+    }
 
     name: Literal["random"] = "random"
     range_low: Offset | None = None

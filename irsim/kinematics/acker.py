@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -22,6 +22,8 @@ class Acker(KinematicsOptions):
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "steer")
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "acker", "wheelbase": 3.0}]}
 
     name: Literal["acker"] = "acker"
     alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=4, max_length=4)] = [0.03, 0.0, 0.0, 0.03]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,8 @@ from irsim.units import Number
 
 class Diff(KinematicsOptions):
     """Differential drive: controls are forward speed and yaw rate."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "diff"}]}
 
     name: Literal["diff"] = "diff"
     alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=4, max_length=4)] = [0.03, 0.0, 0.0, 0.03]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,6 +17,8 @@ class Omni(KinematicsOptions):
 
     control_rows: ClassVar[tuple[str, ...]] = ("forward", "lateral")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s")
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "omni"}]}
 
     name: Literal["omni"] = "omni"
     alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=2, max_length=2)] = [0.03, 0.03]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,6 +17,8 @@ class OmniAngular(KinematicsOptions):
 
     control_rows: ClassVar[tuple[str, ...]] = ("forward", "lateral", "yaw_rate")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s", "rad/s")
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "omni_angular"}]}
 
     name: Literal["omni_angular"] = "omni_angular"
     alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=3, max_length=3)] = [0.03, 0.03, 0.03]

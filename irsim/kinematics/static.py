@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -12,6 +12,8 @@ from irsim.registry import KINEMATICS
 
 class Static(KinematicsOptions):
     """The object never moves by itself, the same as no `kinematics` at all."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "static"}]}
 
     name: Literal["static"] = "static"
     alpha: list[float] = Field(default=[])

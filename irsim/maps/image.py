@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -12,6 +12,8 @@ from irsim.registry import MAPS
 
 class ImageMap(MapOptions):
     """A grey-scale picture stretched over the world: black is occupied, white is free."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "image", "path": "cave.png"}]}
 
     name: Literal["image"] = "image"
     path: Annotated[str, Field(strict=True, min_length=1)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,6 +13,10 @@ from irsim.units import Fraction, Meters, Number
 
 class PerlinMap(MapOptions):
     """Cave-like walls from gradient noise."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "perlin", "resolution": 0.2, "fill": 0.3, "seed": 7}]
+    }
 
     name: Literal["perlin"] = "perlin"
     resolution: Annotated[Meters, Field(gt=0)]

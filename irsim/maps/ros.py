@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -12,6 +12,8 @@ from irsim.registry import MAPS
 
 class RosMap(MapOptions):
     """A picture with a YAML file that gives resolution, origin and thresholds, as the ROS map server reads them."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros", "path": "map.yaml"}]}
 
     name: Literal["ros"] = "ros"
     path: Annotated[str, Field(strict=True, min_length=1)]

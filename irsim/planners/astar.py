@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 from irsim.planners._options import GridPlanner
 from irsim.registry import PLANNERS
@@ -10,6 +10,8 @@ from irsim.registry import PLANNERS
 
 class AStar(GridPlanner):
     """Shortest path over the eight neighbours of each cell (A*)."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "astar"}]}
 
     name: Literal["astar"] = "astar"
 

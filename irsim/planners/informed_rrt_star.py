@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,6 +13,8 @@ from irsim.units import Bool, Meters, Number
 
 class InformedRrtStar(RrtStar):
     """RRT* that, once it has a path, samples only the ellipse that can hold a shorter one."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "informed_rrt_star"}]}
 
     name: Literal["informed_rrt_star"] = "informed_rrt_star"  # type: ignore[assignment]  # an rrt_star by another name
     goal_sample_rate: Annotated[Number, Field(ge=0, le=100)] = 10.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 from irsim.planners._options import GridPlanner
 from irsim.registry import PLANNERS
@@ -10,6 +10,8 @@ from irsim.registry import PLANNERS
 
 class Jps(GridPlanner):
     """The paths of A*, found by jumping over cells that need no decision."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "jps"}]}
 
     name: Literal["jps"] = "jps"
 

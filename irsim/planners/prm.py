@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,6 +13,8 @@ from irsim.units import Meters
 
 class Prm(PlannerOptions):
     """Connect random free points to a graph, then take its shortest path."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "prm", "n_sample": 500}]}
 
     name: Literal["prm"] = "prm"
     n_sample: Annotated[int, Field(strict=True, ge=1)] = 500

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 from irsim.planners._options import SamplingPlanner
 from irsim.registry import PLANNERS
@@ -10,6 +10,8 @@ from irsim.registry import PLANNERS
 
 class Rrt(SamplingPlanner):
     """Grow a tree of random extensions until it reaches the goal."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "rrt", "expand_dis": 1.0}]}
 
     name: Literal["rrt"] = "rrt"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -13,6 +13,8 @@ from irsim.units import Bool, Meters
 
 class RrtStar(SamplingPlanner):
     """RRT that rewires the tree around each new point, so that paths get shorter."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "rrt_star", "max_iter": 1000}]}
 
     name: Literal["rrt_star"] = "rrt_star"
     expand_dis: Annotated[Meters, Field(gt=0)] = 1.5

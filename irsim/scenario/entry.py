@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -46,6 +46,13 @@ SensorField = Annotated[Any, Select(SENSORS, default="lidar2d", alias="type")]
 class Entry(Options):
     """One or several objects (`number`) that share these keys."""
 
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "not": {
+            "required": ["goal", "waypoints"],
+            "properties": {"goal": {"not": {"type": "null"}}, "waypoints": {"not": {"type": "null"}}},
+        }
+    }
+
     number: Annotated[int, Field(strict=True, ge=0)] = 1
     """How many objects this entry makes."""
     distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
@@ -56,14 +63,14 @@ class Entry(Options):
     """Free words; `pedestrian` is what metrics count as human."""
     role: Literal["robot", "obstacle"] | None = None
     """The section's own name; accepted because it is documented."""
-    state: Annotated[Any, PerObject(Vector | None)] = None
+    state: Annotated[Any, PerObject(Vector | None, "vector")] = None
     """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
-    goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose)] | None)] = None
+    goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
     """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; waypoints take
     three levels of brackets, or `waypoints`."""
     waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
-    velocity: Annotated[Any, PerObject(Vector | None)] = None
+    velocity: Annotated[Any, PerObject(Vector | None, "vector")] = None
     """Initial control; null is zero."""
     kinematics: Annotated[Any, PerObject(KinematicsField)] = None
     """How it moves; null never moves."""
@@ -83,13 +90,13 @@ class Entry(Options):
     """Picture drawn instead of the footprint: a bundled name or a file."""
     static: Annotated[Bool, OrNull(False)] = False
     """Never moves although it has kinematics."""
-    vel_min: Annotated[Any, PerObject(Vector | None)] = None
+    vel_min: Annotated[Any, PerObject(Vector | None, "vector")] = None
     """Lower limits of the control components; null is -1 each."""
-    vel_max: Annotated[Any, PerObject(Vector | None)] = None
+    vel_max: Annotated[Any, PerObject(Vector | None, "vector")] = None
     """Upper limits of the control components; null is 1 each."""
-    acce: Annotated[Any, PerObject(list[Unbounded] | None)] = None
+    acce: Annotated[Any, PerObject(list[Unbounded] | None, "vector")] = None
     """Largest change of each control component per second; null is unlimited."""
-    angle_range: Annotated[Any, PerObject(Range | None)] = None
+    angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
     """Distance at which a goal counts as reached."""

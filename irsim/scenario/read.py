@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from irsim.diagnostics import Diagnostic, Edit, Path, by_severity
 from irsim.scenario.checks import KEY_CODES, Context, run_checks
 from irsim.scenario.expand import resolve
-from irsim.scenario.findings import Finding, error
+from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_data, load_path, load_text
 from irsim.scenario.model import Scenario
@@ -22,6 +22,8 @@ from irsim.scenario.translate import translate
 
 __all__ = ["Reading", "read"]
 
+_STAND_INS = {"entry.kinematics.name": "diff", "entry.distribution.name": "random"}
+"""Names in place of wrong ones, so that the other checks see something that moves, somewhere."""
 _ROUNDS = 6  # of repairing and validating again; each finds what the errors before had hidden
 
 
@@ -116,7 +118,7 @@ class _Reader:
                 return Scenario.model_validate(self.data)
             except ValidationError as failure:
                 found = translate(failure, self.data, self.document, self.limits.problems)
-            self._add(found)
+            self._add([f for f in found if not self._under_repair(f.diagnostic.path)])
             edits = [self._repair(f) for f in found]
             self.touched += [edit.path for edit in edits]
             self.data = applied(self.data, edits)
@@ -129,7 +131,11 @@ class _Reader:
             return finding.carry_on
         if item.edit is not None and item.edit.action in ("replace", "rename"):
             return item.edit
-        return removal(item.path[:-1] if item.code == "missing-key" else item.path)
+        if (stand_in := _STAND_INS.get(place(item.path))) is not None:
+            return Edit("replace", item.path, stand_in)
+        if item.code == "missing-key" or item.path[-1:] == ("name",):
+            return removal(item.path[:-1])
+        return removal(item.path)
 
     def _resolve(self, scenario: Scenario) -> ResolvedScenario:
         document = self.document

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Sequence
 from typing import Any
 
 from irsim.diagnostics import Diagnostic, by_severity, format_path
 
-__all__ = ["format_diagnostic", "format_diagnostics", "shown"]
+__all__ = ["format_diagnostic", "format_diagnostics"]
 
 _COLORS = {"error": "\033[1;31m", "warning": "\033[1;33m", "hint": "\033[1;36m"}
 _BOLD, _DIM, _RESET = "\033[1m", "\033[2m", "\033[0m"
@@ -50,7 +48,7 @@ def format_diagnostic(item: Diagnostic, lines: Sequence[str] = (), color: bool =
         out.append(f"  {item.message}")
     advice = []
     if item.allowed:
-        advice.append("allowed: " + _allowed(item.allowed))
+        advice.append("allowed: " + _allowed(item.allowed) + _suggestion(item))
     if item.fix:
         advice.append("fix: " + item.fix)
     if advice:
@@ -74,6 +72,14 @@ def _quoted(item: Diagnostic, line: str, paint: Any) -> list[str]:
     ]
 
 
+def _suggestion(item: Diagnostic) -> str:
+    """The word that was probably meant."""
+    edit = item.edit
+    if edit is None or not isinstance(edit.value, str) or isinstance(item.allowed, str):
+        return ""
+    return f". Did you mean '{edit.value}'?"
+
+
 def _painter(color: bool) -> Any:
     return (lambda text, style: f"{style}{text}{_RESET}") if color else (lambda text, style: text)
 
@@ -88,17 +94,3 @@ def _allowed(allowed: Sequence[str] | str) -> str:
         return allowed
     shown = ", ".join(str(item) for item in allowed[:_MOST_ALLOWED])
     return shown + (f", and {len(allowed) - _MOST_ALLOWED} more" if len(allowed) > _MOST_ALLOWED else "")
-
-
-def shown(value: Any, longest: int = 60) -> str:
-    """A value as one would write it in YAML, cut to a readable length."""
-    if isinstance(value, str):
-        text = f"'{value}'"
-    elif isinstance(value, float) and not math.isfinite(value):
-        text = ".nan" if math.isnan(value) else "-.inf" if value < 0 else ".inf"
-    else:
-        try:
-            text = json.dumps(value, default=str, ensure_ascii=False)
-        except (TypeError, ValueError, RecursionError):
-            text = type(value).__name__
-    return text if len(text) <= longest else text[: longest - 1] + "…"

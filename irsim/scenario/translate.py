@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from pydantic import ValidationError
@@ -14,9 +15,9 @@ from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
 from irsim.scenario.numerals import read_number
-from irsim.scenario.report import shown
 from irsim.scenario.tolerance import carry_on_type, carry_on_unknown_key, carry_on_value
-from irsim.scenario.where import at, field_at, literals, model_at, unit_of
+from irsim.scenario.where import at, field_at, lengths_of, literals, model_at, unit_of
+from irsim.scenario.wording import number, shown
 
 __all__ = ["translate"]
 
@@ -38,12 +39,19 @@ _EXPECTED = {
     "mapping_type": "a mapping (key: value)",
 }
 _NUMBERS = ("float_type", "float_parsing", "int_type", "int_from_float", "int_parsing")
+_BOOLEANS = {"1": True, "0": False, "yes": True, "no": False, "true": True, "false": False, "on": True, "off": False}
+_CONTROLS = ("entry.vel_min", "entry.vel_max", "entry.acce", "entry.velocity")
 _BOUNDS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", "≥"),
     "less_than": ("lt", "<"),
     "less_than_equal": ("le", "≤"),
 }
+
+
+def vars_of(part: Any) -> dict[str, Any]:
+    """The bounds that a piece of field metadata holds."""
+    return {name: getattr(part, name, None) for name, _ in _BOUNDS.values()}
 
 
 def translate(failure: ValidationError, data: Any, document: Document, most: int) -> list[Finding]:
@@ -55,20 +63,38 @@ def translate(failure: ValidationError, data: Any, document: Document, most: int
         document: Where it came from, to look at how values were written.
         most: Upper bound of the result.
     """
-    findings = []
-    for item in failure.errors(include_url=False)[:most]:
-        path = _path(item["loc"], data)
-        findings.append(_Translator(path, item, data, document).finding())
-    return findings
+    found: dict[tuple[str, Path], list[Finding]] = {}
+    for item in failure.errors(include_url=False):
+        path = _path(item["loc"])
+        siblings = found.setdefault((item["type"], _list_path(path)), [])
+        if siblings and _list_path(path) != path:
+            siblings.append(siblings[0])  # only counted
+        elif len(found) <= most:
+            siblings.append(_Translator(path, item, data, document).finding())
+    return [_with_count(siblings) for siblings in found.values() if siblings]
 
 
-def _path(location: tuple[Any, ...], data: Any) -> Path:
+def _path(location: tuple[Any, ...]) -> Path:
     """A pydantic location without the tags of unions."""
-    path: list[str | int] = []
-    for part in location:
-        if not (isinstance(part, str) and part.startswith("<") and part.endswith(">")):
-            path.append(part)
-    return tuple(path)
+    return tuple(
+        part for part in location if not (isinstance(part, str) and part.startswith("<") and part.endswith(">"))
+    )
+
+
+def _list_path(path: Path) -> Path:
+    """The list that an element of a vector or of a list of vectors belongs to; other paths as they are."""
+    end = len(path)
+    while end > 2 and isinstance(path[end - 1], int):
+        end -= 1
+    return path[:end]
+
+
+def _with_count(findings: list[Finding]) -> Finding:
+    first, more = findings[0], len(findings) - 1
+    if not more:
+        return first
+    message = f"{first.diagnostic.message} (and {more} more in this list)"
+    return replace(first, diagnostic=replace(first.diagnostic, message=message))
 
 
 class _Translator:
@@ -150,18 +176,18 @@ class _Translator:
         )
 
     def _bound(self) -> Finding:
-        name, sign = _BOUNDS[self.kind]
-        limits = [f"{sign} {self.context[name]:g}"]
-        for other, other_sign in _BOUNDS.values():
-            for part in self.field.metadata if self.field is not None and other != name else ():
-                if (limit := getattr(part, other, None)) is not None:
-                    limits.append(f"{other_sign} {limit:g}")
+        limits = {}
+        for name, sign in _BOUNDS.values():
+            sources = [self.context, *(vars_of(part) for part in (self.field.metadata if self.field else ()))]
+            limit = next((source[name] for source in sources if source.get(name) is not None), None)
+            if limit is not None:
+                limits[name] = f"{sign} {number(limit)}"
         return error(
             "out-of-range",
             self.path,
             f"{shown(self.value)} is out of range",
             given=self.value,
-            allowed=" and ".join(limits) + self._unit(),
+            allowed=" and ".join(limits.values()) + self._unit(),
             carry_on=carry_on_value(self.kind, self.path, self.value),
         )
 
@@ -177,12 +203,10 @@ class _Translator:
         )
 
     def _length(self) -> Finding:
-        least, most = self.context.get("min_length"), self.context.get("max_length")
-        if self.field is not None and least is None:
-            least = next((m.min_length for m in self.field.metadata if getattr(m, "min_length", None)), most)
+        least, most = lengths_of(self.field, self.context.get("min_length"), self.context.get("max_length"))
         count = len(self.value) if isinstance(self.value, (list, tuple)) else 0
         numbers = count > 0 and all(isinstance(v, (int, float)) for v in self.value)
-        wanted = f"at least {least}" if most is None else f"{most}" if least in (None, most) else f"{least} to {most}"
+        wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
             return error("wrong-length", self.path, f"this list has {count} elements", allowed=f"{wanted} elements")
         return error(
@@ -202,6 +226,8 @@ class _Translator:
             return self._list_for_number(expected)
         if self.kind == "string_type" and isinstance(self.value, bool):
             return self._boolean_as_text()
+        if self.kind == "bool_type" and isinstance(self.value, (list, tuple)):
+            return self._list_for_boolean()
         fix, edit = self._repair(expected)
         return error(
             "wrong-type",
@@ -224,6 +250,11 @@ class _Translator:
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
         if value is None:
             return "give a value or remove the key", Edit("remove", path)
+        if expected == "true or false" and str(value).strip().lower() in _BOOLEANS:
+            meant = _BOOLEANS[str(value).strip().lower()]
+            return f"write {str(meant).lower()}", Edit("replace", path, meant)
+        if expected == "a list" and isinstance(value, (int, float)) and place(path) in _CONTROLS:
+            return f"one number per control component: [{value}, {value}]", None
         return None, None
 
     def _number_as_text(self, expected: str) -> Finding:
@@ -250,6 +281,17 @@ class _Translator:
             message = f"this key takes {expected} for all objects of the entry, not a list"
             fix = "write one entry per value, each with its own number"
         return error("scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix)
+
+    def _list_for_boolean(self) -> Finding:
+        return error(
+            "scalar-list",
+            self.path,
+            "this key takes true or false for all objects of the entry; a list counts as true",
+            given=self.value,
+            allowed="true or false",
+            fix="write one entry per value, each with its own number",
+            carry_on=carry_on_type(self.kind, self.path, self.value),
+        )
 
     def _boolean_as_text(self) -> Finding:
         written = self.document.source_text((*self.document.prefix, *self.path)) or str(self.value).lower()

@@ -12,7 +12,7 @@ from irsim.diagnostics import Path
 from irsim.selection import Select
 from irsim.vectors import PerObject
 
-__all__ = ["at", "field_at", "literals", "model_at", "unit_of"]
+__all__ = ["at", "field_at", "lengths_of", "literals", "model_at", "unit_of"]
 
 
 def at(data: Any, path: Path) -> Any:
@@ -51,6 +51,25 @@ def field_at(root: type[BaseModel], path: Path, data: Any) -> FieldInfo | None:
         return None
     model = model_at(root, path[:-1], data)
     return model.model_fields.get(str(path[-1])) if model is not None else None
+
+
+def lengths_of(field: FieldInfo | None, least: int | None, most: int | None) -> tuple[int | None, int | None]:
+    """Both bounds of a list's length, of which a failed validation knows one."""
+    pairs = []
+    for part in _all_parts(field) if field is not None else ():
+        bounds = [*getattr(part, "metadata", ()), part]
+        low = next((b.min_length for b in bounds if getattr(b, "min_length", None) is not None), None)
+        high = next((b.max_length for b in bounds if getattr(b, "max_length", None) is not None), None)
+        pairs.append((low, high))
+    if field is not None:
+        own = [*field.metadata]
+        low = next((b.min_length for b in own if getattr(b, "min_length", None) is not None), None)
+        high = next((b.max_length for b in own if getattr(b, "max_length", None) is not None), None)
+        pairs.insert(0, (low, high))
+    for low, high in pairs:
+        if (least is not None and low == least) or (most is not None and high == most):
+            return low, high
+    return least, most
 
 
 def literals(field: FieldInfo) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,8 @@ from irsim.units import Fraction, Number, Points
 
 class Contact2d(SensorOptions):
     """Shows the forces of the object's contacts as arrows; only the first one listed records."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "contact2d"}]}
 
     name: Literal["contact2d"] = "contact2d"
     force_scale: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "m/N"})] = 0.05

@@ -67,6 +67,8 @@ class FmcwLidar2d(VelocityColors, Lidar2d):
         "no_hit_color": "lightgray",
     }
 
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "fmcw_lidar2d", "number": 90, "range_max": 15.0}]}
+
     name: Literal["fmcw_lidar2d"] = "fmcw_lidar2d"  # type: ignore[assignment]  # a lidar2d with another name
     motion_compensate: Bool = False
     """Report the target's own radial speed instead of the relative one."""

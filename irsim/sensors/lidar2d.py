@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -29,6 +29,10 @@ class Lidar2d(SensorOptions):
     """Planar lidar: `number` beams spread over `angle_range`, both ends included; index 0 is the rightmost."""
 
     is_lidar: ClassVar[bool] = True
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "lidar2d", "number": 180, "range_max": 8.0, "angle_range": 6.28318}]
+    }
 
     name: Literal["lidar2d"] = "lidar2d"
     range_min: Annotated[Meters, Field(ge=0)] = 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -15,6 +15,8 @@ from irsim.vectors import Point, vector
 
 class Circle(ShapeOptions):
     """A disc."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "circle", "radius": 0.3}]}
 
     name: Literal["circle"] = "circle"
     radius: Annotated[Meters, Field(gt=0)] = 0.2

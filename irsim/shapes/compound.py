@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -48,6 +48,18 @@ Part = Annotated[Any, Select(Choices("shape", _PARTS), folded=True)]
 
 class Compound(ShapeOptions):
     """The union of circles, rectangles and polygons, fixed to one body."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [
+            {
+                "name": "compound",
+                "parts": [
+                    {"name": "rectangle", "length": 1.0, "width": 0.4},
+                    {"name": "circle", "radius": 0.3, "pose": [0.5, 0, 0]},
+                ],
+            }
+        ]
+    }
 
     name: Literal["compound"] = "compound"
     parts: Annotated[list[Part], Field(min_length=1)]

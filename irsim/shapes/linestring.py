@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 from irsim import _core as core
 from irsim.registry import SHAPES
@@ -12,6 +12,12 @@ from irsim.units import Bool
 
 class Linestring(RandomOutline):
     """Line segments from vertex to vertex, without thickness, not closed."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "linestring", "vertices": [[0, 0], [3, 0], [3, 3]]}],
+        "if": {"not": {"required": ["random_shape"], "properties": {"random_shape": {"const": True}}}},
+        "then": {"required": ["vertices"], "properties": {"vertices": {"type": "array"}}},
+    }
 
     name: Literal["linestring"] = "linestring"
     is_convex: Bool = True

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, ClassVar, Literal
 
 from irsim import _core as core
 from irsim.registry import SHAPES
@@ -14,6 +14,13 @@ SQUARE = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
 
 class Polygon(RandomOutline):
     """A filled outline of three or more corners, convex or not; without `vertices` a square of 2 m."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [
+            {"name": "polygon", "vertices": [[0, 0], [2, 0], [1, 1.5]]},
+            {"name": "polygon", "random_shape": True, "is_convex": True, "avg_radius_range": [0.3, 0.8]},
+        ]
+    }
 
     name: Literal["polygon"] = "polygon"
     is_convex: Bool = False

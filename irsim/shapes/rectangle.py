@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -14,6 +14,10 @@ from irsim.units import Meters
 
 class Rectangle(ShapeOptions):
     """A box along the heading, centred on the position; with `wheelbase` the position is the rear axle."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "rectangle", "length": 4.6, "width": 1.8, "wheelbase": 3.0}]
+    }
 
     name: Literal["rectangle"] = "rectangle"
     length: Annotated[Meters, Field(gt=0)] = 1.0

@@ -10,6 +10,7 @@ from irsim.diagnostics import Edit
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.wording import flow
 
 _CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
 _ROUNDING = 1e-6
@@ -92,13 +93,9 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             context.entry_path(record, "vel_max"),
             "only the upper limits are raised: vel_min stays at -1 for each component",
             given=record.vel_max,
-            fix=f"add 'vel_min: {[_short(v) for v in lower]}' if it should be as fast backwards and turning right",
+            fix=f"add 'vel_min: {flow(lower)}' if it should be as fast backwards and turning right",
             edit=Edit("add", (*record.path, "vel_min"), lower),
         )
-
-
-def _short(value: float) -> float | int:
-    return int(value) if value == int(value) else value
 
 
 def _angle_range(context: Context, record: ObjectRecord) -> Iterator[Finding]:

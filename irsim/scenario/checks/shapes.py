@@ -10,6 +10,7 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.checks._outline import crosses_itself, repaired
 from irsim.scenario.expand import DEFAULT_RADIUS
 from irsim.scenario.findings import Finding, error, hint
+from irsim.scenario.wording import flow
 
 _RANGES = (
     "radius_range",
@@ -91,11 +92,11 @@ def _polygon(path: Path, shape: Any) -> Iterator[Finding]:
         yield error("invalid-polygon", where, "this outline encloses no area", given=shape.vertices)
     elif len(better) == 1:
         edit = Edit("replace", where, better[0])
-        yield _invalid(where, shape.vertices, f"vertices: {better[0]}", edit)
+        yield _invalid(where, shape.vertices, f"vertices: {flow(better[0])}", edit)
     else:
         parts = [{"name": "polygon", "vertices": vertices} for vertices in better]
         edit = Edit("replace", path, {"name": "compound", "parts": parts})
-        yield _invalid(where, shape.vertices, f"shape: {{name: compound, parts: {parts}}}", edit)
+        yield _invalid(where, shape.vertices, f"shape: {flow(edit.value)}", edit)
 
 
 def _invalid(path: Path, vertices: Sequence[Sequence[float]], fix: str, edit: Edit) -> Finding:
