@@ -138,7 +138,10 @@ class ObjectSpec:
     ) -> None: ...
 
 class RandomPlacement:
-    """Objects of one `random` distribution: states, then goals, drawn per scene (D7)."""
+    """Objects of one `random` distribution: states, then goals, drawn per scene (D7).
+
+    Static objects and wanderers draw no goal here: the former keep theirs, the latter draw one at every reset.
+    """
 
     def __init__(
         self,
@@ -168,8 +171,10 @@ class World:
     step_time: float
     collision_mode: int  # may be set at run time
     def scans(self) -> list[tuple[int, int, int]]:
-        """(object, first beam, beams) of each native sensor of one world, in order; beams of world w follow at
-        w * beams_per_world."""
+        """(object, first beam, beams) of each native sensor of one world, in order.
+
+        Beams of world w follow at w * beams_per_world.
+        """
     beams_per_world: int
 
 class State:
@@ -201,17 +206,22 @@ class State:
     event_count: int  # events so far in this state, for a cheap "anything new?"
     failed_placement: NDArray[np.int32]  # (W,) object that found no room, -1 if all did
     def reset(self, mask: NDArray[np.uint8], next_scene: bool) -> None:
-        """Reset the worlds where mask is 1. next_scene False: initial poses, noise + 1. True: scene + 1, noise 0,
-        shapes, placements and goals drawn anew. Then collisions, arrival and sensors are evaluated."""
+        """Reset the worlds where mask is 1.
+
+        next_scene False: initial poses, noise + 1. True: scene + 1, noise 0, shapes, placements and goals drawn anew.
+        Then collisions, arrival and sensors are evaluated.
+        """
     def reseed(self, seeds: NDArray[np.uint64], mask: NDArray[np.uint8]) -> None:
         """New seeds; the next reset of these worlds, of either kind, draws scene 0, noise 0."""
     def refresh(self) -> None:
-        """Re-evaluate geometry, collisions, arrival-free status and sensors after poses were written from outside."""
+        """Re-evaluate geometry, collisions, stops and sensors (not arrival) after poses were written from outside."""
     def done(self, world: int) -> bool:
         """Whether every robot of the world has arrived or stopped; False without robots."""
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
-        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision"; since the last reset,
-        the first `start` left out."""
+        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision".
+
+        Those since the last reset, the first `start` left out.
+        """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
     def goals(self, row: int) -> list[list[float]]: ...
@@ -231,8 +241,10 @@ class State:
     def parts(self, row: int) -> list[str]:
         """Kinds of the parts: "circle", "polygon", "linestring"."""
     def trajectory(self, row: int) -> Floats:
-        """(K, 3 + E) state after each executed step since the last reset (history=True only); steps in which the
-        object was static or stopped are left out."""
+        """(K, 3 + E) state after each executed step since the last reset (history=True only).
+
+        Steps in which the object was static or stopped are left out.
+        """
 
 class Trace:
     """Everything that happened, step by step: arrays of shape (steps executed, R, …)."""
@@ -247,9 +259,12 @@ class Trace:
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
 ) -> int:
-    """Run `steps` periods of every world; rows with `given` use `command` in the first one. until_done: a world rests
-    once every robot is stopped or arrived. external: poses are set by the caller, only collide … sense run.
-    Releases the GIL. Returns the largest number of steps executed by a world."""
+    """Run `steps` periods of every world; rows with `given` use `command` in the first one.
+
+    until_done: a world rests once every robot is stopped or arrived (a world without robots never does). external:
+    poses are set by the caller, only finish … sense run. Releases the GIL. Returns the largest number of steps executed
+    by a world.
+    """
 
 def rollout(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, ranges: bool = False
@@ -258,23 +273,31 @@ def rollout(
 
 # The phases of one step, for worlds in which Python code takes part. `advance(1)` is the sequence of all of them.
 def decide(world: World, state: State) -> None:
-    """Renew goals (wander, loop), then let native behaviors fill `command` of rows not `given`; rows without any
-    behavior get zero."""
+    """Renew goals (wander, loop), then let native behaviors fill `command` of rows not `given`.
+
+    Rows without any behavior get zero.
+    """
 
 def limit(world: World, state: State) -> None: ...
-def integrate(world: World, state: State) -> None: ...
+def integrate(world: World, state: State) -> None:
+    """Move; rows without native drive keep pose, extra and twist, which are then the caller's to write."""
+
 def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
 def finish(world: World, state: State) -> None:
-    """Count the step, append the history, clear `given`. (Runs before arrive and sense log their step number.)
-    The order is decide, limit, integrate, finish, collide, arrive, sense."""
+    """Count the step, append the history, clear `given`.
+
+    The order is decide, limit, integrate, finish, collide, arrive, sense.
+    """
 
 # Used by the Python API and by tests
 def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
     """Controls with which the drive of a row realises a world-frame velocity [m/s] (zero without a native drive)."""
 
-def intersects(parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]) -> bool: ...
+def intersects(
+    parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
+) -> bool: ...
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of a key: key (seed, scene << 32 | noise), counter (draw, object, stream, 0)."""
 

@@ -127,7 +127,7 @@ def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
             )
         )
     world, state = scene(*objects, mode=1)
-    command(state, *([data.draw(WILD)] * 3 for _ in objects[1:]))
+    command(state, [0.1, 0.0], *([data.draw(WILD)] * 3 for _ in objects[1:]))
     core.advance(world, state, 3)
     state.refresh()
     assert np.isfinite(state.pose[0]).all()
