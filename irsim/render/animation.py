@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol, cast
+from weakref import finalize
 
 import numpy as np
 from PIL import Image
@@ -84,8 +85,9 @@ def write_frames(
             video = VideoWriter(temporary, fps=options.fps, **options.video)
             try:
                 yield video
+                video.close()
             finally:
-                video.close(options.last)
+                video.abandon()
             return
         with temporary.open("w+b") as file:
             writer: FrameWriter
@@ -118,6 +120,7 @@ class FrameBuffer:
         self.options, self.colors = options, list(colors)
         self.counts: list[int] = []
         self._file = cast(BinaryIO, tempfile.TemporaryFile())  # noqa: SIM115 (lives as long as the buffer)
+        finalize(self, self._file.close)
         self._gif: GifWriter | None = None
         if indexed:
             self._gif = GifWriter(self._file, duration=1 / options.fps, loop=options.loop, colors=colors)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
-from matplotlib.transforms import Affine2D
+from matplotlib.transforms import Affine2D, Bbox
 
 from irsim.render.canvas import Compositor
 from irsim.render.layers import BeamLayer, MarkLayer, layer_key, rgba
@@ -28,6 +28,10 @@ _SMALLEST_TITLE = 6.0
 _LABEL_MARGIN = 4.0
 _LABEL_RANK = 0.01
 _HALO = 2.0
+_ROOM = 8.0
+"""Between what is drawn and the edge of the figure [pt]."""
+_MOST_ROOM = 0.7
+"""Share of the figure that ticks and labels may take; beyond that the layout is left alone."""
 _POINTS_PER_INCH = 72.0
 _MARGINS = {True: (0.75, 0.85), False: (0.25, 0.45)}
 """Room beside and above and below the axes [inch], with ticks and labels and without."""
@@ -105,7 +109,7 @@ class SceneFigure:
         self._look_at(scene)
         self._show_title(title or "")
         if first and self.tight:
-            self.figure.tight_layout()
+            self._use_room()
         self.ax.apply_aspect()
         scale = self._points_per_metre()
         groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
@@ -155,6 +159,20 @@ class SceneFigure:
                 low, high = get()
                 set_(value - (high - low) / 2, value + (high - low) / 2)
 
+    def _use_room(self) -> None:
+        """Let the axes fill the figure but for what ticks, labels and title need."""
+        renderer, figure, ax = self._renderer(), self.figure, self.ax
+        ax.apply_aspect()
+        boxes = [artist.get_tightbbox(renderer) for artist in ((ax.xaxis, ax.yaxis) if self.axis else ())]
+        outer = Bbox.union([ax.bbox, *(box for box in boxes if box is not None)])
+        title = self._title_artist.get_window_extent(renderer)
+        pad = _ROOM * figure.dpi / _POINTS_PER_INCH
+        width, height = figure.bbox.width, figure.bbox.height
+        left, right = (ax.bbox.x0 - outer.x0 + pad) / width, (outer.x1 - ax.bbox.x1 + pad) / width
+        bottom, top = (ax.bbox.y0 - outer.y0 + pad) / height, (max(outer.y1, title.y1) - ax.bbox.y1 + pad) / height
+        if left + right < _MOST_ROOM and bottom + top < _MOST_ROOM:
+            figure.subplots_adjust(left=left, right=1 - right, bottom=bottom, top=1 - top)
+
     def _points_per_metre(self) -> float:
         low, high = self.ax.get_ylim()
         return float(self.ax.bbox.height / (high - low) * _POINTS_PER_INCH / self.figure.dpi)
@@ -165,7 +183,7 @@ class SceneFigure:
         longer = self._title is None or len(title) > len(self._title)
         self._title = title
         artist = self._title_artist
-        artist.set_text(title)
+        artist.set_text(_printable(title))
         if longer:
             artist.set_fontsize(_TITLE_SIZE)
             width = artist.get_window_extent(self._renderer()).width
@@ -217,7 +235,7 @@ class SceneFigure:
                 text.set_path_effects(self._effects)
             shown.add(key)
             text.set_visible(True)
-            text.set_text(label.text)
+            text.set_text(_printable(label.text))
             text.set_position((label.x, label.y))
             text.set_color(rgba(label.color))
             text.set_fontsize(label.size)
@@ -242,6 +260,11 @@ class SceneFigure:
         if dx or dy:
             moved = data.inverted().transform((x + dx, y + dy))
             text.set_position((float(moved[0]), float(moved[1])))
+
+
+def _printable(text: str) -> str:
+    """Text without characters that no font has."""
+    return "".join(character if character.isprintable() or character == "\n" else " " for character in text)
 
 
 def fitting_size(width: float, height: float, side: float, dpi: float, *, axis: bool = True) -> tuple[float, float]:

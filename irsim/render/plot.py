@@ -92,6 +92,7 @@ class EnvPlot:
         self._options = env.simulation.scenario.world.plot
         self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **_saved_figure(self._options)}
         self._format: str | None = self.saved_figure_kwargs.pop("format", None)
+        self._dpi = float(self.saved_figure_kwargs["dpi"])
         width, height = self._options.figure_pixels
         self._size = float(width), float(height)
         self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
@@ -129,7 +130,7 @@ class EnvPlot:
         return self._frame_size or (int(self._size[0]), int(self._size[1]))
 
     def set_size(self, longer_side: float) -> None:
-        """Fit pictures into a square of this side [px]. Call before anything is drawn.
+        """Make the longer side of pictures this long [px], the other one as the world asks for.
 
         Raises:
             ValueError: Not positive, or the figure exists.
@@ -140,10 +141,7 @@ class EnvPlot:
             raise ValueError("the size can only be set before the first drawing")
         world, axis = self.env.simulation.scenario.world, not self._options.no_axis
         self._size = fitting_size(world.width, world.height, longer_side, self._dpi, axis=axis)
-
-    @property
-    def _dpi(self) -> float:
-        return float(self.saved_figure_kwargs["dpi"])
+        self.saved_figure_kwargs["bbox_inches"] = None
 
     def _made(self) -> SceneFigure:
         if self._figure is None:

@@ -44,7 +44,7 @@ def render_scene(
     Args:
         simulation: What to draw, at its present state.
         out: File to write too.
-        size_px: Longer side of the picture, at most.
+        size_px: Longer side of the picture.
         world: Which world of a batch.
         labels: Name every object, and draw the goals and paths of robots.
         title: Text above; default: the time.
@@ -67,7 +67,7 @@ def render_scene(
     size = fitting_size(extent.width, extent.height, size_px, _DPI)
     figure = SceneFigure(size, _DPI, folder=folder, halo=True)
     figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
-    pixels, _ = figure.pixels(tight=True, pad_inches=0.05)
+    pixels, _ = figure.pixels(tight=False)
     data = io.BytesIO()
     reduced = to_image(pixels).quantize(_COLORS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     reduced.save(data, "PNG", optimize=True)

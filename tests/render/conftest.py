@@ -1,0 +1,55 @@
+"""Environments that draw into a temporary folder, and a look at single pixels of their pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Callable[..., Any]:
+    """``make(text, **kwargs)``: an environment without window whose files go below ``tmp_path``."""
+
+    def build(text: str, name: str = "scenario", **kwargs: Any) -> Any:
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(text)
+        env = irsim.make(str(path), **{"display": False, "log_level": "ERROR", "seed": 1, **kwargs})
+        env.path_param.fig_path = str(tmp_path / "figure")
+        env.path_param.ani_path = str(tmp_path / "animation")
+        env.path_param.ani_buffer_path = str(tmp_path / "animation_buffer")
+        return env
+
+    return build
+
+
+@pytest.fixture
+def color_at() -> Callable[..., tuple[int, ...]]:
+    """``color_at(env, x, y)``: (r, g, b) of the picture at a point of the world [m]."""
+
+    def look(env: Any, x: float, y: float) -> tuple[int, ...]:
+        picture = whole_picture(env)
+        column, row = env._env_plot.ax.transData.transform((x, y))
+        return tuple(int(level) for level in picture[picture.shape[0] - 1 - int(row), int(column)])
+
+    return look
+
+
+@pytest.fixture
+def picture() -> Callable[[Any], np.ndarray]:
+    """``picture(env)``: (H, W, 3) the whole figure."""
+    return whole_picture
+
+
+def whole_picture(env: Any) -> np.ndarray:
+    plot = env._env_plot
+    options, plot.saved_figure_kwargs = plot.saved_figure_kwargs, {**plot.saved_figure_kwargs, "bbox_inches": None}
+    try:
+        return np.asarray(plot.frame())
+    finally:
+        plot.saved_figure_kwargs = options

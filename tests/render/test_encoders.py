@@ -1,0 +1,110 @@
+"""GIF and PNG encoders on their own, with pictures that are hard on them."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from irsim.render.gif import GifWriter
+from irsim.render.pixels import changed_box, even, fit
+from irsim.render.png import ApngWriter, png_bytes
+
+RNG = np.random.default_rng(7)
+
+
+def blank(height: int, width: int, level: int = 255) -> np.ndarray:
+    return np.full((height, width, 4), level, np.uint8)
+
+
+def noise(height: int, width: int) -> np.ndarray:
+    pixels = RNG.integers(0, 256, (height, width, 4), dtype=np.uint8)
+    pixels[..., 3] = 255
+    return pixels
+
+
+def decode(data: io.BytesIO) -> list[np.ndarray]:
+    data.seek(0)
+    frames = []
+    with Image.open(data) as image:
+        for index in range(getattr(image, "n_frames", 1)):
+            image.seek(index)
+            frames.append(np.asarray(image.convert("RGB")))
+    return frames
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 70), (64, 64), (5, 1)])
+def test_png_is_exact(size: tuple[int, int]) -> None:
+    pixels = noise(*size)
+    (decoded,) = decode(io.BytesIO(png_bytes(pixels, 96)))
+    assert (decoded == pixels[..., :3]).all()
+
+
+def test_apng_is_exact() -> None:
+    frames = [noise(20, 30) for _ in range(3)]
+    frames += [frames[-1].copy(), frames[-1].copy()]
+    frames[-1][5, 6, 0] ^= 1
+    data = io.BytesIO()
+    writer = ApngWriter(data, duration=0.04)
+    for frame in frames:
+        writer.add(frame)
+    writer.close(2)
+    decoded = decode(data)
+    assert len(decoded) == writer.frames == 5
+    for frame, again in zip(frames, decoded, strict=True):
+        assert (again == frame[..., :3]).all()
+
+
+def test_gif_of_few_colours_is_exact() -> None:
+    frames = [blank(40, 60) for _ in range(5)]
+    for k, frame in enumerate(frames):
+        frame[10:20, 5 * k : 5 * k + 10, :3] = (0, 158, 115)
+    data = io.BytesIO()
+    writer = GifWriter(data)
+    for frame in frames:
+        writer.add(frame)
+    writer.close(1)
+    for frame, again in zip(frames, decode(data), strict=True):
+        assert np.abs(again.astype(int) - frame[..., :3]).max() <= 3
+
+
+def test_gif_finds_a_new_palette_when_the_picture_changes() -> None:
+    greys, colours = blank(64, 64), blank(64, 64)
+    greys[..., :3] = np.arange(64, dtype=np.uint8)[:, None, None] * 4
+    colours[..., 0], colours[..., 1], colours[..., 2] = np.arange(64) * 4, (np.arange(64) * 4)[:, None], 128
+    data = io.BytesIO()
+    writer = GifWriter(data, colors=[(255, 255, 255)])
+    for frame in (greys, colours, greys):
+        writer.add(frame)
+    writer.close(1)
+    for frame, again in zip((greys, colours, greys), decode(data), strict=True):
+        assert np.abs(again.astype(int) - frame[..., :3]).mean() < 8
+
+
+def test_gif_survives_noise() -> None:
+    frames = [noise(33, 47) for _ in range(3)]
+    data = io.BytesIO()
+    writer = GifWriter(data)
+    for frame in frames:
+        writer.add(frame)
+    writer.close(1)
+    decoded = decode(data)
+    assert len(decoded) == 3
+    assert all(frame.shape == (33, 47, 3) for frame in decoded)
+
+
+def test_changed_box() -> None:
+    changed = np.zeros((5, 7), bool)
+    assert changed_box(changed) == (0, 0, 1, 1)
+    changed[2, 3] = changed[4, 1] = True
+    assert changed_box(changed) == (1, 2, 4, 5)
+
+
+def test_fitting_pads_with_white_and_cuts() -> None:
+    dark = blank(3, 5, 0)
+    assert even(dark).shape == (4, 6, 4)
+    assert (even(dark)[3] == 255).all()
+    assert fit(dark, 2, 2).shape == (2, 2, 4)
+    assert even(blank(4, 6)).shape == (4, 6, 4)
