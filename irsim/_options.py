@@ -80,8 +80,7 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
         message: One sentence.
         **details: ``allowed``, ``fix``, ``replace`` (a better value) or ``tolerated`` of the diagnostic.
     """
-    # the type parameter of PydanticCustomError wants literals; the list of codes is open to features
-    return PydanticCustomError(code, "{message}", {"message": message, **details})  # type: ignore[arg-type]
+    return PydanticCustomError(code, "{message}", {"message": message, **details})
 
 
 @cache

@@ -16,6 +16,7 @@ __all__ = [
     "Degrees",
     "Fraction",
     "Hertz",
+    "Integer",
     "Kilograms",
     "Meters",
     "MetersPerSecond",
@@ -35,7 +36,7 @@ def unit(symbol: str) -> object:
     return Field(json_schema_extra={"x-unit": symbol}, strict=True, allow_inf_nan=False)
 
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Number = Annotated[float, unit("1")]
 Meters = Annotated[float, unit("m")]
 Radians = Annotated[float, unit("rad")]
 Degrees = Annotated[float, unit("deg")]
@@ -48,5 +49,6 @@ Kilograms = Annotated[float, unit("kg")]
 Pixels = Annotated[float, unit("px")]
 Points = Annotated[float, unit("pt")]
 Fraction = Annotated[float, Field(strict=True, ge=0, le=1, json_schema_extra={"x-unit": "1"})]
-Count = Annotated[int, Field(strict=True, ge=0)]
+Integer = Annotated[int, Field(strict=True, json_schema_extra={"x-unit": "1"})]
+Count = Annotated[Integer, Field(ge=0)]
 Bool = Annotated[bool, Field(strict=True)]

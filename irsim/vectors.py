@@ -9,8 +9,6 @@ from pydantic import Field, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from irsim.units import Meters, Number
-
 __all__ = [
     "ONE",
     "PER_OBJECT",
@@ -20,7 +18,6 @@ __all__ = [
     "Point",
     "Pose",
     "Range",
-    "Vector",
     "any_of",
     "is_vector",
     "vector",
@@ -36,11 +33,12 @@ def vector(units: Sequence[str], low: int, high: int | None = None) -> Any:
     return Field(min_length=low, max_length=most, json_schema_extra={"x-units": list(units)})
 
 
-Point = Annotated[list[Meters], vector(("m", "m"), 2)]
-Offset = Annotated[list[Number], vector(("m", "m", "rad"), 3)]
-Pose = Annotated[list[Number], vector(("m", "m", "rad"), 2, 3)]
-Vector = Annotated[list[Number], Field(min_length=1)]
-Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Component = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+"""A number of a vector, whose units stand with the vector."""
+Point = Annotated[list[Component], vector(("m", "m"), 2)]
+Offset = Annotated[list[Component], vector(("m", "m", "rad"), 3)]
+Pose = Annotated[list[Component], vector(("m", "m", "rad"), 2, 3)]
+Range = Annotated[list[Component], vector(("rad", "rad"), 2)]
 
 
 def is_vector(value: Any) -> bool:
@@ -71,15 +69,22 @@ def _holds_list(value: Any) -> bool:
 
 
 def _tag_vectors(value: Any) -> str:
-    """For keys that take a vector: text or booleans among the numbers are wrong numbers, not values per object."""
-    return PER_OBJECT if isinstance(value, (list, tuple)) and any(_separate(item) for item in value) else ONE
+    """For keys that take a vector: text among the numbers is a wrong number, not the value of an object."""
+    per_object = isinstance(value, (list, tuple)) and any(_separate(item) for item in value)
+    return PER_OBJECT if per_object else ONE
 
 
 def _separate(item: Any) -> bool:
     return item is None or isinstance(item, (list, tuple))
 
 
-_DISCRIMINATORS = {"vector": _tag_vectors, "value": _tag, "number": _tag_numbers, "list": _tag_lists, "path": _tag_paths}
+_DISCRIMINATORS = {
+    "value": _tag,
+    "vector": _tag_vectors,
+    "number": _tag_numbers,
+    "list": _tag_lists,
+    "path": _tag_paths,
+}
 
 
 class PerObject:

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS
-from irsim.units import Degrees, Meters, MetersPerSecond, Number, Seconds
+from irsim.units import Degrees, Integer, Meters, MetersPerSecond, Number, Seconds
 
 
 class Sfm(BehaviorOptions):
@@ -43,7 +43,7 @@ class Sfm(BehaviorOptions):
     """Sharpness of the braking part of the interaction."""
     safety_radius: Annotated[Meters, Field(ge=0)] = 0.0
     """Distance kept around each of two, in the interaction."""
-    social_groups: list[list[Annotated[int, Field(strict=True, ge=0)]]] | None = None
+    social_groups: list[list[Annotated[Integer, Field(ge=0)]]] | None = None
     """As group behavior: who walks together, lists of member indices; each index at most once."""
     force_factor_coherence: Number = 2.0
     """As group behavior: weight of the pull to the middle of one's social group."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from pydantic import Field
-
 from irsim.kinematics._options import KinematicsOptions
 from irsim.registry import KINEMATICS
+from irsim.units import Number
 
 
 class Static(KinematicsOptions):
@@ -16,7 +15,7 @@ class Static(KinematicsOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "static"}]}
 
     name: Literal["static"] = "static"
-    alpha: list[float] = Field(default=[])
+    alpha: list[Number] = []
     """Accepted and ignored: what does not move has no noise."""
 
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim.maps._options import MapOptions
 from irsim.registry import MAPS
-from irsim.units import Fraction, Meters, Number
+from irsim.units import Fraction, Integer, Meters, Number
 
 
 class PerlinMap(MapOptions):
@@ -25,11 +25,11 @@ class PerlinMap(MapOptions):
     """Frequency of the noise: larger makes smaller rooms."""
     fill: Fraction = 0.38
     """Share of occupied cells."""
-    fractal: Annotated[int, Field(strict=True, ge=1, le=32)] = 1
+    fractal: Annotated[Integer, Field(ge=1, le=32)] = 1
     """Octaves of finer and finer detail."""
     attenuation: Annotated[Number, Field(gt=0)] = 0.5
     """Amplitude of detail k is this divided by k + 1."""
-    seed: Annotated[int, Field(strict=True, ge=0)] | None = None
+    seed: Annotated[Integer, Field(ge=0)] | None = None
     """Seed of the noise alone; null draws it from the environment's map stream."""
 
 

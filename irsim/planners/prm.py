@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim.planners._options import PlannerOptions
 from irsim.registry import PLANNERS
-from irsim.units import Meters
+from irsim.units import Integer, Meters
 
 
 class Prm(PlannerOptions):
@@ -17,9 +17,9 @@ class Prm(PlannerOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "prm", "n_sample": 500}]}
 
     name: Literal["prm"] = "prm"
-    n_sample: Annotated[int, Field(strict=True, ge=1)] = 500
+    n_sample: Annotated[Integer, Field(ge=1)] = 500
     """How many free points are drawn."""
-    n_knn: Annotated[int, Field(strict=True, ge=1)] = 10
+    n_knn: Annotated[Integer, Field(ge=1)] = 10
     """Most edges per point."""
     max_edge_len: Annotated[Meters, Field(gt=0)] = 30.0
     """Longest edge."""

@@ -21,13 +21,16 @@ from irsim.registry import (
 )
 from irsim.scenario.plot import ObjectPlot
 from irsim.selection import Select
-from irsim.units import Bool, Fraction, Meters, Number
-from irsim.vectors import OrNull, PerObject, Pose, Range, Vector
+from irsim.units import Bool, Fraction, Integer, Meters, Number
+from irsim.vectors import Component, OrNull, PerObject, Pose, Range
 
 __all__ = ["Entry"]
 
 Text = Annotated[str, Field(strict=True)]
 Unbounded = Annotated[float, Field(strict=True, ge=0)]  # infinity is fine, NaN is not
+State = Annotated[list[Component], Field(json_schema_extra={"x-units": ["m", "m", "rad"]})]
+Control = Annotated[list[Component], Field(min_length=1, json_schema_extra={"x-unit": "control units"})]
+Rates = Annotated[list[Unbounded], Field(min_length=1, json_schema_extra={"x-unit": "control units / s"})]
 Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
 Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
 Grip = Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})]
@@ -53,7 +56,7 @@ class Entry(Options):
         }
     }
 
-    number: Annotated[int, Field(strict=True, ge=0)] = 1
+    number: Annotated[Integer, Field(ge=0)] = 1
     """How many objects this entry makes."""
     distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
     """How they are placed; null is `manual`: by `state` and `goal`."""
@@ -63,14 +66,14 @@ class Entry(Options):
     """Free words; `pedestrian` is what metrics count as human."""
     role: Literal["robot", "obstacle"] | None = None
     """The section's own name; accepted because it is documented."""
-    state: Annotated[Any, PerObject(Vector | None, "vector")] = None
+    state: Annotated[Any, PerObject(State | None, "vector")] = None
     """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
     goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
     """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; waypoints take
     three levels of brackets, or `waypoints`."""
     waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
-    velocity: Annotated[Any, PerObject(Vector | None, "vector")] = None
+    velocity: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Initial control; null is zero."""
     kinematics: Annotated[Any, PerObject(KinematicsField)] = None
     """How it moves; null never moves."""
@@ -90,11 +93,11 @@ class Entry(Options):
     """Picture drawn instead of the footprint: a bundled name or a file."""
     static: Annotated[Bool, OrNull(False)] = False
     """Never moves although it has kinematics."""
-    vel_min: Annotated[Any, PerObject(Vector | None, "vector")] = None
+    vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Lower limits of the control components; null is -1 each."""
-    vel_max: Annotated[Any, PerObject(Vector | None, "vector")] = None
+    vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Upper limits of the control components; null is 1 each."""
-    acce: Annotated[Any, PerObject(list[Unbounded] | None, "vector")] = None
+    acce: Annotated[Any, PerObject(Rates | None, "vector")] = None
     """Largest change of each control component per second; null is unlimited."""
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
@@ -102,7 +105,7 @@ class Entry(Options):
     """Distance at which a goal counts as reached."""
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
     """What must match at the goal: the position, or the heading too."""
-    group: Annotated[int, Field(strict=True)] | None = None
+    group: Integer | None = None
     """Group number; objects with the same number form a group. Null numbers the entries."""
     group_name: Annotated[Any, PerObject(Text | None)] = None
     """Name of the group; null is `<role>_<group>`."""
@@ -114,9 +117,9 @@ class Entry(Options):
     """Reach of the field of view; null is the lidar's."""
     fov_occlusion: Bool = False
     """Things hidden behind others are not in the field of view."""
-    state_dim: Annotated[int, Field(strict=True, ge=3, le=64)] | None = None
+    state_dim: Annotated[Integer, Field(ge=3, le=64)] | None = None
     """Rows of the state; null is what the kinematics has. Surplus rows keep their value."""
-    vel_dim: Annotated[int, Field(strict=True, ge=1, le=64)] | None = None
+    vel_dim: Annotated[Integer, Field(ge=1, le=64)] | None = None
     """Components of the control; null is what the kinematics has."""
     mass: Annotated[Any, PerObject(Mass | None, "number")] = None
     """For `collision_mode: contact`; null is 1 with kinematics and infinite without."""

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim._options import Options
 from irsim.colors import Color
-from irsim.units import Bool, Count, Fraction, Meters, Number, Points
+from irsim.units import Bool, Count, Fraction, Integer, Meters, Number, Points
 from irsim.vectors import Point
 
 __all__ = ["ObjectPlot"]
@@ -87,7 +87,7 @@ class ObjectPlot(Options):
 
     show_trail: Bool = False
     """Draw snapshots of the footprint along the path."""
-    trail_freq: Annotated[int, Field(strict=True, ge=1)] = 2
+    trail_freq: Annotated[Integer, Field(ge=1)] = 2
     """A snapshot every so many steps."""
     trail_type: Annotated[str, Field(strict=True)] | None = None
     """Shape of the snapshots: `circle`, `rectangle`, `polygon`, `ellipse`, ...; null is the object's own."""

@@ -17,8 +17,10 @@ def flow(value: Any) -> str:
         return "{" + ", ".join(f"{key}: {flow(item)}" for key, item in value.items()) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(flow(item) for item in value) + "]"
-    if value is None or isinstance(value, bool):
-        return {None: "null", True: "true", False: "false"}[value]
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, (int, float)):
         return number(value)
     return str(value)
@@ -26,7 +28,7 @@ def flow(value: Any) -> str:
 
 def number(value: float) -> str:
     """A number without needless digits, never in a form that YAML 1.1 reads as text."""
-    if isinstance(value, float) and not math.isfinite(value):
+    if not math.isfinite(value):
         return ".nan" if math.isnan(value) else "-.inf" if value < 0 else ".inf"
     if value == int(value) and abs(value) < 1e15:
         return str(int(value))

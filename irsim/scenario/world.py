@@ -11,7 +11,7 @@ from irsim._options import Options, problem
 from irsim.colors import Color
 from irsim.registry import MAPS
 from irsim.selection import Select
-from irsim.units import Bool, Fraction, Meters, Number, Seconds
+from irsim.units import Bool, Fraction, Integer, Meters, Number, Seconds
 from irsim.vectors import OrNull, Point, is_vector, vector
 
 __all__ = ["SavedFigure", "WorldModel", "WorldPlot"]
@@ -113,7 +113,7 @@ class WorldModel(Options):
     """Period of drawing and recording; null is every step."""
     time_limit: Annotated[Seconds, Field(gt=0)] | None = None
     """How long a run lasts at most when its caller does not say; null is derived from distances and speeds."""
-    seed: Annotated[int, Field(strict=True, ge=0, lt=2**64)] | None = None
+    seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
     """Seed of everything random when the caller gives none; null draws a fresh one."""
     step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_trimmed)] = "internal"
     """Who moves the objects: the simulator, or the calling program, which sets their states."""

@@ -12,7 +12,7 @@ from irsim.angles import SpanAngle
 from irsim.colors import Color
 from irsim.registry import SENSORS
 from irsim.sensors._options import SensorOptions
-from irsim.units import Bool, Fraction, Meters, Radians, Seconds
+from irsim.units import Bool, Fraction, Integer, Meters, Radians, Seconds
 from irsim.vectors import Offset
 
 
@@ -41,7 +41,7 @@ class Lidar2d(SensorOptions):
     """Length of the beams; a beam that hits nothing reads this value."""
     angle_range: SpanAngle = 3.141592653589793
     """Total opening angle, symmetric about the sensor's x axis; 6.28318 is a full turn."""
-    number: Annotated[int, Field(strict=True, ge=1, le=1_000_000)] = 100
+    number: Annotated[Integer, Field(ge=1, le=1_000_000)] = 100
     """How many beams."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
     """Time of one scan, reported in messages only."""

@@ -8,8 +8,8 @@ from pydantic import Field
 
 from irsim import _core as core
 from irsim._options import Options
-from irsim.units import Bool, Meters, Number
-from irsim.vectors import Point, vector
+from irsim.units import Bool, Integer, Meters
+from irsim.vectors import Component, Point, vector
 
 __all__ = ["RandomOutline", "ShapeOptions", "random_polygon"]
 
@@ -32,17 +32,17 @@ class RandomOutline(ShapeOptions):
     """Corners in the body frame, used as given; the object's `state` moves and turns them."""
     random_shape: Bool = False
     """Draw the vertices at random instead, anew for every scene."""
-    center_range: Annotated[list[Number], vector(("m", "m", "m", "m"), 4)] = [0.0, 0.0, 0.0, 0.0]
+    center_range: Annotated[list[Component], vector(("m", "m", "m", "m"), 4)] = [0.0, 0.0, 0.0, 0.0]
     """Where the middle of a random outline may lie, body frame: [xmin, ymin, xmax, ymax]."""
-    avg_radius_range: Annotated[list[Annotated[Number, Field(ge=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]
+    avg_radius_range: Annotated[list[Annotated[Component, Field(ge=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]
     """Range of the mean distance of the vertices from the middle."""
-    irregularity_range: Annotated[list[Annotated[Number, Field(ge=0, le=1)]], vector(("1", "1"), 2)] = [0.0, 1.0]
+    irregularity_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] = [0.0, 1.0]
     """Range of how uneven the angles between vertices are: 0 even, 1 very uneven."""
-    spikeyness_range: Annotated[list[Annotated[Number, Field(ge=0, le=1)]], vector(("1", "1"), 2)] | None = None
+    spikeyness_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] | None = None
     """Range of how much the distances from the middle differ: 0 not at all; null is [0, 1], or [0, 0] if convex."""
-    num_vertices_range: Annotated[list[Annotated[int, Field(strict=True, ge=3)]], vector(("1", "1"), 2)] = [4, 10]
+    num_vertices_range: Annotated[list[Annotated[Integer, Field(ge=3)]], vector(("1", "1"), 2)] = [4, 10]
     """Number of vertices: lowest, and one more than the highest."""
-    number: Annotated[int, Field(strict=True, ge=1, le=1)] = 1
+    number: Annotated[Integer, Field(ge=1, le=1)] = 1
     """Always 1: one outline per object."""
 
 
