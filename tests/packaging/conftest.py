@@ -26,7 +26,7 @@ class Environment:
         return self.folder / ("Scripts" if os.name == "nt" else "bin")
 
     def run(self, *command: str | Path, cwd: Path | None = None, **variables: str) -> str:
-        """Output of a command of this environment, which must succeed."""
+        """Standard output of a command of this environment, which must succeed."""
         program = self.bin / command[0]
         inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "COV_"))}
         done = subprocess.run(
@@ -41,8 +41,8 @@ class Environment:
         assert done.returncode == 0, f"{command}: exit {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
         return done.stdout
 
-    def pip(self, *arguments: str | Path, **variables: str) -> str:
-        return self.run("python", "-m", "pip", "--disable-pip-version-check", *arguments, **variables)
+    def pip(self, *arguments: str | Path, **variables: str) -> None:
+        self.run("python", "-m", "pip", "--disable-pip-version-check", *arguments, **variables)
 
 
 @pytest.fixture(scope="session")
