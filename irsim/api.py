@@ -164,6 +164,7 @@ def render(
     else:
         _advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
+    sized = [] if size is None else ["--size", str(size)]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,
@@ -172,7 +173,7 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
-        reproduce=_command("render", path, env.seed, steps, strict, imports, extra=["-o", str(out)]),
+        reproduce=_command("render", path, env.seed, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result

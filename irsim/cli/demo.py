@@ -41,4 +41,6 @@ def demo(
     shown = console()
     shown.print(templates.load(_TEMPLATE).purpose)
     show_result(result, shown, again=f"irsim demo --seed {seed}")
-    shown.print(Text.assemble("yours: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")))
+    shown.print(
+        Text.assemble("yours: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")), soft_wrap=True
+    )

@@ -42,7 +42,7 @@ def _show(answer: Answer, out: Console) -> None:
     from rich.text import Text
 
     def line(*parts: RenderableType) -> None:
-        out.print(*parts, soft_wrap=False)
+        out.print(*parts)
 
     line(Text(answer.title, style="bold"))
     if answer.text:

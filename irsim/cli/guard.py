@@ -62,7 +62,11 @@ def _report(error: BaseException, *, as_json: bool) -> int:
 
         print_diagnostics(error.diagnostics, error.source, stderr=True)
     else:
-        typer.echo(typer.style("error ", fg="red", bold=True) + typer.style(code, bold=True) + f": {message}", err=True)
+        from rich.text import Text
+
+        from irsim.cli.output import console
+
+        console(stderr=True).print(Text.assemble(("error ", "bold red"), (code, "bold"), f": {message}"))
     if as_json:
         data: dict[str, object] = {"code": code, "message": message}
         if isinstance(error, ScenarioError):

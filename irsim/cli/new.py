@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -48,4 +49,4 @@ def new(
     write_new(target, with_modeline(text, target), overwrite=force)
     shown = console()
     shown.print(Text.assemble("wrote ", (str(target), "bold"), f": {template.purpose}"))
-    shown.print(Text.assemble("next: ", (f"irsim run {target}", "cyan")))
+    shown.print(Text.assemble("next: ", (shlex.join(["irsim", "run", str(target)]), "cyan")), soft_wrap=True)

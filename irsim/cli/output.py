@@ -36,14 +36,18 @@ def prepare_streams() -> None:
 
 
 def console(*, stderr: bool = False) -> Console:
-    """A rich console on standard output or standard error, without markup, highlighting or wrapping."""
+    """A rich console on standard output or standard error, without markup and highlighting.
+
+    It breaks lines between words on a terminal and leaves them alone elsewhere. What is to be copied is printed with
+    ``soft_wrap=True``.
+    """
     from rich.console import Console as RichConsole
 
     class Console(RichConsole):
         def on_broken_pipe(self) -> None:  # instead of exiting: the guard of the verbs decides
             raise BrokenPipeError
 
-    return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=True)
+    return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=not is_terminal(stderr=stderr))
 
 
 def has_colors(stream: TextIO) -> bool:

@@ -67,4 +67,4 @@ def render(
         shown.print(
             Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})")
         )
-    shown.print(Text.assemble("again: ", (result.reproduce, "cyan")))
+    shown.print(Text.assemble("again: ", (result.reproduce, "cyan")), soft_wrap=True)

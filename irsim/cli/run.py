@@ -90,8 +90,8 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     horizon = f"{result.time_limit:.1f} s ({limit[result.time_limit_from]})"
     out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {horizon}")
     for written in result.files:
-        out.print(Text.assemble("wrote ", (written, "bold")))
-    out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")))
+        out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
+    out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
 
 
 def _table(result: RunResult) -> object:

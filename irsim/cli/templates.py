@@ -39,5 +39,5 @@ def templates(
     table.add_column()
     for template in found:
         table.add_row(template.name, template.purpose)
-    out.print(table, soft_wrap=False)
+    out.print(table)
     out.print("\nirsim describe NAME shows the parameters, irsim new NAME writes the file.")

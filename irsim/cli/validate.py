@@ -55,5 +55,5 @@ def _show(report: ValidationReport, file: str, text: str | None) -> None:
     from irsim.cli.output import console
 
     print_findings(report.findings, file, text=text)
-    style = "bold green" if report.valid else "bold red"
-    console().print(Text.assemble((report.file, "bold"), ": ", (report.summary, style)))
+    if report.valid:
+        console().print(Text.assemble((report.file, "bold"), ": ", (report.summary, "bold green")))

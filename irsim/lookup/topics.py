@@ -56,7 +56,7 @@ def lookup(topic: str = "") -> Answer:
             nodes = step(schema, nodes, word)
         if nodes:
             return _part(schema, path, nodes)
-    return _search(schema, words)
+    return _search(schema, topic.strip(), words)
 
 
 def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
@@ -162,7 +162,7 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
     return [".".join(path[:-1])] if len(path) > 1 else []
 
 
-def _search(schema: Node, words: list[str]) -> Answer:
+def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     """Everything that the words occur in; several keys of one name, too."""
     wanted = " ".join(words).lower()
     everywhere = [
@@ -177,7 +177,7 @@ def _search(schema: Node, words: list[str]) -> Answer:
         hits += [hit for hit in everywhere if wanted in f"{_last(hit)} {hit.text}".lower()]
         hits = list({(_last(hit), hit.text): hit for hit in reversed(hits)}.values())[::-1]
     if not hits:
-        raise TopicError(" ".join(words), _near(schema, words))
+        raise TopicError(topic, _near(schema, words))
     more = len(hits) - _MOST_HITS
     return Answer(
         topic=wanted,

@@ -26,6 +26,7 @@ def test_size_is_the_longer_side(irsim: Run, room: Path) -> None:
     with Image.open("room.png") as picture:
         assert 380 <= max(picture.size) <= 400  # empty margins are cut off
         assert list(picture.size) == data["size"]
+    assert "--size 400" in data["reproduce"]
 
 
 def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Path, tmp_path: Path) -> None:
