@@ -18,7 +18,7 @@ def _is_one(action: Any) -> bool:
     """Whether ``action`` is one control vector rather than a list of them."""
     if isinstance(action, np.ndarray):
         return True
-    return all(isinstance(value, (int, float, np.number)) and not isinstance(value, bool) for value in action)
+    return len(action) > 0 and all(isinstance(v, (int, float, np.number)) and not isinstance(v, bool) for v in action)
 
 
 def _find(objects: Sequence[ObjectView], key: Any) -> ObjectView:
@@ -57,7 +57,8 @@ def assign_actions(
         objects: In id order; positions count from the first robot.
         action: One control vector (list, tuple, 1-D array or column), a list of them (None inside leaves that object to
             its behavior), or a mapping from id or name to vectors.
-        action_id: Id or name of the target, or a list of them. None: the first object, and on from there.
+        action_id: Id or name of the target, or a list of them. A list of actions given with one id goes to that object
+            and the following ones. None: the first object, and on from there.
         warn: Told about surplus actions.
 
     Returns:
@@ -78,7 +79,7 @@ def assign_actions(
         elif action_id is None:
             targets = list(objects)
         else:
-            targets = [_find(objects, action_id)]
+            targets = list(objects[objects.index(_find(objects, action_id)) :])
         if _is_one(action):
             pairs = [(view, action) for view in (targets if several_ids else targets[:1])]
         else:

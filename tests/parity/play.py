@@ -8,7 +8,8 @@ A scenario file says under `custom` how it is played:
     steps      number of calls of env.step()
     actions    {object id: [[steps, action], ...]}: consecutive segments; null and anything after the last segment
                leave the object to its behavior
-    style      how actions are handed over: ids (default), list, flat, names, array
+    style      how actions are handed over: ids (default), list, flat, names, array, from (a list with
+               the id of its first target; empty when there is none)
     calls      [[step, object id or "env", method, arguments], ...]: called before the step of that number
     reset      true: env.reset() right after irsim.make(); with D12 among `differs` record.py does it anyway, because
                irsim.make() already evaluates what the reference evaluates in its reset()
@@ -91,7 +92,9 @@ def unroll(segments: list[Any], steps: int) -> list[Any]:
 def step(env: Any, given: dict[int, Any], style: str) -> None:
     """One env.step() with the actions handed over in one of the accepted ways."""
     given = {key: action for key, action in given.items() if action is not None}
-    if not given:
+    if style == "from":
+        env.step(list(given.values()), min(given, default=0))
+    elif not given:
         env.step()
     elif style == "ids":
         env.step([np.array(action, dtype=float) for action in given.values()], list(given))
