@@ -42,7 +42,7 @@ def check_documented(feature: Feature) -> None:
 
 
 def check_units(feature: Feature) -> None:
-    """Every number in the schema carries ``x-unit`` (``1`` for pure numbers)."""
+    """Every number in the schema carries ``x-unit`` (``1`` for pure numbers); whole numbers are counts."""
     schema = feature.options.model_json_schema()
     missing = [
         name
@@ -177,4 +177,4 @@ def _moved(x: float, y: float, turn: float, shift: tuple[float, float]) -> tuple
 
 
 def _has_number(field: dict[str, Any]) -> bool:
-    return "'number'" in str(field) or "'integer'" in str(field)
+    return "'number'" in str(field)
