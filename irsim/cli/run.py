@@ -45,6 +45,8 @@ def run(
     from irsim.cli.output import console, print_json, progress
 
     import_user_modules(imports)
+    if show:
+        _mention_missing_screen()
     with progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
         from irsim.files import check_suffix
@@ -92,6 +94,13 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     for written in result.files:
         out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
     out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _mention_missing_screen() -> None:
+    from irsim.render.window import has_screen
+
+    if not has_screen():
+        typer.echo("there is no screen here, so no window opens; --save-gif leaves a film", err=True)
 
 
 def _table(result: RunResult) -> object:

@@ -66,6 +66,13 @@ def test_saves_an_animation(irsim: Run, room: Path, tmp_path: Path) -> None:
     assert (tmp_path / "film.gif").read_bytes().startswith(b"GIF89a")
 
 
+def test_without_a_screen_it_runs_and_says_so(irsim: Run, room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    result = irsim("run", "room.yaml", "--show", "--steps", "3")
+    assert result.exit_code == 0
+    assert "no screen" in result.stderr
+
+
 def test_imports_bring_behaviors(irsim: Run, room: Path, tmp_path: Path) -> None:
     (tmp_path / "my_cli_behavior.py").write_text(
         "from irsim.lib import register_behavior\n\n"
