@@ -18,8 +18,10 @@ SHAPE_EXAMPLES = {
     ],
     "linestring": ["{name: linestring, vertices: [[-0.2, 0], [0.2, 0.1], [0.3, 0.3]]}"],
     "compound": [
-        "{name: compound, parts: [{name: circle, radius: 0.2},"
-        " {name: rectangle, length: 0.4, width: 0.1, pose: [0.3, 0, 0.5]}]}"
+        (
+            "{name: compound, parts: [{name: circle, radius: 0.2},"
+            " {name: rectangle, length: 0.4, width: 0.1, pose: [0.3, 0, 0.5]}]}"
+        )
     ],
 }
 
