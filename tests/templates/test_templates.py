@@ -80,9 +80,12 @@ def test_valid_without_a_warning(template: Template, validator: Any) -> None:
     assert [error.message for error in validator.iter_errors(yaml.safe_load(template.text))] == []
 
 
-def test_valid_at_the_ends_of_every_parameter(template: Template, validator: Any) -> None:
+def test_valid_and_possible_at_the_ends_of_every_parameter(template: Template, validator: Any, tmp_path: Path) -> None:
     for given in extremes(template):
         text = templates.fill(template, given)
+        path = tmp_path / "end.yaml"
+        path.write_text(text, encoding="utf-8")
+        assert irsim.run(path, steps=1, seed=0).steps == 1, given
         assert irsim.validate(text=text).valid, given
         assert validator.is_valid(yaml.safe_load(text)), given
 
