@@ -90,9 +90,13 @@ def full(session: nox.Session) -> None:
 def sanitize(session: nox.Session) -> None:
     """Tests of the core with its address and undefined-behavior sanitizers on."""
     install(session, "-e", ".[test]", "-C", "cmake.define.IRSIM_SANITIZE=ON")
-    library = subprocess.run(["g++", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
+    # The C++ runtime, too: the sanitizer looks for the function that throws exceptions when it starts.
+    libraries = [
+        subprocess.run(["g++", f"-print-file-name={name}"], capture_output=True, text=True, check=True).stdout.strip()
+        for name in ("libasan.so", "libstdc++.so")
+    ]
     environment = {
-        "LD_PRELOAD": library.stdout.strip(),
+        "LD_PRELOAD": " ".join(libraries),
         "ASAN_OPTIONS": "detect_leaks=0",  # Python keeps what it allocates at start
         "UBSAN_OPTIONS": "halt_on_error=1:print_stacktrace=1",
     }

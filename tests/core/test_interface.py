@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -109,7 +111,7 @@ PARTS = [
 ]
 
 
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
     objects = [robot(pose=[50, 50, 0], goals=[[52, 50]])]
@@ -144,3 +146,34 @@ def test_ordinary_worlds_stay_finite() -> None:
     core.advance(world, state, 300)
     for name, values in everything(state).items():
         assert np.isfinite(values).all() or name == "goal", name
+
+
+def test_the_stub_names_what_there_is() -> None:
+    """`_core.pyi` and the extension have the same public names, class by class."""
+    stub = ast.parse(Path(__file__).parents[2].joinpath("irsim", "_core.pyi").read_text())
+
+    def names(body: list[ast.stmt]) -> set[str]:
+        found = set()
+        for node in body:
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                found.add(node.name)
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                found.add(node.target.id)
+        return {name for name in found if not name.startswith("_")}
+
+    def public(thing: object) -> set[str]:
+        return {name for name in vars(thing) if not name.startswith("_")}
+
+    assert names(stub.body) == public(core)
+    for node in stub.body:
+        if isinstance(node, ast.ClassDef) and node.name in ("World", "State", "Trace"):
+            assert names(node.body) == public(getattr(core, node.name)), node.name
+
+
+def test_the_stub_names_the_fields_of_options() -> None:
+    stub = ast.parse(Path(__file__).parents[2].joinpath("irsim", "_core.pyi").read_text())
+    for node in stub.body:
+        fields = getattr(getattr(core, getattr(node, "name", ""), None), "fields", None)
+        if isinstance(node, ast.ClassDef) and fields is not None:
+            init = next(n for n in node.body if isinstance(n, ast.FunctionDef) and n.name == "__init__")
+            assert tuple(argument.arg for argument in init.args.kwonlyargs) == fields, node.name
