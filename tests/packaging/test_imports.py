@@ -18,7 +18,7 @@ LAYERS = (
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",
-    "actions batch body env env_access env_drawing info observers parameters policies python_behaviors render scans views",
+    "actions batch body env env_access env_drawing info observers parameters python_behaviors render scans views",
     "api benchmark bridges config learning lib lookup modeline results templates testing util",
     "cli __main__",
     "irsim_mcp",
