@@ -31,6 +31,12 @@ CODES: dict[str, Code] = {
         "Scenarios are limited to 16 MiB (servers may allow less). Groups of objects are written with 'number' and "
         "'distribution' instead of one entry each.",
     ),
+    "path-outside-workspace": Code(
+        "path leads out of the workspace",
+        "Whoever runs the scenario is confined to a folder, as irsim-mcp is to its --workspace. Scenarios, and the maps "
+        "and pictures they name, lie in it and are named by paths relative to it (or to the scenario), without '..', "
+        "absolute paths, links that lead out, and devices.",
+    ),
     # YAML
     "yaml-syntax": Code(
         "not valid YAML",
@@ -65,7 +71,8 @@ CODES: dict[str, Code] = {
     "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
     "yaml-number-text": Code(
         "number that YAML 1.1 reads as text",
-        "In YAML 1.1 a float has a point, and its exponent a sign: 1e3 is text, 1.0e+3 and 1000 are numbers.",
+        "In YAML 1.1 a float has a point, its exponent a sign, and a digit stands between sign and point: 1e3 and -.5 are "
+        "text, 1.0e+3, 1000 and -0.5 are numbers.",
     ),
     "yaml-boolean": Code(
         "word that YAML 1.1 reads as a boolean",
@@ -179,6 +186,10 @@ CODES: dict[str, Code] = {
     "stacked": Code(
         "objects start at the same place",
         "Without a distribution all objects of an entry share its 'state'. Give a list of states, or a distribution.",
+    ),
+    "initial-overlap": Code(
+        "objects start in collision",
+        "Two objects overlap at the start, one of which moves. With 'collision_mode: stop' both stay where they are.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code("start or goal outside the world", "Nothing stops objects at the edge; check the numbers."),

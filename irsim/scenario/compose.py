@@ -106,7 +106,7 @@ class _Composer:
         self.root: Node | None = None
         self.fatal = False
         self.events = 0
-        self.expanded = 0
+        self.expanded = self.aliases = 0
 
     def run(self) -> None:
         next_event = _parser(self.text).get_event
@@ -212,6 +212,14 @@ class _Composer:
         if found is None:
             self._stop("recursive-alias", f"the alias '*{name}' stands inside the value it refers to", event)
         assert found is not None
+        self.aliases += 1
+        if self.aliases > self.limits.aliases:
+            self._stop(
+                "alias-expansion",
+                f"more than {self.limits.aliases:,} aliases",
+                event,
+                fix="write the objects with 'number' and 'distribution' instead of repeating aliases",
+            )
         self.expanded += found.size
         if self.expanded > self.limits.expansion:
             self._stop(

@@ -1,4 +1,4 @@
-"""How much a scenario file may ask for before it is refused."""
+"""How much a scenario may ask for before it is refused."""
 
 from __future__ import annotations
 
@@ -9,23 +9,33 @@ __all__ = ["DEFAULT_LIMITS", "Limits"]
 
 @dataclass(frozen=True)
 class Limits:
-    """Upper bounds while reading a scenario; a server passes tighter ones.
+    """Upper bounds while reading and running a scenario; a server passes tighter ones.
 
     Attributes:
         bytes: Size of the file.
         events: YAML events (scalars, brackets) of the file itself.
         expansion: Events that aliases and merge keys add when they are written out.
+        aliases: Aliases, whatever they refer to.
         depth: Nesting of lists and mappings, aliases written out.
         objects: Objects of the whole scenario.
+        robots: Robots among them.
         problems: Diagnostics reported for one file.
+        root: Folder that files named by the scenario must lie in; None: they may lie anywhere.
+        steps: Steps of one run; None: any number. A run whose horizon is farther away ends there.
+        work: Steps times objects of one run; None: any number.
     """
 
     bytes: int = 16 * 1024 * 1024
     events: int = 2_000_000
     expansion: int = 500_000
+    aliases: int = 1_000_000
     depth: int = 64
     objects: int = 100_000
+    robots: int = 100_000
     problems: int = 100
+    root: str | None = None
+    steps: int | None = None
+    work: int | None = None
 
 
 DEFAULT_LIMITS = Limits()

@@ -94,7 +94,7 @@ class _Reader:
         if not isinstance(self.data, Mapping):
             self._add([_no_mapping(self.data)])
             return None
-        crowd = _too_many(self.data, self.limits.objects)
+        crowd = _too_many(self.data, self.limits)
         if crowd is not None:
             self._add([crowd])
             return None
@@ -119,9 +119,14 @@ class _Reader:
             except ValidationError as failure:
                 found = translate(failure, self.data, self.document, self.limits.problems)
             self._add([f for f in found if not self._under_repair(f.diagnostic.path)])
+            if len(self.findings) > self.limits.problems:
+                break
             edits = [self._repair(f) for f in found]
             self.touched += [edit.path for edit in edits]
             self.data = applied(self.data, edits)
+            if (crowd := _too_many(self.data, self.limits)) is not None:  # a repaired number counts too
+                self._add([crowd])
+                break
         return None
 
     def _repair(self, finding: Finding) -> Edit:
@@ -166,11 +171,16 @@ def _no_mapping(data: Any) -> Finding:
     )
 
 
-def _too_many(data: Mapping[str, Any], most: int) -> Finding | None:
+def _too_many(data: Mapping[str, Any], limits: Limits) -> Finding | None:
     """Refuse a crowd before anything is made for it."""
     total = 0
-    for role in ("robot", "obstacle"):
+    for role, what, most in (
+        ("robot", "robots", min(limits.robots, limits.objects)),
+        ("obstacle", "objects", limits.objects),
+    ):
         section = data.get(role)
+        if section is None:
+            continue
         for index, entry in enumerate(section if isinstance(section, (list, tuple)) else [section]):
             number = entry.get("number", 1) if isinstance(entry, Mapping) else 1
             if not isinstance(number, int) or number < 0:
@@ -182,10 +192,10 @@ def _too_many(data: Mapping[str, Any], most: int) -> Finding | None:
                 return error(
                     "too-many-objects",
                     (*path, "number") if has_number else path,
-                    f"{total:,} objects so far; at most {most:,} are read",
+                    f"{total:,} {what} so far; at most {most:,} are read",
                     given=number,
-                    allowed=f"at most {most:,} objects in all",
-                    fix="lower 'number', or raise the limit of objects",
+                    allowed=f"at most {most:,} {what} in all",
+                    fix=f"lower 'number', or raise the limit of {what}",
                 )
     return None
 

@@ -41,6 +41,7 @@ _EXPECTED = {
 _NUMBERS = ("float_type", "float_parsing", "int_type", "int_from_float", "int_parsing")
 _BOOLEANS = {"1": True, "0": False, "yes": True, "no": False, "true": True, "false": False, "on": True, "off": False}
 _CONTROLS = ("entry.vel_min", "entry.vel_max", "entry.acce", "entry.velocity")
+_LARGE = 1e9
 _BOUNDS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", "≥"),
@@ -220,6 +221,8 @@ class _Translator:
 
     def _type(self) -> Finding:
         expected = _EXPECTED[self.kind]
+        if self.kind == "float_type" and isinstance(self.value, int) and not isinstance(self.value, bool):
+            return error("out-of-range", self.path, "this number is too large", allowed="a number" + self._unit())
         if self.kind in _NUMBERS and isinstance(self.value, str):
             return self._number_as_text(expected)
         if self.kind in _NUMBERS and isinstance(self.value, (list, tuple)):
@@ -244,7 +247,7 @@ class _Translator:
         value, path = self.value, self.path
         if expected == "text" and isinstance(value, (int, float)):
             return f"quote it: '{value}'", Edit("replace", path, str(value))
-        if expected == "a whole number" and isinstance(value, float) and value.is_integer():
+        if expected == "a whole number" and isinstance(value, float) and value.is_integer() and abs(value) < _LARGE:
             return f"{self._key()}: {int(value)}", Edit("replace", path, int(value))
         if expected == "a list" and isinstance(value, Mapping):
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])

@@ -28,6 +28,8 @@ def flow(value: Any) -> str:
 
 def number(value: float) -> str:
     """A number without needless digits, never in a form that YAML 1.1 reads as text."""
+    if isinstance(value, int):
+        return str(value)
     if not math.isfinite(value):
         return ".nan" if math.isnan(value) else "-.inf" if value < 0 else ".inf"
     if value == int(value) and abs(value) < 1e15:

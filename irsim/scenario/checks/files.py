@@ -1,0 +1,47 @@
+"""Files that a scenario names: inside the folder it is confined to, if it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path as FilePath
+from typing import Any
+
+from irsim.diagnostics import Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.confine import why_outside
+from irsim.scenario.findings import Finding, error
+from irsim.scenario.wording import shown
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Nothing for a scenario that may use any file."""
+    root = context.document.limits.root
+    if root is None:
+        return
+    source = context.document.path
+    bases = [FilePath(source).resolve().parent] if source is not None else []
+    seen: set[Path] = set()
+    for path, name in named_files(context):
+        wrong = why_outside(name, FilePath(root), bases) if path not in seen else None
+        seen.add(path)
+        if wrong is not None:
+            yield error(
+                "path-outside-workspace",
+                path,
+                f"{shown(name)} {wrong}",
+                given=name,
+                allowed="files inside the workspace",
+                fix="put the file into the workspace and give its path relative to it or to the scenario",
+            )
+
+
+def named_files(context: Context) -> Iterator[tuple[Path, str]]:
+    """Where the scenario names a file, and which."""
+    grid: Any = context.scenario.world.obstacle_map
+    name = getattr(grid, "path", None)
+    if isinstance(name, str):
+        written = context.data["world"]["obstacle_map"]
+        yield ("world", "obstacle_map") if isinstance(written, str) else ("world", "obstacle_map", "path"), name
+    for record in context.resolved.objects:
+        if record.description is not None and context.given(record, "description"):
+            yield context.entry_path(record, "description"), record.description

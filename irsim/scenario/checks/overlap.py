@@ -1,0 +1,94 @@
+"""Objects that start in collision."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from irsim import _core as core
+from irsim.registry import SHAPES
+from irsim.scenario.checks._context import Context
+from irsim.scenario.findings import Finding, warning
+from irsim.scenario.objects import ObjectRecord
+
+_MOST_REPORTED = 20
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Pairs with at least one member that moves, unless one is placed at random or not to be collided with."""
+    random = {index for placement in context.resolved.placements for index in placement.objects}
+    bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
+    reported: set[tuple[Any, ...]] = set()
+    for a, b in _near_pairs(bodies):
+        mover, other = (a.record, b.record) if not a.record.static else (b.record, a.record)
+        if other.unobstructed or (mover.path == other.path and mover.state[:2] == other.state[:2]):
+            continue  # the latter is reported as stacked
+        key = (mover.path, other.path)
+        if key in reported or not core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
+            continue
+        reported.add(key)
+        where = context.entry_path(mover, "state") if context.given(mover, "state") else mover.path
+        yield warning(
+            "initial-overlap",
+            where,
+            f"'{mover.name}' starts in collision with '{other.name}'",
+            fix="move one of them, or make it smaller",
+        )
+        if len(reported) >= _MOST_REPORTED:
+            return
+
+
+def _is_fixed(record: ObjectRecord) -> bool:
+    shape: Any = record.shape
+    parts = shape.parts if shape.name == "compound" else [shape]
+    return not any(getattr(part, "random_shape", False) for part in parts)
+
+
+class _Body:
+    """An object with its geometry, made when somebody comes near."""
+
+    def __init__(self, record: ObjectRecord) -> None:
+        self.record = record
+        self.reach = _reach(record.shape)
+        self._parts: list[Any] | None = None
+
+    @property
+    def parts(self) -> list[Any]:
+        """Geometry for the core, body frame."""
+        if self._parts is None:
+            feature = SHAPES.get(self.record.shape.name)  # type: ignore[attr-defined]
+            assert feature is not None
+            assert feature.function is not None
+            self._parts = feature.function(self.record.shape)
+        return self._parts
+
+
+def _reach(shape: Any) -> float:
+    """No point of the shape is farther from the origin than this [m]."""
+    wheelbase = (shape.wheelbase or 0.0) / 2
+    if shape.name == "circle":
+        return wheelbase + math.hypot(*shape.center) + float(shape.radius)
+    if shape.name == "rectangle":
+        return wheelbase + math.hypot(shape.length, shape.width) / 2
+    if shape.name == "compound":
+        return max(_reach(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
+    if shape.name in ("polygon", "linestring"):
+        return max((math.hypot(x, y) for x, y in shape.vertices or [(1.0, 1.0)]), default=0.0)
+    return math.inf
+
+
+def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
+    """Pairs whose bounding circles meet and of which one moves; a sweep along x."""
+    ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
+    active: list[_Body] = []
+    for body in ordered:
+        x, y = body.record.state[:2]
+        active = [other for other in active if other.record.state[0] + other.reach >= x - body.reach]
+        for other in active:
+            if body.record.static and other.record.static:
+                continue
+            gap = math.hypot(other.record.state[0] - x, other.record.state[1] - y)
+            if gap <= body.reach + other.reach:
+                yield other, body
+        active.append(body)

@@ -1,0 +1,196 @@
+"""Reading YAML: what values become, where things stand, and what is refused."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim.scenario import compose as compose_module
+from irsim.scenario.compose import Mark, compose
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.load import load_data, load_path, load_text
+
+SCALARS = [
+    "1", "-1", "+3", "0", "1_000", "0x1F", "0b101", "1.5", "-.5", "1.", "1.0e+3", "1.5e-3", "1e3", "1.0e3", ".inf",
+    "-.inf", "+.INF", "true", "False", "YES", "no", "on", "Off", "null", "~", "Null", "y", "n", "abc", "'1'", '"x"',
+    "2024-01-31", "12:30:45", "1:30.5", "010", "08", "0o10", "-010", "1-2", ".", "1.2.3", "!!str 5",
+    "!!float 3", "!!int '7'", "!!bool yes", "!!null ''", "! 5", "_1", "1__0.5", "0.1_5",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SCALARS)
+def test_scalars_are_those_of_the_safe_loader(text: str) -> None:
+    wanted = yaml.safe_load(f"a: {text}")
+    composed = compose(f"a: {text}", DEFAULT_LIMITS)
+    assert composed.data == wanted
+    assert type(composed.data["a"]) is type(wanted["a"])
+
+
+def test_nan_and_dates() -> None:
+    data = load_text("a: .nan\nb: 2024-01-31\nc: 2024-01-31 10:11:12\nd: 2024-99-99\n").data
+    assert math.isnan(data["a"])
+    assert data["b"] == datetime.date(2024, 1, 31)
+    assert data["c"] == datetime.datetime(2024, 1, 31, 10, 11, 12)
+    assert data["d"] == "2024-99-99"
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers(-(10**12), 10**12) | st.floats(allow_nan=False) | st.text(max_size=12),
+        lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+        max_leaves=25,
+    ),
+    st.booleans(),
+)
+@settings(max_examples=150, deadline=None)
+def test_data_is_that_of_the_safe_loader(data: Any, block: bool) -> None:
+    text = yaml.safe_dump({"custom": data}, default_flow_style=not block, allow_unicode=True)
+    composed = compose(text, DEFAULT_LIMITS)
+    assert not composed.fatal
+    assert composed.data == yaml.safe_load(text)
+
+
+def test_aliases_and_merge_keys_as_the_safe_loader_has_them() -> None:
+    text = (
+        "custom:\n  base: &b {x: 1, y: 2}\n  more: &m {y: 3, z: 4}\n  one: {<<: *b, y: 9}\n"
+        "  two: {<<: [*b, *m], w: 0}\n  three: {w: 0, <<: *m, <<: *b}\n  same: *b\n"
+    )
+    assert compose(text, DEFAULT_LIMITS).data == yaml.safe_load(text)
+
+
+def test_without_libyaml(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "world: &w {height: 1.5, tags: [a, 'b']}\ncustom: *w\n"
+    expected = compose(text, DEFAULT_LIMITS, positions=True)
+    monkeypatch.setattr(compose_module.yaml, "__with_libyaml__", False)
+    found = compose(text, DEFAULT_LIMITS, positions=True)
+    assert found.data == expected.data
+    assert found.root == expected.root
+    assert compose("a: [1", DEFAULT_LIMITS).problems[0].code == "yaml-syntax"
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "key"),
+    [
+        ((), Mark(1, 1, 1), Mark(1, 1, 1)),
+        (("world",), Mark(1, 8, 12), Mark(1, 1, 5)),
+        (("robot",), Mark(3, 3, 1), Mark(2, 1, 5)),
+        (("robot", 0), Mark(3, 5, 1), Mark(3, 5, 1)),
+        (("robot", 0, "behavior", "name"), Mark(4, 22, 6), Mark(4, 16, 4)),
+        (("robot", 0, "behavior", "missing"), Mark(4, 5, 8), Mark(4, 5, 8)),
+        (("robot", 1, "shape", "radius"), Mark(7, 15, 3), Mark(7, 7, 6)),
+        (("robot", 1, "state", 1), Mark(8, 16, 2), Mark(8, 16, 2)),
+        (("robot", 7), Mark(2, 1, 5), Mark(2, 1, 5)),
+    ],
+)
+def test_positions(path: tuple[str | int, ...], value: Mark, key: Mark) -> None:
+    text = (
+        "world: {height: 10}\n"
+        "robot:\n"
+        "  - kinematics: {name: diff}\n"
+        "    behavior: {name: 'dash'}\n"
+        "  - kinematics:\n"
+        "    shape:\n"
+        "      radius: 0.5\n"
+        "    state: [1, -2]\n"
+    )
+    document = load_text(text)
+    assert document.mark(path) == value
+    assert document.mark(path, key=True) == key
+
+
+def test_positions_follow_aliases_and_merges() -> None:
+    document = load_text("custom: &c {radius: -1}\nobstacle:\n  shape: {<<: *c, name: circle}\n  plot: *c\n")
+    assert document.mark(("obstacle", "shape", "radius")) == Mark(1, 21, 2)
+    assert document.mark(("obstacle", "shape", "radius"), key=True) == Mark(1, 13, 6)
+    assert document.mark(("obstacle", "plot", "radius")) == Mark(1, 21, 2)
+
+
+def test_source_text() -> None:
+    document = load_text("world: {step_time: 1e-1, name: 'on'}\n")
+    assert document.source_text(("world", "step_time")) == "1e-1"
+    assert document.source_text(("world", "name")) == "'on'"
+    assert load_data({"world": {}}).source_text(("world",)) is None
+
+
+def test_wrapper_of_a_shared_file() -> None:
+    document = load_text("other: 1\nirsim: {world: {height: 3}}\n")
+    assert document.data == {"world": {"height": 3}}
+    assert document.prefix == ("irsim",)
+    assert load_text("irsim: 3\n").data == {"irsim": 3}
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "line"),
+    [
+        ("", "empty-document", 1),
+        ("# nothing\n\n", "empty-document", 1),
+        ("a: [1, 2\nb: 3\n", "yaml-syntax", 2),
+        ("a: 'open\n", "yaml-syntax", 2),
+        ("a:\n\tb: 1\n", "yaml-syntax", 2),
+        ("a: *nothing\n", "yaml-syntax", 1),
+        ("a: &x [*x]\n", "recursive-alias", 1),
+        ("a: 1\n---\nb: 2\n", "multiple-documents", 2),
+        ("a: !!python/name:os.system x\n", "unsupported-tag", 1),
+        ("a: !mine {b: 1}\n", "unsupported-tag", 1),
+        ("a: !!int x\n", "unsupported-tag", 1),
+        ("a: {[1]: 2}\n", "bad-key", 1),
+        ("a: {<<: 3}\n", "bad-key", 1),
+        ("%YAML 9.9\n---\na: 1\n", "yaml-syntax", 1),
+    ],
+)
+def test_refused(text: str, code: str, line: int) -> None:
+    document = load_text(text)
+    assert document.fatal
+    assert [problem.code for problem in document.problems] == [code]
+    assert document.problems[0].line in (line, line + 1, None)
+
+
+def test_duplicate_keys_keep_the_last_value() -> None:
+    document = load_text("world:\n  height: 1\n  width: 2\n  height: 3\n")
+    assert document.data == {"world": {"height": 3, "width": 2}}
+    (problem,) = document.problems
+    assert (problem.code, problem.line, problem.column, problem.tolerated) == ("duplicate-key", 4, 3, True)
+    assert problem.path == ("world", "height")
+
+
+def test_tabs_are_named() -> None:
+    (problem,) = load_text("a:\n\tb: 1\n").problems
+    assert "tab" in problem.message
+
+
+def test_missing_directory_device_binary(tmp_path: Path) -> None:
+    def code(path: Path | str) -> str:
+        (problem,) = load_path(path).problems
+        return problem.code
+
+    binary, latin, zeros = tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "c.yaml"
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\x00\x00")
+    latin.write_bytes("world: {name: caf\u00e9}".encode("latin-1"))
+    zeros.write_bytes(b"world: 1\n\x00\x01")
+    assert code(tmp_path / "none.yaml") == "file-not-found"
+    assert code(tmp_path) == "not-a-file"
+    assert code(binary) == code(latin) == code(zeros) == "not-text"
+    assert code("bad\0name") == "unreadable"
+
+
+def test_byte_order_mark_and_line_ends(tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    path.write_bytes(b"\xef\xbb\xbfworld: {height: 3}\r\nrobot: null\r\n")
+    assert load_path(path).data == {"world": {"height": 3}, "robot": None}
+
+
+def test_limits() -> None:
+    tight = Limits(bytes=100, events=20, expansion=10, depth=3)
+    assert load_text("a" * 101, limits=tight).problems[0].code == "file-too-large"
+    assert load_text("[1,2,3,4,5,6,7,8,9,1,2,3,4,5,6,7,8]", limits=tight).problems[0].code == "too-many-events"
+    assert load_text("[[[[1]]]]", limits=tight).problems[0].code == "too-deep"
+    assert load_text("a: &a [1, 2, 3, 4]\nb: [*a, *a, *a]\n", limits=tight).problems[0].code == "alias-expansion"
+    assert load_text("a: &a [[1]]\nb: [*a]\n", limits=tight).problems[0].code == "too-deep"
+    assert not load_text("a: &a [[1]]\nb: *a\n", limits=tight).fatal
