@@ -33,9 +33,9 @@ CODES: dict[str, Code] = {
     ),
     "path-outside-workspace": Code(
         "path leads out of the workspace",
-        "Whoever runs the scenario is confined to a folder, as irsim-mcp is to its --workspace. Scenarios, and the maps "
-        "and pictures they name, lie in it and are named by paths relative to it (or to the scenario), without '..', "
-        "absolute paths, links that lead out, and devices.",
+        "The program is confined to a folder, as irsim-mcp is to its --workspace. Scenarios, and the maps and pictures "
+        "they name, lie in it and are named by paths relative to it (or to the scenario): no '..', no absolute path, no "
+        "link that leads out, no device.",
     ),
     # YAML
     "yaml-syntax": Code(
@@ -71,8 +71,8 @@ CODES: dict[str, Code] = {
     "too-deep": Code("nested too deeply", "Lists and mappings are nested more than 64 levels deep."),
     "yaml-number-text": Code(
         "number that YAML 1.1 reads as text",
-        "In YAML 1.1 a float has a point, its exponent a sign, and a digit stands between sign and point: 1e3 and -.5 are "
-        "text, 1.0e+3, 1000 and -0.5 are numbers.",
+        "In YAML 1.1 a float has a point, its exponent a sign, and a digit stands between sign and point: 1e3 and -.5 "
+        "are text, 1.0e+3, 1000 and -0.5 are numbers.",
     ),
     "yaml-boolean": Code(
         "word that YAML 1.1 reads as a boolean",
@@ -267,6 +267,33 @@ TOOL_CODES: dict[str, Code] = {
         "file cannot be read or written", "The system refuses: check the path, the permissions and the space left."
     ),
     "out-of-memory": Code("not enough memory", "Fewer objects, beams or frames need less."),
+    "unknown-tool": Code("unknown tool", "The server has no tool of that name; the message names the nearest."),
+    "unknown-argument": Code(
+        "unknown argument", "The tool has no argument of that name; the message names the nearest, or all there are."
+    ),
+    "bad-argument": Code(
+        "argument not accepted",
+        "An argument of the call is of the wrong type, out of range, or does not fit the others.",
+    ),
+    "invalid-scenario": Code(
+        "scenario with errors",
+        "Nothing was run or drawn. The message has the first problems; validate_scenario (irsim validate) lists all, "
+        "with a fix for each.",
+    ),
+    "over-limit": Code(
+        "more work than is allowed",
+        "The message has the limit and what was asked for. Fewer steps or objects need less.",
+    ),
+    "out-of-time": Code(
+        "time of computation is over",
+        "The work was stopped; nothing of it is kept. Fewer steps, objects or lidar beams take less time.",
+    ),
+    "busy": Code(
+        "too much at once", "As many calls are being worked on as the server allows. Call again a little later."
+    ),
+    "worker-failed": Code(
+        "worker process died", "The process that did the work ended without a result; the server itself goes on."
+    ),
     "internal-error": Code(
         "unexpected error",
         "A mistake in irsim or in user code; IRSIM_TRACEBACK=1 shows where. Please report it if it is ours.",
