@@ -34,8 +34,8 @@ CODES: dict[str, Code] = {
     "path-outside-workspace": Code(
         "path leads out of the workspace",
         "The program is confined to a folder, as irsim-mcp is to its --workspace. Scenarios, and the maps and pictures "
-        "they name, lie in it and are named by paths relative to it (or to the scenario): no '..', no absolute path, no "
-        "link that leads out, no device.",
+        "they name, lie in it and are named by paths relative to it (or to the scenario): no '..', no absolute path, "
+        "no link that leads out, no device.",
     ),
     # YAML
     "yaml-syntax": Code(
