@@ -28,17 +28,19 @@ def validate(
     max_objects: MaxObjects = None,
 ) -> None:
     """Check scenario files without running them. Exits with 2 if any is invalid."""
-    from irsim import api
     from irsim.cli.findings import import_user_modules, limits_for
-    from irsim.cli.output import print_json
+    from irsim.cli.output import print_json, progress
 
     import_user_modules(imports)
     valid = True
     for file in files:
         text = sys.stdin.read() if file == "-" else None
-        report = api.validate(
-            None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
-        )
+        with progress(f"checking {file}"):
+            from irsim import api
+
+            report = api.validate(
+                None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
+            )
         valid &= report.valid
         if json_output:
             print_json(report, indent=None)
