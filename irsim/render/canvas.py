@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from irsim.render.pixels import Pixels
+from irsim.render.text import QuickText
 
 __all__ = ["Compositor"]
 
@@ -158,4 +159,6 @@ def _inside(artist: Artist, ax: Axes) -> bool:
     """Whether an artist cannot reach beyond what the axes themselves take up."""
     if artist in (ax.xaxis, ax.yaxis, ax.patch) or artist in ax.spines.values():
         return True
+    if isinstance(artist, QuickText):
+        return artist is not ax.title
     return artist.get_clip_on() and (artist.get_clip_box() is not None or artist.get_clip_path() is not None)

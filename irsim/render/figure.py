@@ -19,6 +19,7 @@ from irsim.render.layers import BeamLayer, MarkLayer, layer_key, rgba
 from irsim.render.pictures import find_picture, load_picture
 from irsim.render.pixels import Pixels
 from irsim.render.scene import Label, Picture, Scene
+from irsim.render.text import Glyphs, QuickText
 
 __all__ = ["SceneFigure", "fitting_size"]
 
@@ -75,6 +76,7 @@ class SceneFigure:
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
         self._images: dict[str, Any] = {}
+        self._glyphs = Glyphs()
         self._start()
 
     def _start(self) -> None:
@@ -90,8 +92,19 @@ class SceneFigure:
         ax.set_ylabel("y [m]")
         if not self.axis:
             ax.set_axis_off()
-        self._title_artist = ax.set_title("", fontsize=_TITLE_SIZE, pad=_TITLE_PAD, y=1.0, parse_math=False)
+        self._title_artist = self._quick_title()
         self.compositor.forget()
+
+    def _quick_title(self) -> Text:
+        """The title of the axes, of the quick kind."""
+        usual = self.ax.set_title("", pad=_TITLE_PAD, y=1.0)
+        title = QuickText(self._glyphs, x=0.5, y=1.0, text="", parse_math=False, fontsize=_TITLE_SIZE, ha="center")
+        title.set_figure(self.figure)
+        title.axes = self.ax
+        title.set_transform(usual.get_transform())
+        title.set_clip_box(None)
+        self.ax.title = title
+        return title
 
     def clear(self) -> None:
         """Remove everything drawn, also by others, and start anew; the view shows the world again."""
@@ -231,8 +244,9 @@ class SceneFigure:
             key = label.object, label.part
             text = self._labels.get(key)
             if text is None:
-                text = self._labels[key] = self.ax.text(0, 0, "", parse_math=False, ha="left", va="baseline")
+                text = self._labels[key] = QuickText(self._glyphs, parse_math=False, clip_on=False)
                 text.set_path_effects(self._effects)
+                self.ax.add_artist(text)
             shown.add(key)
             text.set_visible(True)
             text.set_text(_printable(label.text))

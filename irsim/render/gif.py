@@ -25,6 +25,8 @@ _FAR = 32
 """A pixel that misses its colour by more than this in a channel counts as wrong."""
 _WRONG_SHARE = 0.0005
 _MAX_HINTS = 64
+_SAMPLED = 100_000
+"""Of larger pictures every fourth pixel is enough to choose colours (time and memory)."""
 _DESCRIPTOR = 10
 
 
@@ -123,7 +125,10 @@ def _table(palette: Image.Image) -> bytes:
 
 def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]]) -> Image.Image:
     """At most 255 colours: those asked for, then the image's own that differ from them."""
-    found = image.quantize(_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    sample = image
+    if image.width * image.height > _SAMPLED:
+        sample = image.resize((image.width // 2, image.height // 2), Image.Resampling.NEAREST)
+    found = sample.quantize(_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
     own = [(found[i], found[i + 1], found[i + 2]) for i in range(0, len(found), 3)]
     chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:_MAX_HINTS]
     fixed = np.array(chosen or [(0, 0, 0)], dtype=np.int16)

@@ -73,10 +73,9 @@ class MarkLayer:
         self.artist.set_paths([*self.artist.get_paths()[:same], *(_path(mark.geometry) for mark in marks[same:])])
         self.artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
         self.artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
-        self.artist.set_linewidth(
-            [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
-        )
-        self.artist.set_linestyle([mark.stroke.style for mark in marks] or "-")
+        widths = [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
+        self.artist.set_linewidth(_shared(widths) or [0.0])
+        self.artist.set_linestyle(_shared([mark.stroke.style for mark in marks]) or ["-"])
 
 
 class BeamLayer:
@@ -138,6 +137,11 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
     given: Any = color
     red, green, blue, opacity = to_rgba(given)
     return red, green, blue, opacity * float(alpha)
+
+
+def _shared(values: list[Any]) -> list[Any]:
+    """The values, or the one they all are: collections repeat what is too short."""
+    return values[:1] if all(value == values[0] for value in values) else values
 
 
 def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:

@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from irsim.render.pixels import Pixels, changed_box, differing
+from irsim.render.pixels import Pixels, changed_box, differing, to_image
 
 __all__ = ["ApngWriter", "png_bytes"]
 
@@ -17,6 +17,7 @@ _LEVEL = 2
 _TRUECOLOR = 2
 _DELAY_UNIT = 1000
 _FORGET, _REPLACE = 0, 0
+_NO_FILTER = 0
 
 
 def png_bytes(pixels: Pixels, dpi: float | None = None) -> bytes:
@@ -109,9 +110,10 @@ def _header(width: int, height: int) -> bytes:
 
 
 def _compress(pixels: Pixels) -> bytes:
-    height, width = pixels.shape[:2]
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)
-    rows[:, 1:].reshape(height, width, 3)[...] = pixels[..., :3]
+    packed = np.asarray(to_image(pixels)).reshape(pixels.shape[0], -1)
+    rows = np.empty((packed.shape[0], packed.shape[1] + 1), np.uint8)
+    rows[:, 0] = _NO_FILTER
+    rows[:, 1:] = packed
     return zlib.compress(rows.tobytes(), _LEVEL)
 
 

@@ -1,0 +1,120 @@
+"""Text drawn from kept bitmaps: the same few words and ten digits appear in every frame."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
+
+__all__ = ["Glyphs", "QuickText"]
+
+_PIECES = re.compile(r"\d|\D+")
+_MARGIN = 3
+"""Pixels round a bitmap, for what sticks out of its box."""
+_MOST_PIECES = 2000
+
+
+@dataclass(slots=True)
+class _Piece:
+    """A bitmap (H, W, 4), its lowest row first, the rows of it below the baseline, and the advance [px]."""
+
+    bitmap: Any
+    below: int
+    advance: float
+
+
+class Glyphs:
+    """Bitmaps of pieces of text, by how they look."""
+
+    def __init__(self) -> None:
+        self._known: dict[Hashable, _Piece] = {}
+
+    def get(self, key: Hashable, make: Callable[[], _Piece]) -> _Piece:
+        """The piece of that text and look, made by ``make`` if it is new."""
+        found = self._known.get(key)
+        if found is None:
+            if len(self._known) >= _MOST_PIECES:
+                self._known.clear()
+            found = self._known[key] = make()
+        return found
+
+
+class QuickText(Text):
+    """A line of plain text; on pixels it is put together from kept bitmaps, at whole pixels.
+
+    Args:
+        glyphs: Shared by the texts of a figure.
+        **kwargs: Of :class:`matplotlib.text.Text`.
+    """
+
+    def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._glyphs = glyphs
+
+    def draw(self, renderer: Any) -> None:
+        """Draw; as Matplotlib would where the text is turned, has effects or several lines, or becomes curves."""
+        text = self.get_text()
+        if not self._is_plain(renderer):
+            super().draw(renderer)
+            return
+        if not self.get_visible() or not text:
+            return
+        pieces, across, up = self._laid_out(renderer)
+        context = renderer.new_gc()
+        for piece in pieces:
+            renderer.draw_image(context, round(across) - _MARGIN, round(up) - piece.below, piece.bitmap)
+            across += piece.advance
+        context.restore()
+        self.stale = False
+
+    def get_window_extent(self, renderer: Any = None, dpi: float | None = None) -> Bbox:
+        """Box of the text [px]; from the bitmaps where it is drawn with them."""
+        if dpi is not None or not self.get_text() or not self._is_plain(renderer):
+            return super().get_window_extent(renderer, dpi)
+        pieces, across, up = self._laid_out(renderer)
+        below = max(piece.below for piece in pieces) - _MARGIN
+        height = max(piece.bitmap.shape[0] for piece in pieces) - 2 * _MARGIN
+        return Bbox.from_bounds(across, up - below, sum(piece.advance for piece in pieces), height)
+
+    def _is_plain(self, renderer: Any) -> bool:
+        plain = not self.get_path_effects() and self.get_rotation() == 0 and "\n" not in self.get_text()
+        return plain and isinstance(renderer, RendererAgg)
+
+    def _laid_out(self, renderer: Any) -> tuple[list[_Piece], float, float]:
+        """The pieces, and where the first begins on the baseline [px]."""
+        look = (self.get_fontproperties(), self.get_color(), self.get_alpha(), renderer.dpi)
+        pieces = [
+            self._glyphs.get((text, *look), partial(self._rendered, text, renderer))
+            for text in _PIECES.findall(self.get_text())
+        ]
+        across, up = self.get_transform().transform(self.get_unitless_position())
+        total = sum(piece.advance for piece in pieces)
+        across -= {"left": 0.0, "center": total / 2, "right": total}[self.get_horizontalalignment()]
+        return pieces, float(across), float(up)
+
+    def _rendered(self, piece: str, renderer: Any) -> _Piece:
+        properties = self.get_fontproperties()
+
+        def width(text: str) -> float:
+            return float(renderer.get_text_width_height_descent(text, properties, False)[0])
+
+        _, height, descent = renderer.get_text_width_height_descent(piece + "lp", properties, False)
+        advance = width(f"x{piece}x") - width("xx")
+        below = math.ceil(descent) + _MARGIN
+        new_renderer: Any = RendererAgg
+        paper = new_renderer(math.ceil(advance) + 2 * _MARGIN, math.ceil(height) + 2 * _MARGIN, renderer.dpi)
+        stamp = Text(_MARGIN, below, piece, fontproperties=properties, color=self.get_color(), parse_math=False)
+        stamp.set_alpha(self.get_alpha())
+        figure = self.get_figure(root=True)
+        assert figure is not None
+        stamp.set_figure(figure)
+        stamp.draw(paper)
+        return _Piece(np.asarray(paper.buffer_rgba())[::-1].copy(), below, advance)
