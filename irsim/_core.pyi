@@ -226,8 +226,8 @@ class State:
         """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
     def goals(self, row: int) -> list[list[float]]: ...
     def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
-    def set_initial(self, row: int) -> None:
-        """Make the row's present pose, extra and control those that reset() returns to."""
+    def set_initial(self, row: int, pose: bool, control: bool) -> None:
+        """Make the row's present pose (and extra rows), or control, or both, those that reset() returns to."""
     def initial_state(self, row: int) -> Floats:
         """(3 + E,) pose and extra rows that reset() returns to."""
     def velocity_world(self, row: int) -> tuple[float, float]:

@@ -135,7 +135,7 @@ class ObjectView(ObjectBody):
         self._pose[:] = values[:3]
         self._simulation.extra[self.row, : self.state_dim - 3] = values[3:]
         if init:
-            self._simulation.state.set_initial(self.row)
+            self._simulation.state.set_initial(self.row, pose=True, control=False)
         self._simulation.state.moved(self.row)
 
     def set_velocity(self, velocity: Any, init: bool = False) -> None:
@@ -153,7 +153,7 @@ class ObjectView(ObjectBody):
             raise ValueError(f"the velocity of {self.name!r} is {self.vel_dim} numbers, not {velocity!r}")
         self._simulation.control[self.row, : self.vel_dim] = values
         if init:
-            self._simulation.state.set_initial(self.row)
+            self._simulation.state.set_initial(self.row, pose=False, control=True)
 
     # goals -----------------------------------------------------------------------------------------------------------
     @property

@@ -40,11 +40,12 @@ void set_goals(BoundState& self, int row, const std::vector<std::vector<double>>
   self.state.sync_goal(row);
 }
 
-void set_initial(BoundState& self, int row) {
+void set_initial(BoundState& self, int row, bool pose, bool control) {
   self.check_row(row);
   State& s = self.state;
+  if (control) s.initial_control[row] = s.control[row];
+  if (!pose) return;
   s.initial_pose[row] = s.pose[row];
-  s.initial_control[row] = s.control[row];
   const std::size_t e = static_cast<std::size_t>(row) * s.extra_rows;
   std::copy_n(&s.extra[e], s.extra_rows, &s.initial_extra[e]);
 }
@@ -244,7 +245,7 @@ void bind_state(nb::module_& m) {
       .def("collision_pairs", &collision_pairs, nb::arg("world"))
       .def("goals", &goals_of, nb::arg("row"))
       .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))
-      .def("set_initial", &set_initial, nb::arg("row"))
+      .def("set_initial", &set_initial, nb::arg("row"), nb::arg("pose"), nb::arg("control"))
       .def("initial_state", &initial_state, nb::arg("row"))
       .def("velocity_world", &velocity_of, nb::arg("row"))
       .def(

@@ -79,7 +79,7 @@ def test_sizes_are_checked() -> None:
         core.State(world, np.zeros(2, np.uint64), False)
     with pytest.raises(ValueError, match="mask"):
         state.reset(np.ones(2, np.uint8), False)
-    for call in (state.events, state.collision_pairs, state.goals, state.set_initial, state.parts, state.trajectory):
+    for call in (state.events, state.collision_pairs, state.goals, state.initial_state, state.parts, state.trajectory):
         with pytest.raises(IndexError):
             call(1)
         with pytest.raises(IndexError):

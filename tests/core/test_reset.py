@@ -101,7 +101,7 @@ def test_set_initial() -> None:
     state.pose[:] = [[2, 2, 1], [6, 6, 1]]
     state.extra[0] = [0.1, 0.2]
     state.control[0] = [0.3, 0, 0]
-    state.set_initial(0)
+    state.set_initial(0, pose=True, control=True)
     state.refresh()
     core.advance(world, state, 5)
     state.reset(ALL, False)

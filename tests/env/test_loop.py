@@ -257,3 +257,17 @@ def test_unregistered_behavior_fails_at_the_first_step_only(make: Make) -> None:
         env.step()
     with pytest.raises(irsim.ScenarioError, match="unknown-behavior"):
         make(text, strict=True)
+
+
+def test_new_initial_values_are_kept_apart(make: Make) -> None:
+    env = make(ONE)
+    env.step()
+    env.robot.set_state([2, 2, 1], init=True)
+    env.reset()
+    assert env.robot.state[:, 0].tolist() == [2, 2, 1]
+    assert not env.robot.velocity.any(), "the velocity of that moment is not the initial one"
+    env.step()
+    env.robot.set_velocity([0.3, 0.2], init=True)
+    env.reset()
+    assert env.robot.state[:, 0].tolist() == [2, 2, 1]
+    assert env.robot.velocity[:, 0].tolist() == [0.3, 0.2]
