@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from irsim.codes import CODES, TOOL_CODES
 from tests.cli.conftest import Run, Spawn
 
 BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
@@ -51,6 +52,24 @@ def test_a_process_answers_within_a_second_or_so(spawn: Spawn, bad: tuple[str, P
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
     assert time.perf_counter() - start < 5  # a second on a quiet machine
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "romm.yaml"],
+        ["run", "room.yaml", "--import", "no_such_module"],
+        ["run", "room.yaml", "--save-gif", "x.doc"],
+        ["render", "room.yaml", "-o", "room.yaml/x.png"],
+        ["describe", "no such thing at all"],
+        ["demo", "-o", "x.doc"],
+    ],
+)
+def test_every_error_has_a_documented_code(irsim: Run, room: Path, words: list[str]) -> None:
+    error = json.loads(irsim(*words, "--json").stdout)["error"]
+    assert error["code"] in {**CODES, **TOOL_CODES}
+    assert error["code"] != "internal-error"
+    assert error["message"]
 
 
 def test_a_missing_file_names_near_matches(irsim: Run, room: Path) -> None:
