@@ -73,7 +73,10 @@ class Compositor:
             resting.append((artist, version))
         key = tuple((id(artist), version) for artist, version in resting)
         renderer = canvas.get_renderer()
-        if self._base is None or key != self._base_key:
+        if not resting:
+            self._base = None
+            canvas.restore_region(self._furniture)
+        elif self._base is None or key != self._base_key:
             canvas.restore_region(self._furniture)
             for artist, _ in resting:
                 artist.draw(renderer)

@@ -388,6 +388,8 @@ class EnvPlot:
             self._window.close()
             self._window = None
         self._overlay.forget()
+        if self._figure is not None:
+            self._figure.compositor.forget()
         self._figure = None
         self._forget_frames()
 
