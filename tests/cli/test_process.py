@@ -38,9 +38,14 @@ def test_no_colors_in_a_pipe(spawn: Spawn, room: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_ctrl_c_exits_130_without_a_traceback(room: Path, tmp_path: Path) -> None:
     room.write_text(LONG, encoding="utf-8")
-    command = [sys.executable, "-m", "irsim", "run", "room.yaml", "--steps", "100000000"]
+    (tmp_path / "says_ready.py").write_text("open('ready', 'w').close()\n", encoding="utf-8")
+    command = [sys.executable, "-m", "irsim", "run", "room.yaml", "--steps", "100000000", "--import", "says_ready"]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    time.sleep(3)
+    for _ in range(600):
+        if (tmp_path / "ready").exists() or process.poll() is not None:
+            break
+        time.sleep(0.1)
+    time.sleep(1)
     assert process.poll() is None
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
