@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
 
-__all__ = ["IrsimError", "NotSimulatedError", "PlacementError", "ScenarioError", "ScenarioNotFoundError"]
+__all__ = [
+    "IrsimError",
+    "NotSimulatedError",
+    "OverLimitError",
+    "PlacementError",
+    "ScenarioError",
+    "ScenarioNotFoundError",
+]
 
 
 class IrsimError(Exception):
@@ -28,6 +35,22 @@ class ScenarioError(IrsimError, ValueError):
         self.diagnostics = list(diagnostics)
         self.source = source
         super().__init__("\n" + format_diagnostics(self.diagnostics, source))
+
+
+class OverLimitError(IrsimError, ValueError):
+    """More work is asked for than the limits allow.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is asked for and how much is allowed.
+        fix: What to ask for instead.
+    """
+
+    code = "over-limit"
+
+    def __init__(self, message: str, fix: str) -> None:
+        self.message, self.fix = message, fix
+        super().__init__(f"{self.code}: {message}. Fix: {fix}.")
 
 
 class NotSimulatedError(ScenarioError):

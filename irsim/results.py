@@ -6,7 +6,21 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["EventRecord", "Finding", "RenderResult", "RobotResult", "RunResult", "ValidationReport"]
+__all__ = [
+    "EventRecord",
+    "Finding",
+    "HorizonSource",
+    "RenderResult",
+    "RobotPose",
+    "RobotResult",
+    "RunResult",
+    "SnapshotResult",
+    "ValidationReport",
+]
+
+
+HorizonSource = Literal["argument", "scenario", "default", "limits"]
+"""Who says how long a run may last."""
 
 
 class Result(BaseModel):
@@ -111,14 +125,16 @@ class RunResult(Result):
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
     """One sentence: who arrived, who did not and why."""
+    reason: str | None = None
+    """Why it is no success: the first collision, and what robots that did not arrive were doing; None if it is one."""
     steps: int
     """Executed steps."""
     sim_time: float
     """Simulated time [s]."""
     time_limit: float
     """Horizon [s]: from the file, from ``--steps``, or max(30 s, 4 x longest way / top speed)."""
-    time_limit_from: Literal["argument", "scenario", "default"]
-    """Where the horizon comes from."""
+    time_limit_from: HorizonSource
+    """Where the horizon comes from; ``limits``: cut to the most steps of one run."""
     robots: list[RobotResult]
     """One entry per robot."""
     events: list[EventRecord]
@@ -154,3 +170,42 @@ class RenderResult(Result):
     """What is odd about the scenario."""
     reproduce: str
     """Command that gives the same again."""
+
+
+class RobotPose(Result):
+    """Where a robot is in a snapshot."""
+
+    name: str
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad]."""
+    goal: tuple[float, float] | None
+    """Present goal [m]; None without one."""
+    status: Literal["under way", "arrived", "collided"]
+    """What became of it so far."""
+
+
+class SnapshotResult(Result):
+    """What ``irsim.api.snapshot`` drew."""
+
+    scenario: str
+    """The file, or ``(text)``."""
+    seed: int
+    """Seed that was used."""
+    steps: int
+    """Executed steps."""
+    sim_time: float
+    """Simulated time [s]."""
+    extent: tuple[float, float, float, float]
+    """The world: least and greatest x, least and greatest y [m]."""
+    obstacles: int
+    """How many obstacles there are."""
+    robots: list[RobotPose]
+    """One entry per robot."""
+    size: tuple[int, int]
+    """Width and height [px]."""
+    warnings: list[Finding]
+    """What is odd about the scenario."""
+    reproduce: str
+    """Command that draws the same moment."""
+    png: bytes = Field(default=b"", exclude=True, repr=False)
+    """The picture."""

@@ -90,7 +90,12 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     if len(result.robots) > _MANY:
         out.print(f"... and {len(result.robots) - _MANY} more robots (--json lists all)")
     out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", clean(result.summary, 400)))
-    limit = {"argument": "--steps", "scenario": "the scenario", "default": "default: set world.time_limit"}
+    limit = {
+        "argument": "--steps",
+        "scenario": "the scenario",
+        "default": "default: set world.time_limit",
+        "limits": "the most steps of one run",
+    }
     horizon = f"{result.time_limit:.1f} s ({limit[result.time_limit_from]})"
     out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {horizon}")
     for written in result.files:

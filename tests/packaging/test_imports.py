@@ -19,7 +19,7 @@ LAYERS = (
     "scenario",
     "world simulation",
     "actions batch body env env_access env_drawing info observers parameters python_behaviors render scans views",
-    "api benchmark bridges config learning lib lookup modeline results templates testing util",
+    "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
     "cli __main__",
     "irsim_mcp",
 )

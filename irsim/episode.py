@@ -1,0 +1,148 @@
+"""One episode: from a scenario to an environment, how long it goes on, and letting time pass."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import math
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from irsim.diagnostics import Diagnostic, format_path
+from irsim.env import Env
+from irsim.errors import OverLimitError
+from irsim.results import Finding, HorizonSource
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.load import Document, load_text
+from irsim.scenario.locate import locate
+from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.opening import or_raise
+from irsim.scenario.read import read
+
+__all__ = [
+    "Progress",
+    "advance",
+    "as_finding",
+    "default_time_limit",
+    "horizon_of",
+    "import_modules",
+    "read_scenario",
+    "source_of",
+]
+
+Progress = Callable[[int, int], None]
+"""Told (steps done, steps at most) now and then."""
+
+_MIN_HORIZON = 30.0
+_HORIZON_FACTOR = 4.0
+_CHUNK_STEPS = 50
+
+
+def import_modules(names: Iterable[str]) -> None:
+    """Import user modules (from the current directory too), for what they register.
+
+    Raises:
+        ImportError: With the module's name.
+    """
+    for name in names:
+        if "" not in sys.path and str(Path.cwd()) not in sys.path:
+            sys.path.insert(0, str(Path.cwd()))
+        importlib.import_module(name.removesuffix(".py").replace("/", "."))
+
+
+def read_scenario(
+    path: str | Path | None = None, *, text: str | None = None, strict: bool, limits: Limits | None = None
+) -> tuple[ResolvedScenario, list[Finding]]:
+    """A scenario ready to build, with what is odd about it; from a file or a text.
+
+    Raises:
+        ScenarioError: It cannot be used.
+        ValueError: Neither or both of ``path`` and ``text``.
+    """
+    source = source_of(path, text, limits)
+    scenario, diagnostics = or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))
+    return scenario, [as_finding(d) for d in diagnostics]
+
+
+def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
+    """max(30 s, 4 x the longest way from start over its goals / that robot's top speed) [s]."""
+    longest = 0.0
+    for view in env.robot_list:
+        points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
+        way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
+        if view.max_speed > 0:
+            longest = max(longest, way / view.max_speed)
+    return max(_MIN_HORIZON, _HORIZON_FACTOR * longest)
+
+
+def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:
+    """What to read: a file found by its name, or a text.
+
+    Raises:
+        ScenarioNotFoundError: No such file.
+        ValueError: Neither or both are given.
+    """
+    if (path is None) == (text is None):
+        raise ValueError("give either a path or a text")
+    if path is not None:
+        return locate(path)
+    assert text is not None
+    return load_text(text, limits=limits or DEFAULT_LIMITS)
+
+
+def as_finding(diagnostic: Diagnostic) -> Finding:
+    """A diagnostic as part of a result."""
+    allowed = diagnostic.allowed
+    return Finding(
+        code=diagnostic.code,
+        severity=diagnostic.severity,
+        path=format_path(diagnostic.path),
+        line=diagnostic.line,
+        column=diagnostic.column,
+        length=diagnostic.length,
+        message=diagnostic.message,
+        given=diagnostic.given,
+        allowed=allowed if allowed is None or isinstance(allowed, str) else list(allowed),
+        fix=diagnostic.fix,
+        tolerated=diagnostic.tolerated,
+    )
+
+
+def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
+    """Steps at most, and who says so. What is asked for must be within the limits, what is derived is cut to them.
+
+    Raises:
+        OverLimitError: More is asked for.
+    """
+    most, what = _most_steps(len(scenario.objects), limits)
+    if steps is not None:
+        if most is not None and steps > most:
+            raise OverLimitError(f"{steps:,} steps are too many: at most {what}", f"ask for at most {most:,} steps")
+        return steps, "argument"
+    limit = scenario.world.time_limit
+    seconds = default_time_limit(scenario, env) if limit is None else limit
+    horizon = math.ceil(seconds / env.step_time - 1e-9)
+    if most is not None and horizon > most:
+        return most, "limits"
+    return horizon, "default" if limit is None else "scenario"
+
+
+def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
+    """Most steps of one run, and the limit behind it in words."""
+    bounds: list[tuple[int, str]] = []
+    if limits.steps is not None:
+        bounds.append((limits.steps, f"{limits.steps:,} are run at once"))
+    if limits.work is not None:
+        each = limits.work // max(1, objects)
+        bounds.append((each, f"{limits.work:,} steps x objects are run at once, and there are {objects:,} objects"))
+    return min(bounds, default=(None, ""))
+
+
+def advance(env: Env, steps: int, progress: Progress | None, *, until_done: bool = True) -> None:
+    """Let time pass, by default until every robot has arrived or stopped."""
+    done = 0
+    while done < steps and not (until_done and env.done()):
+        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done))
+        if progress is not None:
+            progress(done, steps)

@@ -1,0 +1,111 @@
+"""``irsim.api.snapshot``: one moment of an episode, as a small picture and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Literal
+
+from irsim.env import Env
+from irsim.episode import Progress, advance, horizon_of, read_scenario
+from irsim.observers.outcome import robot_outcomes
+from irsim.results import RobotPose, SnapshotResult
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.verdict import command
+
+__all__ = ["OVERLAYS", "Overlay", "snapshot"]
+
+Overlay = Literal["names", "goals", "paths", "sensors"]
+OVERLAYS: dict[Overlay, tuple[str, ...]] = {
+    "names": ("show_text", "show_goal_text"),
+    "goals": ("show_goal",),
+    "paths": ("show_trajectory",),
+    "sensors": ("show_sensor", "show_fov"),
+}
+"""What a snapshot may show besides bodies, and the plot keys that switch it."""
+
+
+def snapshot(
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    seed: int | None = None,
+    steps: int | None = 0,
+    size: int = 600,
+    overlays: Iterable[Overlay] | None = None,
+    draw: bool = True,
+    strict: bool = False,
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> SnapshotResult:
+    """A small, labelled picture of one moment, and in words what is in it. Writes nothing.
+
+    Args:
+        path: Scenario file.
+        text: Or its text.
+        seed: Over the file's.
+        steps: Steps before the picture; None: those of a whole episode.
+        size: Longer side of the picture [px].
+        overlays: What to show besides bodies, see :data:`OVERLAYS`; by default names, goals and paths, and of sensors
+            what the scenario says.
+        draw: Make the picture too.
+        strict: Refuse what IR-SIM would ignore.
+        limits: Limits of the loader and of the run.
+        progress: Told how far it is.
+
+    Raises:
+        ScenarioError: The scenario cannot be used; ScenarioNotFoundError: there is none.
+        OverLimitError: More steps are asked for than the limits allow.
+        ValueError: Neither or both of ``path`` and ``text``.
+    """
+    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
+    env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
+    horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+    advance(env, horizon, progress, until_done=steps is None)
+    png, pixels = b"", (0, 0)
+    if draw:
+        from irsim.render.snapshot import render_scene
+
+        shown = None if overlays is None else set(overlays)
+        keys = {} if shown is None else {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
+        png = render_scene(env.simulation, size_px=size, overrides=keys)
+        pixels = _size_of(png)
+    x, y, right, top = scenario.world.bounds
+    count = int(env.simulation.count[0])
+    result = SnapshotResult(
+        scenario="(text)" if path is None else str(path),
+        seed=env.seed,
+        steps=count,
+        sim_time=env.sim_time,
+        extent=(x, right, y, top),
+        obstacles=len(scenario.objects) - len(env.robot_list),
+        robots=_poses(env),
+        size=pixels,
+        warnings=warnings,
+        reproduce=command("render", path, env.seed, count, strict, extra=["--size", str(size), "-o", "snapshot.png"]),
+        png=png,
+    )
+    env.end(ending_time=0.0)
+    return result
+
+
+def _poses(env: Env) -> list[RobotPose]:
+    outcomes = robot_outcomes(env.simulation)
+    status: dict[str, Literal["under way", "arrived", "collided"]] = {"success": "arrived", "collision": "collided"}
+    robots = []
+    for view in env.robot_list:
+        goal = view.goal
+        robots.append(
+            RobotPose(
+                name=view.name,
+                pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+                goal=None if goal is None else (float(goal[0, 0]), float(goal[1, 0])),
+                status=status.get(outcomes[view.name], "under way"),
+            )
+        )
+    return robots
+
+
+def _size_of(png: bytes) -> tuple[int, int]:
+    """Width and height, which stand at a fixed place in a PNG file."""
+    return int.from_bytes(png[16:20], "big"), int.from_bytes(png[20:24], "big")

@@ -1,0 +1,191 @@
+"""From a finished environment to a :class:`irsim.results.RunResult`: who arrived, who did not, and why."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from irsim.observers.events import Event, first_events
+from irsim.observers.outcome import robot_outcomes
+from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.views import ObjectView
+
+__all__ = ["command", "run_result"]
+
+_MAX_EVENTS = 100
+_NAMED = 3
+"""Robots named one by one in a sentence."""
+_STANDING = 1e-3
+"""Slower than this is standing still [m/s]."""
+_NO_FILE = "scenario.yaml"
+_LIMITS: dict[HorizonSource, str] = {
+    "argument": "the steps asked for",
+    "scenario": "world.time_limit",
+    "default": "the default limit; world.time_limit sets another",
+    "limits": "the most steps of one run here",
+}
+
+
+def run_result(
+    env: Env,
+    path: str | Path | None,
+    *,
+    horizon: int,
+    source: HorizonSource,
+    warnings: list[Finding],
+    files: list[str],
+    imports: Sequence[str] = (),
+    strict: bool = False,
+) -> RunResult:
+    """What an episode came to.
+
+    Args:
+        env: The environment, run to its end.
+        path: The scenario file, None for a text.
+        horizon: Steps at most.
+        source: Where the horizon comes from.
+        warnings: What is odd about the scenario.
+        files: Files written.
+        imports: Modules that were imported for it.
+        strict: Whether it was read strictly.
+    """
+    from irsim import __version__
+
+    events = env.events
+    robots = _robots(env, events)
+    ends = [robot.outcome for robot in robots]
+    outcome: Literal["success", "collision", "timeout"] = "timeout"
+    if ends and all(end == "success" for end in ends):
+        outcome = "success"
+    elif "collision" in ends:
+        outcome = "collision"
+    given = horizon if source in ("argument", "limits") else None
+    return RunResult(
+        scenario="(text)" if path is None else str(path),
+        seed=env.seed,
+        outcome=outcome,
+        summary=_summary(robots, events, env.sim_time),
+        reason=None if outcome == "success" else _reason(env, robots, events, source),
+        steps=int(env.simulation.count[0]),
+        sim_time=env.sim_time,
+        time_limit=horizon * env.step_time,
+        time_limit_from=source,
+        robots=robots,
+        events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in events[:_MAX_EVENTS]],
+        event_count=len(events),
+        warnings=warnings,
+        files=files,
+        version=__version__,
+        reproduce=command("run", path, env.seed, given, strict, imports),
+    )
+
+
+def command(
+    verb: str,
+    path: str | Path | None,
+    seed: int,
+    steps: int | None,
+    strict: bool,
+    imports: Sequence[str] = (),
+    extra: Sequence[str] = (),
+) -> str:
+    """The command line that does the same again; for a scenario without a file it says how to name one."""
+    words = ["irsim", verb, _NO_FILE if path is None else str(path), "--seed", str(seed)]
+    if steps is not None:
+        words += ["--steps", str(steps)]
+    if strict:
+        words.append("--strict")
+    for name in imports:
+        words += ["--import", name]
+    text = shlex.join([*words, *extra])
+    return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
+
+
+def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
+    outcomes = robot_outcomes(env.simulation)
+    arrivals = first_events(events, "arrival")
+    robots = []
+    for view in env.robot_list:
+        ended = outcomes[view.name]
+        goal = view.goal
+        arrival = arrivals.get(view.name)
+        robots.append(
+            RobotResult(
+                name=view.name,
+                outcome="timeout" if ended == "running" else ended,
+                time_to_goal=None if arrival is None else arrival.time,
+                collision_count=sum(e.kind == "collision" and view.name in (e.object, e.partner) for e in events),
+                path_length=_path_length(env, view.row),
+                distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
+                pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+            )
+        )
+    return robots
+
+
+def _path_length(env: Env, row: int) -> float:
+    track = env.simulation.state.trajectory(row)[:, :2]
+    points = np.vstack([env.simulation.state.initial_state(row)[None, :2], track])
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def _summary(robots: list[RobotResult], events: Sequence[Event], sim_time: float) -> str:
+    if not robots:
+        return f"no robots; {sim_time:.1f} s simulated"
+    arrived = sum(robot.outcome == "success" for robot in robots)
+    text = f"{arrived} of {len(robots)} robots arrived" if len(robots) > 1 else ""
+    if len(robots) == 1:
+        text = {
+            "success": "the robot arrived",
+            "collision": "the robot collided",
+            "timeout": "the robot did not arrive",
+        }[robots[0].outcome]
+    text += f" within {sim_time:.1f} s"
+    hit = _first_hit({robot.name for robot in robots}, events)
+    return f"{text}; {hit}" if hit else text
+
+
+def _reason(env: Env, robots: list[RobotResult], events: Sequence[Event], source: HorizonSource) -> str:
+    """Why it is no success: the first collision, and who was still on the way."""
+    if not robots:
+        return "there are no robots"
+    reasons = []
+    collided = {robot.name for robot in robots if robot.outcome == "collision"}
+    if hit := _first_hit(collided, events):
+        others = len(collided) - 1
+        reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
+    views = {view.name: view for view in env.robot_list}
+    late = [robot for robot in robots if robot.outcome == "timeout"]
+    if late:
+        named = [f"{robot.name} {_state_of(views[robot.name], robot)}" for robot in late[:_NAMED]]
+        more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
+        reasons.append(f"at {env.sim_time:.1f} s ({_LIMITS[source]}) {', '.join(named)}{more}")
+    return "; ".join(reasons)
+
+
+def _first_hit(names: set[str], events: Sequence[Event]) -> str | None:
+    first = next((e for e in events if e.kind == "collision" and names & {e.object, str(e.partner)}), None)
+    if first is None:
+        return None
+    return f"{first.object} hit {first.partner} at {first.time:.1f} s near ({first.x:.2f}, {first.y:.2f})"
+
+
+def _state_of(view: ObjectView, robot: RobotResult) -> str:
+    """What a robot is doing that has not arrived: ``stands still 3.21 m from its goal``."""
+    record = view.record
+    speed = float(np.linalg.norm(view.velocity_xy))
+    place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
+    if speed >= _STANDING:
+        return f"still moved at {speed:.2g} m/s, {place}"
+    if record.kinematics is None:
+        return f"has no kinematics, so it stands still {place}"
+    if record.behavior is None and record.group_behavior is None:
+        return f"has no behavior, so it stands still {place}"
+    return f"stands still {place}"

@@ -1,0 +1,68 @@
+"""A small picture of one moment, and in words what is in it."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from irsim.api import snapshot
+from irsim.errors import OverLimitError
+from irsim.scenario.limits import Limits
+
+SCENE = """\
+world: {width: 8, height: 4, offset: [-1, 0]}
+robot:
+  - {name: rover, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 2], goal: [5, 2],
+     behavior: {name: dash}, sensors: [{name: lidar2d, number: 20, range_max: 2}]}
+obstacle:
+  - {name: crate, state: [6, 3], shape: {name: rectangle, length: 1, width: 0.5}}
+"""
+
+
+def empty(png: bytes) -> int:
+    """Pixels of the commonest color."""
+    with Image.open(io.BytesIO(png)) as image:
+        assert image.format == "PNG"
+        assert image.mode == "P"
+        return int(max(count for count, _ in image.getcolors() or []))
+
+
+def test_start() -> None:
+    result = snapshot(text=SCENE, seed=1)
+    assert (result.steps, result.sim_time, result.obstacles) == (0, 0.0, 1)
+    assert result.extent == (-1, 7, 0, 4)
+    robot = result.robots[0]
+    assert (robot.name, robot.pose, robot.goal, robot.status) == ("rover", (1, 2, 0), (5, 2), "under way")
+    assert max(result.size) == 600
+    with Image.open(io.BytesIO(result.png)) as image:
+        assert image.size == result.size
+    assert len(result.png) < 40_000
+    assert "png" not in result.model_dump()
+
+
+def test_later_and_to_the_end() -> None:
+    assert snapshot(text=SCENE, steps=10, draw=False).robots[0].pose[0] == pytest.approx(2)
+    end = snapshot(text=SCENE, steps=None, draw=False)
+    assert end.robots[0].status == "arrived"
+    assert end.png == b""
+
+
+def test_overlays_can_be_left_out() -> None:
+    bare = snapshot(text=SCENE, size=300, overlays=[])
+    full = snapshot(text=SCENE, size=300, overlays=["names", "goals", "paths", "sensors"])
+    assert max(bare.size) == 300
+    assert empty(bare.png) > empty(full.png) + 100
+
+
+def test_limits_hold() -> None:
+    with pytest.raises(OverLimitError):
+        snapshot(text=SCENE, steps=50, limits=Limits(steps=49))
+
+
+def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    snapshot(text=SCENE)
+    assert list(tmp_path.iterdir()) == []
