@@ -21,14 +21,15 @@ from irsim.render.pixels import Pixels
 from irsim.render.scene import Label, Picture, Scene
 from irsim.render.text import Glyphs, QuickText
 
-__all__ = ["SceneFigure", "fitting_size"]
+__all__ = ["SceneFigure", "fitting_size", "inches"]
 
 _TITLE_PAD = 6.0
 _TITLE_SIZE = 12.0
-_SMALLEST_TITLE = 6.0
+_SMALLEST_TITLE = 5.0
 _LABEL_MARGIN = 4.0
 _LABEL_RANK = 0.01
 _HALO = 2.0
+_HAIR = 0.01
 _ROOM = 8.0
 """Between what is drawn and the edge of the figure [pt]."""
 _MOST_ROOM = 0.7
@@ -68,7 +69,7 @@ class SceneFigure:
         halo: bool = False,
     ) -> None:
         if figure is None:
-            figure = Figure(figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
+            figure = Figure(figsize=inches(size, dpi), dpi=dpi)
             FigureCanvasAgg(figure)
         self.figure = figure
         self.axis, self.tight, self.folder = axis, tight, folder
@@ -120,10 +121,12 @@ class SceneFigure:
         """
         first = self._extent is None
         self._look_at(scene)
-        self._show_title(title or "")
+        fit_title = self._show_title(title or "")
         if first and self.tight:
             self._use_room()
         self.ax.apply_aspect()
+        if fit_title:
+            self._fit_title()
         scale = self._points_per_metre()
         groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
         for mark in scene.marks:
@@ -190,19 +193,24 @@ class SceneFigure:
         low, high = self.ax.get_ylim()
         return float(self.ax.bbox.height / (high - low) * _POINTS_PER_INCH / self.figure.dpi)
 
-    def _show_title(self, title: str) -> None:
+    def _show_title(self, title: str) -> bool:
+        """Write the title; True when it may need another size."""
         if title == self._title:
-            return
+            return False
         longer = self._title is None or len(title) > len(self._title)
         self._title = title
-        artist = self._title_artist
-        artist.set_text(_printable(title))
-        if longer:
-            artist.set_fontsize(_TITLE_SIZE)
-            width = artist.get_window_extent(self._renderer()).width
-            room = self.figure.bbox.width - 2 * _LABEL_MARGIN
-            if width > room:
-                artist.set_fontsize(max(_SMALLEST_TITLE, _TITLE_SIZE * room / width))
+        self._title_artist.set_text(_printable(title))
+        return longer
+
+    def _fit_title(self) -> None:
+        """Write a title smaller that would stick out of the figure."""
+        artist, box, width = self._title_artist, self.ax.bbox, self.figure.bbox.width
+        artist.set_fontsize(_TITLE_SIZE)
+        middle = (box.x0 + box.x1) / 2
+        room = 2 * min(middle, width - middle) - 2 * _LABEL_MARGIN
+        needed = artist.get_window_extent(self._renderer()).width
+        if needed > room:
+            artist.set_fontsize(max(_SMALLEST_TITLE, _TITLE_SIZE * room / needed))
 
     def _renderer(self) -> Any:
         return self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
@@ -216,7 +224,7 @@ class SceneFigure:
             if artist is None or artist.get_label() != picture.name:
                 if artist is not None:
                     artist.remove()
-                artist = AxesImage(self.ax, interpolation="auto", label=picture.name)
+                artist = AxesImage(self.ax, interpolation="antialiased", label=picture.name)
                 artist.set_data(self._image(picture.name))
                 self.ax.add_image(artist)
                 self._pictures[picture.object] = artist
@@ -279,6 +287,11 @@ class SceneFigure:
 def _printable(text: str) -> str:
     """Text without characters that no font has."""
     return "".join(character if character.isprintable() or character == "\n" else " " for character in text)
+
+
+def inches(size: tuple[float, float], dpi: float) -> tuple[float, float]:
+    """Size of a figure whose canvas has this many pixels; a hair more, since Matplotlib cuts fractions off."""
+    return (size[0] + _HAIR) / dpi, (size[1] + _HAIR) / dpi
 
 
 def fitting_size(width: float, height: float, side: float, dpi: float, *, axis: bool = True) -> tuple[float, float]:

@@ -113,7 +113,7 @@ class QuickText(Text):
         paper = new_renderer(math.ceil(advance) + 2 * _MARGIN, math.ceil(height) + 2 * _MARGIN, renderer.dpi)
         stamp = Text(_MARGIN, below, piece, fontproperties=properties, color=self.get_color(), parse_math=False)
         stamp.set_alpha(self.get_alpha())
-        figure = self.get_figure(root=True)
+        figure = self.figure
         assert figure is not None
         stamp.set_figure(figure)
         stamp.draw(paper)

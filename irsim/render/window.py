@@ -8,6 +8,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from irsim.render.figure import inches
+
 __all__ = ["Window", "has_screen", "open_window"]
 
 _WITHOUT_WINDOW = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
@@ -74,7 +76,7 @@ def open_window(size: tuple[float, float], dpi: float, *, full: bool, title: str
     from matplotlib import pyplot
 
     try:
-        figure = pyplot.figure(num=None, figsize=(size[0] / dpi, size[1] / dpi), dpi=dpi)
+        figure = pyplot.figure(num=None, figsize=inches(size, dpi), dpi=dpi)
     except Exception:  # toolkits raise errors of their own when they find no screen
         return None
     manager = figure.canvas.manager

@@ -115,7 +115,7 @@ def test_titles_are_time_and_status_or_what_the_user_says(make: Make) -> None:
 
 
 def test_a_title_too_long_for_the_figure_is_written_smaller(make: Make) -> None:
-    env = make(f"world: {{plot: {{figure_pixels: [400, 400], title: '{'long ' * 15}'}}}}\n{PLAIN}")
+    env = make(f"world: {{plot: {{figure_pixels: [400, 400], title: '{'long ' * 12}'}}}}\n{PLAIN}")
     plot = env._env_plot
     plot.frame()
     box = plot.ax.title.get_window_extent(plot.fig.canvas.get_renderer())
