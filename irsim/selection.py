@@ -133,6 +133,16 @@ class Select:
             )
         if not isinstance(value, Mapping):
             raise problem("not-a-mapping", f"'{kind}' is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
+        if self.default is not None and "name" in value and value["name"] is None:
+            empty = problem(
+                "wrong-type",
+                "null is not a name",
+                allowed=self.names(),
+                fix=f"name: {self.default}, or no name at all",
+                replace=self.default,
+                tolerated=True,
+            )
+            raise _at(kind, empty, None, "name")
         name = self.name_of(value)
         if name is None:
             missing = problem("missing-key", "'name' is missing", allowed=self.names(), fix="add 'name: ...'")
@@ -204,7 +214,7 @@ class Select:
             reference = {**reference, "properties": {"name": {"const": name}}}
         if self.alias is None:
             return reference if is_default else {**reference, "required": [*required, "name"]}
-        by_alias: JsonSchemaValue = {"properties": {self.alias: {"enum": [name]}}}
+        by_alias: JsonSchemaValue = {"properties": {self.alias: {"enum": [name, None] if is_default else [name]}}}
         if not is_default:
             by_alias["required"] = [self.alias]
         return {**reference, "if": {"required": ["name"]}, "else": by_alias}

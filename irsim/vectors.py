@@ -87,6 +87,10 @@ _DISCRIMINATORS = {
 }
 
 
+_CONTAINED = {"list": {"type": "array"}, "path": {"type": "array", "contains": {"type": "array"}}}
+"""What tells a list of lists per object from one list, to a schema."""
+
+
 class PerObject:
     """Type metadata of a key that takes one value for all objects of an entry, or a list with one per object.
 
@@ -99,6 +103,7 @@ class PerObject:
 
     def __init__(self, item: Any, kind: Literal["value", "vector", "number", "list", "path"] = "value") -> None:
         self.item = item
+        self.kind = kind
         self._discriminate = _DISCRIMINATORS[kind]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
@@ -107,7 +112,10 @@ class PerObject:
         return core_schema.tagged_union_schema({ONE: item, PER_OBJECT: many}, self._discriminate)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return any_of(handler(schema))
+        union = any_of(handler(schema))
+        if self.kind in _CONTAINED:
+            union["anyOf"][-1]["contains"] = _CONTAINED[self.kind]
+        return union
 
 
 def any_of(union: JsonSchemaValue) -> JsonSchemaValue:

@@ -12,7 +12,7 @@ from irsim.colors import Color
 from irsim.registry import MAPS
 from irsim.selection import Select
 from irsim.units import Bool, Fraction, Integer, Meters, Number, Seconds
-from irsim.vectors import OrNull, Point, is_vector, vector
+from irsim.vectors import OrNull, Point, vector
 
 __all__ = ["SavedFigure", "WorldModel", "WorldPlot"]
 
@@ -33,10 +33,14 @@ _VIEWPOINT = {
 }
 
 
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300
+
+
 def _viewpoint(value: Any) -> list[float] | str | None:
     if value is None or isinstance(value, str):
         return value
-    if is_vector(value) and len(value) == 2:
+    if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
         return [float(v) for v in value]
     raise problem("wrong-type", "this is no viewpoint", allowed="[x, y] in metres, or the name of an object")
 

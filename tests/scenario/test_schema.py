@@ -1,0 +1,197 @@
+"""The JSON Schema says what the models say, as far as a schema can."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim.behaviors._options import BehaviorOptions
+from irsim.registry import REGISTRIES, CustomBehaviors
+from irsim.scenario import schema as schema_module
+from irsim.scenario.compose import compose
+from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.read import read
+from irsim.scenario.schema import INEXPRESSIBLE, check, json_schema, schema_text
+
+ROOT = Path(__file__).parent.parent.parent
+VALID = sorted(ROOT.glob("templates/*/scenario.yaml")) + sorted(ROOT.glob("tests/parity/scenarios/*.yaml"))
+CONTROLS = {"vel_min", "vel_max", "acce", "velocity"}
+
+FULL = {
+    "world": {
+        "height": 20, "width": 20, "step_time": 0.1, "offset": [-10, -10], "collision_mode": "stop",
+        "plot": {"viewpoint": [0, 0], "saved_figure": {"dpi": 80}}, "sample_time": 0.2, "seed": 3,
+    },
+    "robot": [
+        {
+            "kinematics": {"name": "acker", "mode": "steer"},
+            "shape": {"name": "rectangle", "length": 4.6, "width": 1.6, "wheelbase": 3},
+            "state": [-8, -8, 0, 0],
+            "goal": [[[0, 0, 0], [8, 8, 0]]],
+            "vel_max": [4, 1],
+            "vel_min": [-4, -1],
+            "behavior": {"name": "dash", "loop": True},
+            "sensors": [{"type": "lidar2d", "number": 90, "range_max": 8, "angle_range": 6.28, "plot": {"alpha": 0.2}}],
+            "color": "cycle",
+        },
+        {
+            "number": 4, "kinematics": {"name": "omni"}, "shape": [{"name": "circle", "radius": 0.3}],
+            "distribution": {"name": "circle", "radius": 6, "center": [0, 0]}, "color": ["r", "g", "b"],
+            "behavior": {"name": "dash"}, "tags": ["pedestrian"], "arrive_mode": "state",
+        },
+    ],
+    "obstacle": [
+        {
+            "number": 5, "distribution": {"name": "random", "range_low": [-9, -9, -3.14], "range_high": [9, 9, 3.14]},
+            "shape": [{"name": "polygon", "random_shape": True, "is_convex": True, "avg_radius_range": [0.3, 0.8]}],
+        },
+        {
+            "shape": {"name": "linestring", "vertices": [[0, 0], [3, 0], [3, 3]]}, "state": [0, 0, 0],
+            "unobstructed": True, "plot": {"show_text": True, "text_position": [0.1, 0.1]},
+        },
+        {"shape": {"name": "compound", "parts": [{"name": "circle", "radius": 0.5, "pose": [1, 0, 0]}]}, "mass": [2.0]},
+    ],
+    "gui": {"keyboard": {"backend": "mpl"}, "mouse": {"zoom_factor": 1.2}},
+    "custom": {"anything": [1, {"goes": None}]},
+}  # fmt: skip
+
+
+@cache
+def validator() -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(json_schema())
+
+
+def test_is_a_schema() -> None:
+    jsonschema.Draft202012Validator.check_schema(json_schema())
+    assert json_schema()["$schema"].endswith("2020-12/schema")
+
+
+def test_the_committed_file_is_up_to_date(tmp_path: Path) -> None:
+    assert check(ROOT / "schema" / "scenario.schema.json")
+    stale = tmp_path / "stale.json"
+    stale.write_text(schema_text().replace("heading", "bearing"), encoding="utf-8")
+    assert not check(stale)
+    assert not check(tmp_path / "missing.json")
+
+
+@pytest.mark.parametrize("path", VALID, ids=lambda path: f"{path.parent.name}/{path.stem}")
+def test_agrees_with_the_models_on_files_of_the_project(path: Path) -> None:
+    data = compose(path.read_text(encoding="utf-8"), DEFAULT_LIMITS).data
+    refused = any(item.code not in INEXPRESSIBLE for item in read(path, strict=True).errors)
+    assert validator().is_valid(data) == (not refused)
+
+
+def test_accepts_the_full_language() -> None:
+    validator().validate(FULL)
+    assert read(copy.deepcopy(FULL), strict=True).errors == []
+    validator().validate({"irsim": FULL, "other": {"world": 3}})
+    assert not validator().is_valid({"irsim": {"wrold": {}}, "other": 1})
+    assert not validator().is_valid({"irsim": 3})
+
+
+@pytest.mark.parametrize("name", ["Diff", "DIFF", "diff"])
+def test_accepts_kinematics_and_shapes_in_any_case(name: str) -> None:
+    data = {"robot": {"kinematics": {"name": name}, "shape": {"name": "CIRCLE"}, "behavior": {"name": "dash"}}}
+    validator().validate(data)
+    reading = read(data, strict=True)
+    assert reading.scenario is not None
+    assert getattr(reading.scenario.objects[0].kinematics, "name", "") == "diff"
+
+
+def test_nodes_are_described() -> None:
+    schema = json_schema()
+    for name, definition in schema["$defs"].items():
+        for key, node in definition.get("properties", {}).items():
+            assert node.get("description"), f"{name}.{key} has no description"
+            assert "title" not in node
+    assert "pydantic" not in schema_text().lower()
+
+
+def test_offers_every_feature() -> None:
+    text = schema_text()
+    for registry in REGISTRIES.values():
+        for name in registry.names():
+            assert f'"const": "{name}"' in text
+
+
+def test_names_registered_by_user_code_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    from irsim import registry
+
+    data = {"robot": {"kinematics": {"name": "diff"}, "behavior": {"name": "zigzag", "width": 2}}}
+    assert not validator().is_valid(data)
+    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "_functions", {("diff", "zigzag"): print})
+    assert jsonschema.Draft202012Validator(json_schema()).is_valid(data)
+    assert isinstance(registry.CUSTOM_BEHAVIORS, CustomBehaviors)
+    assert issubclass(BehaviorOptions, object)
+
+
+def test_reasons_are_given() -> None:
+    assert all(reason for reason in INEXPRESSIBLE.values())
+    assert schema_module.SCHEMA_ID in schema_text()
+    assert all(reason in json_schema()["$comment"] for reason in INEXPRESSIBLE.values())
+
+
+def paths(node: Any, prefix: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    if prefix:
+        yield prefix
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, child in items:
+        if key != "custom":
+            yield from paths(child, (*prefix, key))
+
+
+VALUES = [
+    None, True, False, -1, 0, 1, 3, 2.5, -0.5, 1.5e9 + 0.5, "diff", "circle", "random", "dash", "lidar2d", "red", "", "x", [],
+    [1], [1, 2], [1, 2, 3], [0.5, "a"], [[1, 2], [3, 4]], [[[1, 2], [3, 4]]], {}, {"name": "diff"}, {"name": "circle"},
+    {"name": "nothing"}, [{"name": "circle"}], [{"name": "lidar2d"}], [None], ["a", "b"], [True], {"radius": 1},
+]  # fmt: skip
+REMOVE = "(remove)"
+
+
+@given(
+    st.lists(
+        st.tuples(st.sampled_from(list(paths(FULL))), st.sampled_from([*VALUES, REMOVE, "(unknown key)"])),
+        min_size=1,
+        max_size=2,
+    )
+)
+@settings(max_examples=400, deadline=None)
+def test_agrees_with_the_models_on_damaged_files(changes: list[tuple[tuple[Any, ...], Any]]) -> None:
+    data = copy.deepcopy(FULL)
+    for path, value in changes:
+        damage(data, path, value)
+    reading = read(copy.deepcopy(data), strict=True)
+    accepted = validator().is_valid(data)
+    errors = [(item.code, item.path) for item in reading.errors]
+    if not accepted:
+        assert errors, json.dumps(data)
+    told = [(code, path) for code, path in errors if code not in INEXPRESSIBLE]
+    told = [(code, path) for code, path in told if code != "wrong-length" or not CONTROLS & set(path)]
+    if told:
+        assert not accepted, f"{told} in {json.dumps(data)}"
+
+
+def damage(data: Any, path: tuple[Any, ...], value: Any) -> None:
+    for key in path[:-1]:
+        try:
+            data = data[key]
+        except (KeyError, IndexError, TypeError):
+            return
+    if isinstance(data, dict) and path[-1] in data:
+        if value == REMOVE:
+            del data[path[-1]]
+        elif value == "(unknown key)":
+            data["unknown_key"] = 1
+        else:
+            data[path[-1]] = copy.deepcopy(value)
+    elif isinstance(data, list) and isinstance(path[-1], int) and path[-1] < len(data) and value != REMOVE:
+        data[path[-1]] = copy.deepcopy(value)
