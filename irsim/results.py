@@ -176,6 +176,8 @@ class RobotPose(Result):
     """Where a robot is in a snapshot."""
 
     name: str
+    label: str
+    """What stands beside it in the picture; beside its goal that with ``G-`` before it."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
     goal: tuple[float, float] | None

@@ -20,7 +20,7 @@ OVERLAYS: dict[Overlay, tuple[str, ...]] = {
     "names": ("show_text", "show_goal_text"),
     "goals": ("show_goal",),
     "paths": ("show_trajectory",),
-    "sensors": ("show_sensor", "show_fov"),
+    "sensors": ("show_sensor",),
 }
 """What a snapshot may show besides bodies, and the plot keys that switch it."""
 
@@ -98,6 +98,7 @@ def _poses(env: Env) -> list[RobotPose]:
         robots.append(
             RobotPose(
                 name=view.name,
+                label=view.abbr,
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
                 goal=None if goal is None else (float(goal[0, 0]), float(goal[1, 0])),
                 status=status.get(outcomes[view.name], "under way"),

@@ -13,8 +13,9 @@ from typing import ParamSpec, TypeVar
 
 import typer
 
-from irsim.cli.output import clean, silence_stdout
+from irsim.cli.output import silence_stdout
 from irsim.errors import IrsimError, ScenarioError, ScenarioNotFoundError
+from irsim.text import clean
 
 __all__ = ["FAILED", "INTERRUPTED", "INVALID", "guarded"]
 

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 __all__ = [
-    "clean",
     "console",
     "has_colors",
     "is_terminal",
@@ -64,12 +63,6 @@ def is_terminal(*, stderr: bool = False) -> bool:
 def print_json(model: BaseModel, indent: int | None = 2) -> None:
     """One JSON document on standard output."""
     sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
-
-
-def clean(text: object, longest: int = 80) -> str:
-    """A name from a file, fit for a terminal: no control characters, not endless."""
-    shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
-    return shown if len(shown) <= longest else shown[: longest - 3] + "..."
 
 
 def silence_stdout() -> None:

@@ -83,7 +83,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     """
     from rich.text import Text
 
-    from irsim.cli.output import clean
+    from irsim.text import clean
 
     if result.robots:
         out.print(_table(result))
@@ -114,7 +114,7 @@ def _table(result: RunResult) -> object:
     from rich.table import Table
     from rich.text import Text
 
-    from irsim.cli.output import clean
+    from irsim.text import clean
 
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):

@@ -35,7 +35,8 @@ def test_start() -> None:
     assert (result.steps, result.sim_time, result.obstacles) == (0, 0.0, 1)
     assert result.extent == (-1, 7, 0, 4)
     robot = result.robots[0]
-    assert (robot.name, robot.pose, robot.goal, robot.status) == ("rover", (1, 2, 0), (5, 2), "under way")
+    assert (robot.name, robot.label, robot.pose, robot.goal) == ("rover", "r0", (1, 2, 0), (5, 2))
+    assert robot.status == "under way"
     assert max(result.size) == 600
     with Image.open(io.BytesIO(result.png)) as image:
         assert image.size == result.size
