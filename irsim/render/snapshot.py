@@ -24,6 +24,7 @@ __all__ = ["render_scene"]
 
 _DPI = 100.0
 _COLORS = 128
+_MOST_LABELS = 60
 _LABEL_GAP = 0.01
 """Between a label and what it names, as a share of the world's height."""
 
@@ -46,7 +47,7 @@ def render_scene(
         out: File to write too.
         size_px: Longer side of the picture.
         world: Which world of a batch.
-        labels: Name every object, and draw the goals and paths of robots.
+        labels: Name objects (robots first, where there are many), and draw the goals and paths of robots.
         title: Text above; default: the time.
         viewpoint: Point or object name to centre on; default: what the scenario says.
         overrides: Object plot keys.
@@ -63,7 +64,9 @@ def render_scene(
         viewpoint=options.viewpoint if viewpoint is None else viewpoint, overrides={**chosen, **(overrides or {})}
     )
     if labels:
-        _tidy_labels(scene, {record.id for record in simulation.scenario.objects if record.role == "robot"})
+        robots = {record.id for record in simulation.scenario.objects if record.role == "robot"}
+        _tidy_labels(scene, robots)
+        _thin_labels(scene, robots)
     size = fitting_size(extent.width, extent.height, size_px, _DPI)
     figure = SceneFigure(size, _DPI, folder=folder, halo=True)
     figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
@@ -75,6 +78,14 @@ def render_scene(
         with replacing(Path(out)) as temporary:
             temporary.write_bytes(data.getvalue())
     return data.getvalue()
+
+
+def _thin_labels(scene: Scene, robots: set[int]) -> None:
+    """Leave out the labels of obstacles, then of goals, then all, when there are too many to be read."""
+    of_robots = [label for label in scene.labels if label.object in robots]
+    names = [label for label in of_robots if label.part == "name"]
+    choices = (scene.labels, of_robots, names)
+    scene.labels = next((labels for labels in choices if len(labels) <= _MOST_LABELS), [])
 
 
 def _tidy_labels(scene: Scene, robots: set[int]) -> None:

@@ -53,3 +53,10 @@ def test_a_snapshot_leaves_the_environment_alone(make: Callable[..., Any]) -> No
     before = env.simulation.pose.copy()
     render_scene(env.simulation, viewpoint=[1, 1], title="here", overrides={"obj_color": "r"})
     assert (env.simulation.pose == before).all()
+
+
+def test_crowds_are_not_labelled(make: Callable[..., Any]) -> None:
+    crowd = "robot: {kinematics: {name: diff}, number: %d, distribution: {name: random}, shape: {name: circle}}"
+    few, many = (make("world: {width: 40, height: 40}\n" + crowd % number) for number in (20, 70))
+    assert render_scene(few.simulation) != render_scene(few.simulation, overrides={"show_text": False})
+    assert render_scene(many.simulation) == render_scene(many.simulation, overrides={"show_text": False})
