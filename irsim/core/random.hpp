@@ -33,8 +33,11 @@ inline Key make_key(std::uint64_t seed, std::uint32_t scene, std::uint32_t noise
 using Block = std::array<std::uint64_t, 4>;
 
 inline std::uint64_t multiply(std::uint64_t a, std::uint64_t b, std::uint64_t& high) {
-#ifdef _MSC_VER
+#if defined(_MSC_VER) && defined(_M_X64)
   return _umul128(a, b, &high);
+#elif defined(_MSC_VER)
+  high = __umulh(a, b);
+  return a * b;
 #else
   __extension__ using Wide = unsigned __int128;
   const Wide product = static_cast<Wide>(a) * b;
@@ -91,6 +94,24 @@ struct Draws {
 
  private:
   static double fraction(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1.0p-53; }
+};
+
+/// Normal draws taken mostly in order: each block is computed once.
+class NormalDraws {
+ public:
+  explicit NormalDraws(const Draws& draws) : draws_(draws) {}
+  double operator()(std::uint64_t draw) {
+    if (draw / 4 != index_) {
+      index_ = draw / 4;
+      block_ = draws_.normals(index_);
+    }
+    return block_[draw % 4];
+  }
+
+ private:
+  Draws draws_;
+  std::uint64_t index_ = ~std::uint64_t{0};
+  std::array<double, 4> block_{};
 };
 
 }  // namespace irsim

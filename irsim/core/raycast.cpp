@@ -114,8 +114,8 @@ void Fan::sort_by_distance() {
 }
 
 bool Fan::hidden(const BeamBuffers::Body& body) const {
-  bool open = false;
-  between(body.low, body.high, [&](int i) { open = open || !(buffers_.range[i] < body.distance); });
+  bool open = !(body.distance > 0.0);
+  if (!open) between(body.low, body.high, [&](int i) { open = open || !(buffers_.range[i] < body.distance); });
   return !open;
 }
 

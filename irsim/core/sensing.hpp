@@ -23,10 +23,6 @@ struct Sensing {
 
   int row() const { return w * world.objects + mount.object; }
   Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), mount.object); }
-  /// Number of the first beam of this scan among all beams of the episode.
-  std::uint64_t first_draw() const {
-    return static_cast<std::uint64_t>(state.count[w]) * static_cast<std::uint64_t>(mount.count);
-  }
 };
 
 }  // namespace irsim

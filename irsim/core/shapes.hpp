@@ -19,6 +19,12 @@ struct Outline {
   double radius = 0.0;
 };
 
+/// Whether a shape is drawn per scene; those that are say so by an overload.
+template <class Shape>
+constexpr bool is_drawn(const Shape&) {
+  return false;
+}
+
 /// One part inside `Shapes`. Polygons repeat their first vertex at the end, so edges are [k, k + 1] for all kinds.
 struct Part {
   Kind kind;

@@ -22,7 +22,7 @@ Pose pose_of(const std::vector<double>& values) {
 
 bool is_random(const ObjectSpec& spec) {
   for (const PartSpec& part : spec.parts) {
-    if (std::holds_alternative<RandomCircle>(part) || std::holds_alternative<RandomPolygon>(part)) return true;
+    if (std::visit([](const auto& shape) { return is_drawn(shape); }, part)) return true;
   }
   return false;
 }

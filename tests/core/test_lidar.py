@@ -169,15 +169,12 @@ def test_compounds_show_the_boundary_of_their_union(parts, x: float, y: float, t
     assert wrong <= 1  # a beam that grazes an edge, or a round part, which shapely has as a polygon
 
 
-def scan_key(state: core.State, beam: int, number: int, index: int = 0) -> tuple[float, float]:
-    """Range and direction error of a beam, in standard deviations."""
-    first = 2 * (int(state.count[0]) * number + beam)
+def scan_errors(state: core.State, number: int, index: int) -> np.ndarray:
+    """(2, beams) range and direction errors of a scan of object 0, in standard deviations."""
+    draws = int(state.count[0]) * 2 * number + np.arange(2 * number)
     stream = core.STREAMS["sensor"] + 16 * index
-    block = [
-        core.random_bits(int(state.seed[0]), int(state.scene[0]), int(state.noise[0]), stream, 0, k // 4)
-        for k in (first, first + 1)
-    ]
-    return oracle.normals(block[0])[first % 4], oracle.normals(block[1])[(first + 1) % 4]
+    key = (int(state.seed[0]), int(state.scene[0]), int(state.noise[0]), stream, 0)
+    return np.array([oracle.normals(core.random_bits(*key, int(d) // 4))[d % 4] for d in draws]).reshape(2, number)
 
 
 @pytest.mark.parametrize("angle_std", [0.02, 0.5, 3.0])
@@ -188,10 +185,10 @@ def test_noise(angle_std: float) -> None:
     for _ in range(2):
         state.command[0], state.given[0] = [0.5, 0.2, 0], 1
         core.advance(world, state, 1)
-        errors = np.array([scan_key(state, beam, 24, 1) for beam in range(24)])
+        range_error, angle_error = scan_errors(state, 24, 1)
         nominal = np.linspace(-2, 2, 24)
         np.testing.assert_allclose(state.beam_angles[5:], nominal, atol=1e-15)
-        aim, error = nominal + angle_std * errors[:, 1], 0.2 * errors[:, 0]
+        aim, error = nominal + angle_std * angle_error, 0.2 * range_error
         oracle.assert_scan(state, slice(5, None), range(1, 6), state.pose[0], 10.0, aim, error)
         oracle.assert_scan(state, slice(0, 5), range(1, 6), state.pose[0], 10.0)  # std without noise is no noise
 

@@ -40,6 +40,7 @@ bool circle_touches(const Piece& circle, const Piece& other, Vec2& where) {
   const double radius2 = circle.part.radius * circle.part.radius;
   for (int i = 0; i < other.edges(); ++i) {
     const Vec2* edge = other.begin() + i;
+    if (!edge_box(edge).meets(circle.box)) continue;
     const Vec2 nearest = nearest_on_segment(edge[0], edge[1], centre);
     if (squared(nearest - centre) <= radius2) return where = nearest, true;
   }

@@ -36,10 +36,6 @@ inline std::vector<double> beams(const Lidar2dOptions& options) {
   return angles;
 }
 
-/// Numbers of the normal draws of a beam: range error, direction error.
-inline std::uint64_t range_draw(const Sensing& s, int beam) { return 2 * (s.first_draw() + beam); }
-inline std::uint64_t angle_draw(const Sensing& s, int beam) { return 2 * (s.first_draw() + beam) + 1; }
-
 inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
   const Pose& pose = s.state.pose[s.row()];
@@ -47,14 +43,15 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   const Vec2 origin = pose.position() + rotate({options.offset[0], options.offset[1]}, body);
   const double mounted = options.offset[2];
   const Vec2 heading = mounted == 0.0 ? body : unit(wrap(pose.theta + mounted));
-  const bool jitter = options.noise && options.angle_std > 0.0;
-  const Draws draws = s.draws();
+  const bool jitter = options.noise && options.angle_std > 0.0, noisy = options.noise && options.std > 0.0;
+  NormalDraws normal(s.draws());  // of a scan: n range errors, then n direction errors
+  const std::uint64_t first_draw = 2 * static_cast<std::uint64_t>(s.state.count[s.w]) * static_cast<std::uint64_t>(n);
 
   Fan fan(s.buffers, origin, heading, s.mount, options.range_max);
   for (int i = 0; i < n; ++i) {
     Vec2 beam{s.mount.cosine[i], s.mount.sine[i]};
     if (jitter) {
-      const double error = options.angle_std * draws.normal(angle_draw(s, i));
+      const double error = options.angle_std * normal(first_draw + n + i);
       beam = unit(s.mount.angle[i] + error);
       fan.widen(error);
     }
@@ -69,7 +66,7 @@ inline void lidar2d(const Lidar2dOptions& options, const Sensing& s) {
   for (int i = 0; i < n; ++i) {
     const int hit = fan.hit(i);
     double range = hit < 0 ? options.range_max : fan.range(i);
-    if (hit >= 0 && options.noise && options.std > 0.0) range += options.std * draws.normal(range_draw(s, i));
+    if (hit >= 0 && noisy) range += options.std * normal(first_draw + i);
     s.ranges[i] = clip(range, options.range_min, options.range_max);
     s.hits[i] = hit;
     s.valid[i] = hit >= 0 && range >= options.range_min && range <= options.range_max;

@@ -14,6 +14,8 @@ struct RandomCircle {
   }
 };
 
+constexpr bool is_drawn(const RandomCircle&) { return true; }
+
 inline Outline outline(const RandomCircle& c, const Draws& draws, std::uint64_t first) {
   return {Kind::circle, {{c.center[0], c.center[1]}}, draws.uniform(first, c.radius_range[0], c.radius_range[1])};
 }

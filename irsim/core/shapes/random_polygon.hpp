@@ -21,6 +21,8 @@ struct RandomPolygon {
   }
 };
 
+constexpr bool is_drawn(const RandomPolygon&) { return true; }
+
 /// Angular steps of n vertices that sum to a turn. Steps of half a turn or more, which could make the polygon cross
 /// itself, are drawn again.
 inline std::vector<double> angular_steps(int n, double irregularity, const Draws& draws, std::uint64_t& next) {
