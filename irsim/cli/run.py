@@ -90,6 +90,8 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     if len(result.robots) > _MANY:
         out.print(f"... and {len(result.robots) - _MANY} more robots (--json lists all)")
     out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", clean(result.summary, 400)))
+    if result.reason and result.reason not in result.summary:
+        out.print(f"why: {clean(result.reason, 400)}")
     limit = {
         "argument": "--steps",
         "scenario": "the scenario",
