@@ -5,14 +5,13 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
 from irsim.diagnostics import nearest
-from irsim.render.animation import AnimationOptions, FrameBuffer, check_suffix
 from irsim.render.builder import MODES, SceneBuilder
 from irsim.render.figure import SceneFigure, fitting_size
 from irsim.render.files import picture_path, replacing
@@ -22,45 +21,17 @@ from irsim.render.palette import Palette
 from irsim.render.pictures import find_picture
 from irsim.render.pixels import Pixels, from_image, to_image
 from irsim.render.png import png_bytes
+from irsim.render.recording import Pictured, Recording
 from irsim.render.scene import Scene
 from irsim.render.style import STYLE_KEYS
-from irsim.render.video import VIDEO_OPTIONS
 
 if TYPE_CHECKING:
     from irsim.render.window import Window
-    from irsim.simulation import Simulation
 
-__all__ = ["EnvPlot", "Pictured"]
+__all__ = ["EnvPlot"]
 
 _PAD_INCHES = 0.1
 _QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
-
-
-class _Paths(Protocol):
-    ani_buffer_path: str
-    ani_path: str
-    fig_path: str
-
-
-class _Logger(Protocol):
-    def info(self, message: object) -> None: ...
-    def warning(self, message: object) -> None: ...
-
-
-class Pictured(Protocol):
-    """What is read of an environment."""
-
-    path_param: Any
-    logger: Any
-    ani_kwargs: dict[str, Any]
-
-    @property
-    def simulation(self) -> Simulation:
-        """State and scenario."""
-
-    @property
-    def status(self) -> str:
-        """Word for the title."""
 
 
 class EnvPlot:
@@ -99,11 +70,9 @@ class EnvPlot:
         self._overlay = Overlay(self.palette)
         self._figure: SceneFigure | None = None
         self._window: Window | None = None
-        self._buffer: FrameBuffer | None = None
-        self._crop: tuple[int, int, int, int] | None = None
+        self._recording = Recording(env)
         self._missing: set[str] = set()
-        self._frame_size: tuple[int, int] | None = None
-        self.frames_written = 0
+        self._saved_size: tuple[int, int] | None = None
         self._begin()
 
     def _begin(self) -> None:
@@ -127,7 +96,7 @@ class EnvPlot:
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the last saved picture [px]; of the figure before that."""
-        return self._frame_size or (int(self._size[0]), int(self._size[1]))
+        return self._saved_size or (int(self._size[0]), int(self._size[1]))
 
     def set_size(self, longer_side: float) -> None:
         """Make the longer side of pictures this long [px], the other one as the world asks for.
@@ -269,7 +238,7 @@ class EnvPlot:
         wanted = options.pop("format", None)
         self.saved_figure_kwargs.update(options)
         count = int(self.env.simulation.count[0])
-        paths: _Paths = self.env.path_param
+        paths = self.env.path_param
         path = picture_path(
             paths.ani_buffer_path if save_gif else paths.fig_path,
             save_name,
@@ -283,10 +252,10 @@ class EnvPlot:
             if path.suffix == ".png" and _is_quick(self.saved_figure_kwargs, figure.figure.dpi):
                 pixels, _ = self._pixels({})
                 temporary.write_bytes(png_bytes(pixels, figure.figure.dpi))
-                self._frame_size = pixels.shape[1], pixels.shape[0]
+                self._saved_size = pixels.shape[1], pixels.shape[0]
             else:
                 figure.figure.savefig(temporary, format=path.suffix[1:], **self.saved_figure_kwargs)
-        if save_gif and (self._buffer is None or count not in self._buffer.counts[-1:]):
+        if save_gif and count != self._recording.last_count:
             self.add_frame()
         return path
 
@@ -297,39 +266,22 @@ class EnvPlot:
             **options: Of ``savefig``; they hold for later frames too.
         """
         self.saved_figure_kwargs.update(options)
-        kwargs = self.saved_figure_kwargs
-        if self._crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self.fig.dpi):
+        kwargs, crop = self.saved_figure_kwargs, self._recording.crop
+        if crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self.fig.dpi):
             figure = self._synced()
             figure.draw()
-            pixels = figure.compositor.pixels(self._crop)
+            pixels = figure.compositor.pixels(crop)
         else:
-            pixels, self._crop = self._pixels({})
-        if self._buffer is None:
-            defaults = self.env.ani_kwargs
-            suffix = str(defaults.get("suffix", ".gif")).lower()
-            indexed = suffix == ".gif" and bool(defaults.get("rm_fig_path", True))
-            play, _ = _animation_options(defaults)
-            self._buffer = FrameBuffer(play, indexed=indexed, colors=self._colors())
-        self._buffer.add(pixels, int(self.env.simulation.count[0]))
-        self._frame_size = pixels.shape[1], pixels.shape[0]
+            pixels, self._recording.crop = self._pixels({})
+        self._recording.add(pixels, self._colors)
+        self._saved_size = pixels.shape[1], pixels.shape[0]
 
-    def save_animation(
-        self,
-        path: str | Path | None = None,
-        *,
-        ani_name: str | None = None,
-        suffix: str = ".gif",
-        rm_fig_path: bool = True,
-        **options: Any,
-    ) -> Path | None:
+    def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
         """Write the animation of the frames kept so far, and forget them.
 
         Args:
             path: File to write; default ``<ani_path>/<ani_name><suffix>``.
-            ani_name: Default ``animation_<world>``.
-            suffix: ``.gif``, ``.apng``, ``.png`` or a video's: ``.mp4``, ``.webm``, …
-            rm_fig_path: Unless set to False, no single frames are left behind; else they are in ``ani_buffer_path``.
-            **options: ``fps`` (10), ``last_frame_duration`` (1 s), ``loop``, and the video encoder's.
+            **options: See :meth:`irsim.render.recording.Recording.save`.
 
         Returns:
             The file; None, with a warning, when there are no frames.
@@ -337,28 +289,12 @@ class EnvPlot:
         Raises:
             ValueError: A suffix that nothing writes.
         """
-        paths: _Paths = self.env.path_param
-        name = self.env.simulation.scenario.name
-        if path is None:
-            path = Path(paths.ani_path) / f"{ani_name or f'animation_{name}'}{suffix}"
-        path = Path(path)
-        check_suffix(path.suffix)
-        play, unknown = _animation_options(options)
-        if unknown:
-            self.env.logger.warning(f"unknown options of the animation are ignored: {', '.join(unknown)}")
-        buffer = self._buffer
-        if buffer is None or not buffer.frames:
-            self.env.logger.warning("no frames were kept: there is no animation to save")
-            return None
-        buffer.save(path, play)
-        if not rm_fig_path:
-            for count, pixels in zip(buffer.counts, buffer.read(), strict=True):
-                with replacing(Path(paths.ani_buffer_path) / f"{name}_{count:04d}.png") as temporary:
-                    temporary.write_bytes(png_bytes(pixels))
-        self.frames_written = buffer.frames
-        self._forget_frames()
-        self.env.logger.info(f"animation saved: {path}")
-        return path
+        return self._recording.save(path, **options)
+
+    @property
+    def frames_written(self) -> int:
+        """Frames of the animation saved last."""
+        return self._recording.frames_written
 
     def _colors(self) -> list[tuple[int, int, int]]:
         """Colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
@@ -366,12 +302,6 @@ class EnvPlot:
         colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
         levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
         return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
-
-    def _forget_frames(self) -> None:
-        if self._buffer is not None:
-            self._buffer.close()
-        self._buffer = None
-        self._crop = None
 
     # life ------------------------------------------------------------------------------------------------------------
     def reset(self) -> None:
@@ -391,7 +321,7 @@ class EnvPlot:
         if self._figure is not None:
             self._figure.compositor.forget()
         self._figure = None
-        self._forget_frames()
+        self._recording.forget()
 
     # drawings of scripts ---------------------------------------------------------------------------------------------
     def set_title(self, title: str | None) -> None:
@@ -430,12 +360,3 @@ def _is_quick(options: Mapping[str, Any], dpi: float) -> bool:
     """Whether options of ``savefig`` can be served from the canvas as it is."""
     same_dpi = options.get("dpi") in (dpi, "figure", None)
     return same_dpi and set(options) <= _QUICK_OPTIONS and options.get("bbox_inches") in ("tight", None)
-
-
-def _animation_options(options: Mapping[str, Any]) -> tuple[AnimationOptions, list[str]]:
-    """Options of an animation, and the names among them that mean nothing."""
-    known = {key: options[key] for key in ("fps", "last_frame_duration", "loop") if options.get(key) is not None}
-    video = {key: options[key] for key in VIDEO_OPTIONS if key in options}
-    place = ("ani_name", "suffix", "rm_fig_path")
-    unknown = [key for key in options if key not in known and key not in video and key not in place]
-    return AnimationOptions(**known, video=video), unknown
