@@ -11,6 +11,8 @@ from collections.abc import Iterable
 
 __all__ = ["ConflictError", "find_conflicts", "refuse_conflicts"]
 
+_SCRIPTS = ("irsim", "irsim-mcp")
+
 
 class ConflictError(ImportError):
     """The distribution ``ir-sim`` is installed beside ``irsim-mcp``."""
@@ -42,14 +44,20 @@ def refuse_conflicts() -> None:
 
     Raises:
         ConflictError: ``ir-sim`` is installed; the message says where, and what to uninstall.
+        SystemExit: The same, when one of our commands was called.
     """
     found = find_conflicts(sys.path)
-    if found:
-        raise ConflictError(
-            f"the package 'ir-sim' is installed too ({found[0]}). It and 'irsim-mcp' both provide the Python package "
-            "'irsim' and overwrite each other's files. Use separate environments, or remove both and install one "
-            "again: pip uninstall -y ir-sim irsim-mcp"
-        )
+    if not found:
+        return
+    message = (
+        f"the package 'ir-sim' is installed too ({found[0]}). It and 'irsim-mcp' both provide the Python package "
+        "'irsim' and overwrite each other's files. Use separate environments, or remove both and install one "
+        "again: pip uninstall -y ir-sim irsim-mcp"
+    )
+    script = os.path.basename(sys.argv[0] if sys.argv else "").removesuffix(".exe")
+    if script in _SCRIPTS:  # at a shell prompt the sentence helps, a traceback does not
+        raise SystemExit(f"{script}: {message}")
+    raise ConflictError(message)
 
 
 def _is_upstream(name: str) -> bool:

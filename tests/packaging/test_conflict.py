@@ -38,6 +38,15 @@ def test_import_refuses_and_says_what_to_do(upstream: Path, package: str) -> Non
     assert "pip uninstall -y ir-sim irsim-mcp" in last
 
 
+def test_commands_say_it_without_a_traceback(upstream: Path) -> None:
+    script = upstream / "irsim"
+    script.write_text("from irsim.cli import main\nmain()\n", encoding="utf-8")
+    done = run_with(upstream, str(script), "templates")
+    assert done.returncode == 1
+    assert done.stderr.startswith("irsim: the package 'ir-sim' is installed too")
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
 def test_server_refuses_when_its_files_were_replaced(tmp_path: Path) -> None:
     (tmp_path / "irsim").mkdir()
     (tmp_path / "irsim" / "__init__.py").write_text("make = None\n", encoding="utf-8")
