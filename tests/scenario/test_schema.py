@@ -40,7 +40,8 @@ FULL = {
             "vel_max": [4, 1],
             "vel_min": [-4, -1],
             "behavior": {"name": "dash", "loop": True},
-            "sensors": [{"type": "lidar2d", "number": 90, "range_max": 8, "angle_range": 6.28, "plot": {"alpha": 0.2}}],
+            "sensors": [{"type": "lidar2d", "number": 90, "range_max": 8, "angle_range": 6.28,
+            "plot": {"alpha": 0.2}}],
             "color": "cycle",
         },
         {
@@ -58,7 +59,8 @@ FULL = {
             "shape": {"name": "linestring", "vertices": [[0, 0], [3, 0], [3, 3]]}, "state": [0, 0, 0],
             "unobstructed": True, "plot": {"show_text": True, "text_position": [0.1, 0.1]},
         },
-        {"shape": {"name": "compound", "parts": [{"name": "circle", "radius": 0.5, "pose": [1, 0, 0]}]}, "mass": [2.0]},
+        {"shape": {"name": "compound", "parts": [{"name": "circle", "radius": 0.5, "pose": [1, 0, 0]}]},
+        "mass": [2.0]},
     ],
     "gui": {"keyboard": {"backend": "mpl"}, "mouse": {"zoom_factor": 1.2}},
     "custom": {"anything": [1, {"goes": None}]},
@@ -150,8 +152,10 @@ def paths(node: Any, prefix: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 VALUES = [
-    None, True, False, -1, 0, 1, 3, 2.5, -0.5, 1.5e9 + 0.5, "diff", "circle", "random", "dash", "lidar2d", "red", "", "x", [],
-    [1], [1, 2], [1, 2, 3], [0.5, "a"], [[1, 2], [3, 4]], [[[1, 2], [3, 4]]], {}, {"name": "diff"}, {"name": "circle"},
+    None, True, False, -1, 0, 1, 3, 2.5, -0.5, 1.5e9 + 0.5, "diff", "circle", "random", "dash", "lidar2d",
+    "red", "", "x",
+    [], [1], [1, 2], [1, 2, 3], [0.5, "a"], [[1, 2], [3, 4]], [[[1, 2], [3, 4]]], {}, {"name": "diff"},
+    {"name": "circle"},
     {"name": "nothing"}, [{"name": "circle"}], [{"name": "lidar2d"}], [None], ["a", "b"], [True], {"radius": 1},
 ]  # fmt: skip
 REMOVE = "(remove)"

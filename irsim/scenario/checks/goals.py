@@ -38,6 +38,9 @@ def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
         return
     if not all(is_vector(item) for item in goal):
         return
+    state: Any = entry.state
+    if isinstance(state, list) and not is_vector(state) and len(state) == len(goal):
+        return  # two lists that belong together, of which 'number' takes the first few
     kept = "only the first is used" if entry.number == 1 else f"only the first {entry.number} are used"
     yield warning(
         "goal-levels",

@@ -10,7 +10,9 @@ from irsim import _core as core
 from irsim.registry import SHAPES
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, warning
+from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
+from irsim.vectors import is_vector
 
 _MOST_REPORTED = 20
 
@@ -19,11 +21,12 @@ def check(context: Context) -> Iterator[Finding]:
     """Pairs with at least one member that moves, unless one is placed at random or not to be collided with."""
     random = {index for placement in context.resolved.placements for index in placement.objects}
     bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
+    told = {path for path, entry, _ in context.entries() if _is_told(entry)}
     reported: set[tuple[Any, ...]] = set()
     for a, b in _near_pairs(bodies):
         mover, other = (a.record, b.record) if not a.record.static else (b.record, a.record)
-        if other.unobstructed or (mover.path == other.path and mover.state[:2] == other.state[:2]):
-            continue  # the latter is reported as stacked
+        if other.unobstructed or (mover.path == other.path and mover.path in told):
+            continue
         key = (mover.path, other.path)
         if key in reported or not core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
             continue
@@ -37,6 +40,11 @@ def check(context: Context) -> Iterator[Finding]:
         )
         if len(reported) >= _MOST_REPORTED:
             return
+
+
+def _is_told(entry: Entry) -> bool:
+    """Whether the checks of placement speak of overlaps within this entry."""
+    return entry.distribution is not None or entry.state is None or is_vector(entry.state)
 
 
 def _is_fixed(record: ObjectRecord) -> bool:

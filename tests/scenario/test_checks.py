@@ -1,0 +1,249 @@
+"""Checks of valid scenarios: each finds what it should, and sane files give nothing."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from irsim import registry
+from irsim.scenario.read import read
+
+ROOT = Path(__file__).parent.parent.parent
+DIFF = {"kinematics": {"name": "diff"}, "shape": {"name": "circle"}, "behavior": {"name": "dash"}}
+Found = list[tuple[str, str, tuple[str | int, ...]]]
+
+
+def findings(data: Any, *, strict: bool = True, hints: bool = True) -> Found:
+    reading = read(data, strict=strict)
+    return [(d.severity, d.code, d.path) for d in reading.diagnostics if hints or d.severity != "hint"]
+
+
+def robot(**keys: Any) -> dict[str, Any]:
+    return {"robot": [{**DIFF, **keys}]}
+
+
+def obstacle(**keys: Any) -> dict[str, Any]:
+    return {"obstacle": [{"shape": {"name": "circle"}, **keys}]}
+
+
+SANE: list[dict[str, Any]] = [
+    {},
+    {"world": {}},
+    robot(),
+    robot(state=[2, 3]),
+    robot(goal=[[[2, 2], [5, 5]]]),
+    robot(waypoints=[[2, 2], [5, 5]]),
+    robot(number=2, state=[[1, 1], [3, 3], [5, 5]], goal=[[2, 2], [4, 4], [6, 6]]),
+    robot(vel_max=[1, 1]),
+    robot(vel_max=[0.5, 3], vel_min=[-0.5, -3]),
+    robot(vel_max=[0.5, 0.5]),
+    robot(acce=[math.inf, 2]),
+    robot(kinematics={"name": "acker", "wheelbase": 1}),
+    robot(kinematics={"name": "acker"}, shape={"name": "rectangle", "wheelbase": 1}),
+    robot(kinematics={"name": "diff", "noise": True}),
+    robot(kinematics={"name": "omni"}),
+    robot(behavior={"name": "dash", "wander": True}),
+    robot(behavior={"name": "dash", "wander": True, "range_low": [1, 1, 0], "range_high": [9, 9, 0]}),
+    robot(number=8, distribution={"name": "circle"}),
+    robot(number=8, distribution={"name": "random"}),
+    robot(fov=1.5, fov_radius=4),
+    robot(sensors=[{"name": "lidar2d", "angle_range": 6.2832}], fov=6.28),
+    robot(color=["r"], name=["walle"]),
+    robot(angle_range=[-3.141592653589793, 3.141592653589793]),
+    robot(angle_range=[0, 6.2831853]),
+    robot(static=True, behavior=None),
+    {"robot": [{**DIFF, "state": [1, 1]}, {**DIFF, "state": [3, 1]}]},
+    {"world": {"sample_time": 0.3}},
+    {"world": {"sample_time": 0.30000000000000004, "step_time": 0.1}},
+    {"world": {"plot": {"viewpoint": "walle"}}, **robot(name="walle")},
+    obstacle(),
+    obstacle(state=[20, 20]),
+    obstacle(number=3, state=[0, 0, 0], shape=[{"name": "polygon", "vertices": [[i, 5], [i + 1, 5], [i,
+        6]]} for i in range(3)]),
+    obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]]}, state=[4, 4, 0]),
+    obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 0], [0, 2], [0, 0]]}, state=[4, 4, 0]),
+    obstacle(shape={"name": "polygon", "vertices": [[0, 0], [1, 0], [2, 0], [2, 2]]}, state=[4, 4, 0]),
+    obstacle(shape={"name": "linestring", "random_shape": True}),
+    obstacle(shape={"name": "polygon", "random_shape": True, "center_range": [1, 1, 8, 8]}, number=4),
+    {"robot": {**DIFF}, "obstacle": {"shape": {"name": "rectangle"}, "state": [5, 5, 0]}},
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("data", SANE, ids=lambda data: str(data)[:60])
+def test_sane_scenarios_give_nothing(data: dict[str, Any]) -> None:
+    stacked_random = "center_range" in str(data)
+    found = findings(data)
+    assert [f for f in found if not (stacked_random and f[1] == "stacked")] == []
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("templates/*/scenario.yaml")), ids=lambda path: path.parent.name)
+def test_templates_give_nothing(path: Path) -> None:
+    assert findings(path) == []
+
+
+CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
+    (robot(goal=[[1, 1], [5, 1], [5, 5]]), "warning", "goal-levels", ("robot", 0, "goal")),
+    (robot(number=2, state=[[1, 1], [3, 3]], goal=[[1, 1], [5, 1], [5, 5]]),
+        "warning", "goal-levels", ("robot", 0, "goal")),
+    (robot(state=[1, 1, 0, 0]), "hint", "state-truncated", ("robot", 0, "state")),
+    (robot(vel_max=[3, 1]), "hint", "vel-min-default", ("robot", 0, "vel_max")),
+    (robot(number=3, state=[5, 5]), "warning", "stacked", ("robot", 0, "state")),
+    (robot(number=3), "warning", "stacked", ("robot", 0, "number")),
+    (robot(kinematics={"name": "acker"}), "hint", "wheelbase-default", ("robot", 0, "kinematics", "name")),
+    (robot(kinematics={"name": "omni", "noise": True}), "hint", "omni-noise", ("robot", 0, "kinematics", "noise")),
+    (robot(kinematics=None), "warning", "behavior-without-kinematics", ("robot", 0, "behavior")),
+    (robot(behavior=None), "hint", "no-behavior", ("robot", 0)),
+    ({"robot": [{"kinematics": {"name": "diff"}, "behavior": {"name": "dash"}}]}, "hint", "default-shape",
+        ("robot", 0)),
+    (robot(state=[20, 1]), "hint", "outside-world", ("robot", 0, "state")),
+    (robot(goal=[20, 1]), "hint", "outside-world", ("robot", 0, "goal")),
+    (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints")),
+    (
+        robot(behavior={"name": "dash", "wander": True, "range_low": [0, 0, 0], "range_high": [20, 5, 0]}),
+        "hint", "wander-outside", ("robot", 0, "behavior", "range_low"),
+    ),
+    (
+        robot(behavior={"name": "dash", "wander": True, "range_low": [5, 5], "range_high": [1, 9]}),
+        "error", "range-order", ("robot", 0, "behavior", "range_low"),
+    ),
+    (robot(behavior={"name": "dash", "wander": True, "loop": True}),
+        "warning", "wander-and-loop", ("robot", 0, "behavior", "loop")),
+    (robot(number=40, distribution={"name": "circle", "radius": 1}),
+        "warning", "circle-overlap", ("robot", 0, "distribution")),
+    (robot(distribution={"name": "random"}, goal=[5, 5]), "warning", "ignored-key", ("robot", 0, "goal")),
+    (robot(distribution={"name": "circle"}, state=[5, 5]), "warning", "ignored-key", ("robot", 0, "state")),
+    (robot(fov_radius=3), "hint", "fov-radius-ignored", ("robot", 0, "fov_radius")),
+    (robot(fov=1.0), "hint", "fov-without-radius", ("robot", 0, "fov")),
+    (robot(velocity=[1]), "error", "wrong-length", ("robot", 0, "velocity")),
+    (robot(number=2, state=[[1, 1], [2, 2]], vel_max=[[1, 1], [1]]),
+        "error", "wrong-length", ("robot", 0, "vel_max", 1)),
+    (robot(vel_max=[-2, 1]), "error", "limits-order", ("robot", 0, "vel_max")),
+    (obstacle(shape={"name": "polygon"}, state=[5, 5, 0]), "hint", "default-vertices", ("obstacle", 0, "shape")),
+    (
+        obstacle(shape={"name": "polygon", "vertices": [[0, 0], [1, 0], [0, 1]]}),
+        "warning", "default-state", ("obstacle", 0, "shape"),
+    ),
+    (
+        obstacle(shape={"name": "polygon", "random_shape": True, "num_vertices_range": [4, 4]}),
+        "error", "range-order", ("obstacle", 0, "shape", "num_vertices_range"),
+    ),
+    (
+        obstacle(shape={"name": "compound", "parts": [{"name": "polygon", "vertices": [[0, 0], [1, 1]]}]}),
+        "error", "too-few-vertices", ("obstacle", 0, "shape", "parts", 0, "vertices"),
+    ),
+    (
+        {**robot(state=[5, 5]), "obstacle": [{"shape": {"name": "circle", "radius": 1}, "state": [5.5, 5]}]},
+        "warning", "initial-overlap", ("robot", 0, "state"),
+    ),
+    ({"world": {"sample_time": 0.05}}, "hint", "sample-time", ("world", "sample_time")),
+    ({"world": {"sample_time": 0.25}}, "hint", "sample-time", ("world", "sample_time")),
+    ({"world": {"time_limit": 0.01}}, "warning", "time-limit", ("world", "time_limit")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("data", "severity", "code", "path"), CASES, ids=[f"{case[2]}-{i}" for i, case in enumerate(CASES)]
+)
+def test_finds(data: dict[str, Any], severity: str, code: str, path: tuple[str | int, ...]) -> None:
+    assert findings(data) == [(severity, code, path)]
+
+
+LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
+    ({"world": {"obstacle_map": "cave.png"}}, ("world", "obstacle_map")),
+    ({"world": {"obstacle_map": {"name": "perlin", "resolution": 0.1}}}, ("world", "obstacle_map")),
+    ({"world": {"fog_map": True}}, ("world", "fog_map")),
+    ({"world": {"collision_mode": "contact"}}, ("world", "collision_mode")),
+    ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
+    ({"world": {"boundary": "walls"}}, ("world", "boundary")),
+    (robot(behavior={"name": "rvo"}), ("robot", 0, "behavior", "name")),
+    (robot(behavior={"name": "sfm"}), ("robot", 0, "behavior", "name")),
+    (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
+    (robot(group_behavior={"name": "orca"}), ("robot", 0, "group_behavior", "name")),
+    (robot(sensors=[{"name": "fmcw_lidar2d", "velocity_linewidth": 2}]), ("robot", 0, "sensors", 0)),
+    (robot(fov=1.0, fov_radius=2, fov_occlusion=True), ("robot", 0, "fov_occlusion")),
+]
+
+
+@pytest.mark.parametrize(("data", "path"), LATER, ids=lambda value: str(value)[:50])
+def test_what_is_not_simulated_yet_is_said(data: dict[str, Any], path: tuple[str | int, ...]) -> None:
+    for strict in (True, False):
+        assert findings(data, strict=strict) == [("error", "not-yet-simulated", path)]
+        assert read(data, strict=strict).scenario is None
+
+
+def test_a_single_obstacle_mapping_joins_the_first_robots() -> None:
+    moving = {**DIFF, "state": [5, 5]}
+    grouped = {**DIFF, "number": 2, "distribution": {"name": "circle"}, "group_behavior": {"name": "orca"}}
+    codes = [(s, c) for s, c, _ in findings({"robot": grouped, "obstacle": moving}) if c != "not-yet-simulated"]
+    assert codes == [("warning", "group-drives-obstacle")]
+    codes = [(s, c) for s, c, _ in findings({"robot": grouped, "obstacle": [moving]}) if c != "not-yet-simulated"]
+    assert codes == []
+
+
+def test_only_the_first_members_group_behavior_counts() -> None:
+    data = {"robot": [{**DIFF, "group": 1}, {**DIFF, "group": 1, "state": [3, 3], "group_behavior": {"name": "sfm"}}]}
+    assert ("hint", "group-behavior-unused", ("robot", 1, "group_behavior")) in findings(data)
+
+
+def test_rvo_acce_that_limits_nothing() -> None:
+    assert "rvo-acce" in [c for _, c, _ in findings(robot(behavior={"name": "rvo", "acce": 3.0}))]
+    assert "rvo-acce" not in [c for _, c, _ in findings(robot(behavior={"name": "rvo", "acce": 1.0}))]
+    assert "rvo-acce" not in [c for _, c, _ in findings(robot(behavior={"name": "rvo"}))]
+
+
+def test_behaviors_of_user_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = robot(behavior={"name": "zigzag", "width": 2})
+    path = ("robot", 0, "behavior", "name")
+    assert findings(data) == [("error", "unknown-behavior", path)]
+    assert findings(data, strict=False) == [("warning", "unknown-behavior", path)]
+    lenient = read(data).scenario
+    assert lenient is not None
+    assert getattr(lenient.objects[0].behavior, "width", None) == 2
+
+    functions: dict[tuple[str, str], Any] = {("omni", "zigzag"): print}
+    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "_functions", functions)
+    assert findings(data) == [("error", "behavior-for-other-drive", path)]
+    (item,) = read(data, strict=True).diagnostics
+    assert "omni" in item.message
+    functions["diff", "zigzag"] = print
+    assert findings(data) == []
+    known = read(robot(behavior={"name": "zigzga"}), strict=True).diagnostics[0]
+    assert known.fix == "name: zigzag"
+
+
+def test_custom_behaviors_keep_their_names_apart() -> None:
+    table = registry.CustomBehaviors("behavior", registry.BEHAVIORS)
+    table.register("diff", "zigzag", print)
+    table.register("diff", "zigzag", print)
+    table.register("omni", "zigzag", len)
+    with pytest.raises(ValueError, match="already registered"):
+        table.register("diff", "zigzag", len)
+    with pytest.raises(ValueError, match="built-in"):
+        table.register("diff", "dash", len)
+    assert table.find("diff", "zigzag") is print
+    assert table.find("acker", "zigzag") is None
+    assert table.names() == table.names("diff") == ["zigzag"]
+    assert table.drives("zigzag") == ["diff", "omni"]
+
+
+def test_invalid_polygons_are_repaired_when_lenient() -> None:
+    bowtie = obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 2], [2, 0], [0, 2]]}, state=[4, 4, 0])
+    scenario = read(bowtie).scenario
+    assert scenario is not None
+    shape: Any = scenario.objects[0].shape
+    assert shape.name == "compound"
+    assert len(shape.parts) == 2
+    spike = [[0, 0], [2, 0], [2, 2], [3, 3], [2, 2], [0, 2]]
+    scenario = read(obstacle(shape={"name": "polygon", "vertices": spike}, state=[4, 4, 0])).scenario
+    assert scenario is not None
+    shape = scenario.objects[0].shape
+    assert shape.name == "polygon"
+    assert sorted(map(tuple, shape.vertices)) == [(0, 0), (0, 2), (2, 0), (2, 2)]
+
+
+def test_one_finding_per_entry_however_many_objects() -> None:
+    data = robot(number=500, distribution={"name": "random"}, vel_max=[1, 1, 1])
+    assert findings(data) == [("error", "wrong-length", ("robot", 0, "vel_max"))]
