@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.world.build import COLLISION_MODES
 
@@ -112,6 +113,6 @@ class WorldView:
         return self.count % self.steps_per_sample == 0
 
     @property
-    def grid_map(self) -> np.ndarray | None:
+    def grid_map(self) -> NDArray[np.float64] | None:
         """(nx, ny) occupancy 0 to 100, None without a map."""
         return None

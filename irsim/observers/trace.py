@@ -44,6 +44,10 @@ def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> R
     if steps < 0:
         raise ValueError(f"steps is 0 or more, not {steps}")
     begin = int(simulation.count[0])
+    pose: NDArray[np.float64]
+    control: NDArray[np.float64]
+    arrived: NDArray[np.uint8]
+    collided: NDArray[np.uint8]
     if simulation.decisions:
         rows = []
         for _ in range(steps):

@@ -183,7 +183,7 @@ class FrameBuffer:
         self._file.seek(0, 2)
         ends = [*self._offsets[1:], self._file.tell()]
         assert self._size is not None
-        frame = np.zeros((self._size[1], self._size[0], 4), np.uint8)
+        frame: Pixels = np.zeros((self._size[1], self._size[0], 4), np.uint8)
         for start, end in zip(self._offsets, ends, strict=True):
             self._file.seek(start)
             frame = frame ^ np.frombuffer(zlib.decompress(self._file.read(end - start)), np.uint8).reshape(frame.shape)
