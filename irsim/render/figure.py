@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -16,7 +15,7 @@ from matplotlib.transforms import Affine2D, Bbox
 
 from irsim.render.canvas import Compositor
 from irsim.render.layers import BeamLayer, MarkLayer, layer_key, rgba
-from irsim.render.pictures import find_picture, load_picture
+from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels
 from irsim.render.scene import Label, Picture, Scene
 from irsim.render.text import Glyphs, QuickText
@@ -50,7 +49,7 @@ class SceneFigure:
         axis: Draw axes, ticks and labels.
         tight: Fit the axes to the figure.
         figure: A figure to use (of a window); default: a new one without a window.
-        folder: Where images of the scenario may lie.
+        pictures: Images drawn in place of bodies.
         halo: Labels have a white rim, to be read on dark ground too.
 
     Attributes:
@@ -65,18 +64,18 @@ class SceneFigure:
         axis: bool = True,
         tight: bool = True,
         figure: Figure | None = None,
-        folder: str | None = None,
+        pictures: Pictures | None = None,
         halo: bool = False,
     ) -> None:
         if figure is None:
             figure = Figure(figsize=inches(size, dpi), dpi=dpi)
             FigureCanvasAgg(figure)
         self.figure = figure
-        self.axis, self.tight, self.folder = axis, tight, folder
+        self.axis, self.tight = axis, tight
+        self._images = pictures or Pictures()
         self._effects: list[AbstractPathEffect] = [withStroke(linewidth=_HALO, foreground="white")] if halo else []
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
-        self._images: dict[str, Any] = {}
         self._glyphs = Glyphs()
         self._start()
 
@@ -225,7 +224,7 @@ class SceneFigure:
                 if artist is not None:
                     artist.remove()
                 artist = AxesImage(self.ax, interpolation="antialiased", label=picture.name)
-                artist.set_data(self._image(picture.name))
+                artist.set_data(self._images.get(picture.name))
                 self.ax.add_image(artist)
                 self._pictures[picture.object] = artist
             x, y, length, width = picture.box
@@ -235,12 +234,6 @@ class SceneFigure:
             artist.set_alpha(picture.alpha)
             artist.set_zorder(picture.zorder)
             artist.set_clip_path(self.ax.patch)
-
-    def _image(self, name: str) -> Any:
-        if name not in self._images:
-            path = find_picture(name, self.folder)
-            self._images[name] = np.zeros((1, 1, 4), np.uint8) if path is None else load_picture(path)
-        return self._images[name]
 
     def _show_labels(self, labels: Sequence[Label]) -> None:
         view, data = self.ax.bbox, self.ax.transData

@@ -3,40 +3,59 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
-__all__ = ["BUNDLED", "find_picture", "load_picture"]
+__all__ = ["BUNDLED", "Pictures"]
 
 _FOLDER = Path(__file__).parent / "images"
+_LONGEST = 512
+"""Side that larger images are reduced to [px]."""
+
 BUNDLED = ("car_green.png", "car_blue.png", "car_red.png", "diff_robot0.png", "diff_robot1.png")
 """Names that need no file; seen from above, facing right."""
 
 
-def find_picture(name: str, folder: str | Path | None = None) -> Path | None:
-    """The file behind a ``description``.
+class Pictures:
+    """The images that a scenario's ``description`` keys name, each read once.
 
     Args:
-        name: File name or path.
         folder: Folder of the scenario, looked in as well.
-
-    Returns:
-        The first that exists: the path as given, beside the script, in ``folder``, bundled; None if there is none.
+        warn: Told about an image that is missing or unreadable, once.
     """
-    places = [Path(), Path(sys.path[0] or "."), *([Path(folder)] if folder is not None else []), _FOLDER]
-    found = (place / name for place in places)
-    return next((path for path in found if path.is_file()), None)
 
+    def __init__(self, folder: str | Path | None = None, warn: Callable[[str], None] | None = None) -> None:
+        self._folder = folder
+        self._warn = warn
+        self._known: dict[str, NDArray[np.uint8] | None] = {}
 
-def load_picture(path: Path) -> NDArray[np.uint8]:
-    """(H, W, 4) pixels of an image file.
+    def get(self, name: str) -> NDArray[np.uint8] | None:
+        """(H, W, 4) pixels; None where there is no such image."""
+        if name not in self._known:
+            self._known[name] = self._read(name)
+        return self._known[name]
 
-    Raises:
-        OSError: Not an image.
-    """
-    from PIL import Image
+    def has(self, name: str) -> bool:
+        """Whether there is such an image."""
+        return self.get(name) is not None
 
-    with Image.open(path) as image:
-        return np.asarray(image.convert("RGBA"))
+    def _read(self, name: str) -> NDArray[np.uint8] | None:
+        """Looks at the path as given, beside the script, beside the scenario, and among the bundled ones."""
+        places = [Path(), Path(sys.path[0] or "."), *([Path(self._folder)] if self._folder else []), _FOLDER]
+        problem = "not found"
+        for path in (place / name for place in places):
+            try:
+                with Image.open(path) as image:
+                    image.thumbnail((_LONGEST, _LONGEST))
+                    return np.asarray(image.convert("RGBA"))
+            except (FileNotFoundError, NotADirectoryError):
+                continue
+            except (OSError, ValueError, Image.DecompressionBombError):
+                problem = "cannot be read as an image"
+        if self._warn is not None:
+            self._warn(f"description image {name!r} {problem}: the shape is drawn instead")
+        return None

@@ -18,7 +18,7 @@ from irsim.render.files import picture_path, replacing
 from irsim.render.layers import rgba
 from irsim.render.overlay import Overlay
 from irsim.render.palette import Palette
-from irsim.render.pictures import find_picture
+from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels, from_image, to_image
 from irsim.render.png import png_bytes
 from irsim.render.recording import Pictured, Recording
@@ -59,19 +59,19 @@ class EnvPlot:
         self.palette = palette or Palette()
         self._display, self._full = display, full
         source = env.simulation.scenario.source
-        self._folder = str(Path(source).parent) if source else None
+        self._pictures = Pictures(Path(source).parent if source else None, env.logger.warning)
         self._options = env.simulation.scenario.world.plot
         self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **_saved_figure(self._options)}
         self._format: str | None = self.saved_figure_kwargs.pop("format", None)
         self._dpi = float(self.saved_figure_kwargs["dpi"])
         width, height = self._options.figure_pixels
         self._size = float(width), float(height)
-        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
+        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._overlay = Overlay(self.palette)
         self._figure: SceneFigure | None = None
         self._window: Window | None = None
         self._recording = Recording(env)
-        self._missing: set[str] = set()
+        self._unknown: set[str] = set()
         self._saved_size: tuple[int, int] | None = None
         self._begin()
 
@@ -125,7 +125,7 @@ class EnvPlot:
                 axis=not self._options.no_axis,
                 tight=self._options.tight,
                 figure=None if self._window is None else self._window.figure,
-                folder=self._folder,
+                pictures=self._pictures,
             )
             self._figure.show(self.scene(), self._title())
         return self._figure
@@ -150,14 +150,6 @@ class EnvPlot:
         figure.show(self.scene(), self._title())
         return figure
 
-    def _has_picture(self, name: str) -> bool:
-        if find_picture(name, self._folder) is not None:
-            return True
-        if name not in self._missing:
-            self._missing.add(name)
-            self.env.logger.warning(f"description image {name!r} not found: the shape is drawn instead")
-        return False
-
     # per step --------------------------------------------------------------------------------------------------------
     def update(self, mode: str = "dynamic", **overrides: Any) -> None:
         """Begin the next frame.
@@ -176,8 +168,8 @@ class EnvPlot:
         self._overlay.next_frame()
 
     def _note_unknown(self, overrides: Mapping[str, Any]) -> None:
-        for key in overrides.keys() - STYLE_KEYS - self._missing:
-            self._missing.add(key)
+        for key in overrides.keys() - STYLE_KEYS - self._unknown:
+            self._unknown.add(key)
             near = nearest(key, STYLE_KEYS)
             hint = f": did you mean {near!r}?" if near else ""
             self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
@@ -307,7 +299,7 @@ class EnvPlot:
     def reset(self) -> None:
         """Draw everything anew: drawings, titles and views of scripts are gone; kept frames stay."""
         self._begin()
-        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._has_picture)
+        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._overlay.forget()
         if self._figure is not None:
             self._figure.clear()

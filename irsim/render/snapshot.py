@@ -13,7 +13,7 @@ from irsim.render.bodies import bounds, picture_outline
 from irsim.render.builder import SceneBuilder
 from irsim.render.figure import SceneFigure, fitting_size
 from irsim.render.files import replacing
-from irsim.render.pictures import find_picture
+from irsim.render.pictures import Pictures
 from irsim.render.pixels import to_image
 from irsim.render.scene import Scene
 
@@ -57,8 +57,8 @@ def render_scene(
     """
     options, extent = simulation.scenario.world.plot, simulation.scenario.world
     source = simulation.scenario.source
-    folder = str(Path(source).parent) if source else None
-    builder = SceneBuilder(simulation, world=world, has_picture=lambda name: find_picture(name, folder) is not None)
+    pictures = Pictures(Path(source).parent if source else None)
+    builder = SceneBuilder(simulation, world=world, has_picture=pictures.has)
     chosen = {"show_text": True, "show_goal": True, "show_goal_text": True, "show_trajectory": True} if labels else {}
     scene = builder.build(
         viewpoint=options.viewpoint if viewpoint is None else viewpoint, overrides={**chosen, **(overrides or {})}
@@ -68,7 +68,7 @@ def render_scene(
         _tidy_labels(scene, robots)
         _thin_labels(scene, robots)
     size = fitting_size(extent.width, extent.height, size_px, _DPI)
-    figure = SceneFigure(size, _DPI, folder=folder, halo=True)
+    figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
     figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
     pixels, _ = figure.pixels(tight=False)
     data = io.BytesIO()

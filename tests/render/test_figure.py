@@ -294,6 +294,14 @@ def test_a_missing_picture_is_reported_and_the_shape_drawn(
     assert capsys.readouterr().out.count("'nosuch.png' not found") == 1
 
 
+def test_a_file_that_is_no_picture_is_reported_and_the_shape_drawn(
+    make: Make, color_at: Look, capsys: pytest.CaptureFixture[str]
+) -> None:
+    env = make(PLAIN.replace("name: anna", "description: scenario.yaml"), log_level="WARNING")
+    assert color_at(env, 2, 3) == GREEN
+    assert "'scenario.yaml' cannot be read as an image" in capsys.readouterr().out
+
+
 def test_layers_cover_each_other_in_order(make: Make, color_at: Look) -> None:
     env = make(
         """
