@@ -14,17 +14,7 @@ bool intersects(const std::vector<PartSpec>& parts_a, const PoseNumbers& a, cons
   Shapes shapes;
   Outlines outlines;
   for (const auto* parts : {&parts_a, &parts_b}) {
-    std::vector<Outline> list;
-    for (const PartSpec& part : *parts) {
-      std::visit(
-          [&](const auto& p) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(p)>, std::monostate>) {
-              list.push_back(outline(p, Draws({}, Stream::shape, 0), static_cast<std::uint64_t>(list.size()) << 32));
-            }
-          },
-          part);
-    }
-    shapes.add(list, false);
+    shapes.add(draw_outlines(*parts, Draws({}, Stream::shape, 0)), false);
   }
   outlines.resize(shapes.size[0]);
   outlines.place(shapes, 0, {a[0], a[1], a[2]}, unit(a[2]));

@@ -30,15 +30,9 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
   const int row = w * world.objects + object;
   const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
                   state.heading(row), turning};
-  return std::visit(
-      [&](const auto& drive) -> Vec3 {
-        if constexpr (std::is_same_v<std::decay_t<decltype(drive)>, std::monostate>) {
-          return {};
-        } else {
-          return follow(drive, wish);
-        }
-      },
-      world.drive[object]);
+  Vec3 control;
+  with(world.drive[object], [&](const auto& drive) { control = follow(drive, wish); });
+  return control;
 }
 
 void decide(const World& world, State& state, int w, Workspace& work) {
@@ -59,12 +53,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
     const Decision decision{world, state, first, work.objects.data(), count};
     Intent* intents = work.intents.data();
-    std::visit(
-        [&](const auto& options) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>)
-            run(options, decision, intents);
-        },
-        group.behavior);
+    with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
     for (int k = 0; k < count; ++k) {
       const int object = work.objects[k];
       const Intent& intent = intents[k];

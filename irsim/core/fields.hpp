@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <type_traits>
+#include <variant>
 
 namespace irsim {
 
@@ -35,6 +37,16 @@ constexpr Choice<Owner, Enum, sizeof...(Words)> choice(const char* name, Enum Ow
 template <class Options>
 bool same(const Options& a, const Options& b) {
   return std::apply([&](const auto&... f) { return ((a.*(f.member) == b.*(f.member)) && ...); }, Options::fields());
+}
+
+/// Call `call` with the options a variant of features holds, if it holds any.
+template <class Feature, class Call>
+void with(const Feature& feature, Call&& call) {
+  std::visit(
+      [&](const auto& options) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) call(options);
+      },
+      feature);
 }
 
 }  // namespace irsim

@@ -2,20 +2,6 @@
 #include "phases.hpp"
 
 namespace irsim {
-namespace {
-
-/// Applies `call` to the options of a drive; objects without one are left alone.
-template <class Call>
-void with_drive(const Drive& drive, Call&& call) {
-  std::visit(
-      [&](const auto& options) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) call(options);
-      },
-      drive);
-}
-
-}  // namespace
-
 void limit(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) {
@@ -33,7 +19,7 @@ void limit(const World& world, State& state, int w) {
           clip(wanted[c], std::max(world.vel_min[i][c], u[c] - change), std::min(world.vel_max[i][c], u[c] + change));
     }
     u = next;
-    with_drive(world.drive[i], [&](const auto& drive) { u = constrain(drive, u); });
+    with(world.drive[i], [&](const auto& drive) { u = constrain(drive, u); });
   }
 }
 
@@ -45,7 +31,7 @@ void integrate(const World& world, State& state, int w) {
       state.twist[row] = {};
       continue;
     }
-    with_drive(world.drive[i], [&](const auto& drive) {
+    with(world.drive[i], [&](const auto& drive) {
       Vec3 u = state.control[row];
       if (drive.noise) {
         const Vec3 sigma = deviation(drive, u);

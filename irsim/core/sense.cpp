@@ -17,11 +17,7 @@ void sense(const World& world, State& state, int w, Workspace& work) {
                           state.valid.data + at,
                           state.beam_angles.data + at,
                           work.beams};
-    std::visit(
-        [&](const auto& options) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) run(options, sensing);
-        },
-        scan.sensor);
+    with(scan.sensor, [&](const auto& options) { run(options, sensing); });
   }
 }
 

@@ -11,6 +11,16 @@
 
 namespace irsim {
 
+/// Body-frame outlines of the parts of an object; each part has its own range of draws.
+inline std::vector<Outline> draw_outlines(const std::vector<PartSpec>& parts, const Draws& draws) {
+  std::vector<Outline> outlines;
+  for (const PartSpec& part : parts) {
+    const std::uint64_t first = static_cast<std::uint64_t>(outlines.size()) << 32;
+    with(part, [&](const auto& shape) { outlines.push_back(outline(shape, draws, first)); });
+  }
+  return outlines;
+}
+
 struct ObjectSpec {
   int role;  // 0 robot, 1 obstacle
   int group;

@@ -193,13 +193,9 @@ Vec2 velocity_world(const World& world, const State& state, int row) {
   const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
   std::vector<double> extra(&state.extra[e], &state.extra[e] + state.extra_rows);
   Vec3 twist;
-  std::visit(
-      [&](const auto& drive) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(drive)>, std::monostate>) {
-          run(drive, Motion{pose, extra.data(), twist, state.heading(row), state.control[row], 0.0});
-        }
-      },
-      world.drive[row % world.objects]);
+  with(world.drive[row % world.objects], [&](const auto& drive) {
+    run(drive, Motion{pose, extra.data(), twist, state.heading(row), state.control[row], 0.0});
+  });
   return {twist[0], twist[1]};
 }
 

@@ -28,17 +28,12 @@ bool is_random(const ObjectSpec& spec) {
 }
 
 bool same_behavior(const Behavior& a, const Behavior& b) {
-  if (a.index() != b.index()) return false;
-  return std::visit(
-      [&](const auto& options) {
-        using Options = std::decay_t<decltype(options)>;
-        if constexpr (std::is_same_v<Options, std::monostate>) {
-          return true;
-        } else {
-          return same(options, std::get<Options>(b));
-        }
-      },
-      a);
+  bool equal = false;
+  with(a, [&](const auto& options) {
+    const auto* other = std::get_if<std::decay_t<decltype(options)>>(&b);
+    equal = other != nullptr && same(options, *other);
+  });
+  return equal;
 }
 
 void add_to_group(World& world, int object, const ObjectSpec& spec) {
@@ -55,11 +50,7 @@ void add_to_group(World& world, int object, const ObjectSpec& spec) {
 void add_scans(World& world, int object, const ObjectSpec& spec) {
   for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
     Mount mount{object, static_cast<int>(k), world.beams_per_world, 0, {}, {}, {}};
-    std::visit(
-        [&](const auto& options) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) mount.angle = beams(options);
-        },
-        spec.sensors[k]);
+    with(spec.sensors[k], [&](const auto& options) { mount.angle = beams(options); });
     for (const double angle : mount.angle) {
       mount.cosine.push_back(std::cos(angle));
       mount.sine.push_back(std::sin(angle));
@@ -136,27 +127,19 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
 World::~World() = default;
 
 double World::cell(const Shapes& of, const std::vector<int>& ids) const {
-  double sum = 0.0;
-  for (const int i : ids) sum += of.radius[i];
-  return ids.empty() ? 1.0 : 3.0 * sum / static_cast<double>(ids.size());
+  if (ids.empty()) return 1.0;
+  std::vector<double> radii;
+  for (const int i : ids) radii.push_back(of.radius[i]);
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return 3.0 * *middle;
 }
 
 std::shared_ptr<const Shapes> make_shapes(const World& world, Key key) {
   auto shapes = std::make_shared<Shapes>();
   for (int i = 0; i < world.objects; ++i) {
     const Draws draws(key, Stream::shape, i);
-    std::vector<Outline> outlines;
-    for (const PartSpec& part : world.specs[i].parts) {
-      const std::uint64_t first = static_cast<std::uint64_t>(outlines.size()) << 32;  // draws of this part
-      std::visit(
-          [&](const auto& options) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(options)>, std::monostate>) {
-              outlines.push_back(outline(options, draws, first));
-            }
-          },
-          part);
-    }
-    shapes->add(outlines, world.is_static[i] != 0);
+    shapes->add(draw_outlines(world.specs[i].parts, draws), world.is_static[i] != 0);
   }
   return shapes;
 }

@@ -61,6 +61,7 @@ struct World {
   std::shared_ptr<const Shapes> shapes;  // null when some are drawn per scene
   std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null when those or shapes are drawn
 
+  /// Cell size of a grid that suits most of these objects.
   double cell(const Shapes& of, const std::vector<int>& ids) const;
 };
 
