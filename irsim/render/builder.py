@@ -189,7 +189,8 @@ class SceneBuilder:
             if style.show_trajectory and len(states) > 1:
                 scene.marks.append(_trajectory(view.id, body, style, states))
             if style.show_trail:
-                scene.marks += self._trail(view.id, body, style, states)
+                start = self.simulation.state.initial_state(view.row)[None, :3]
+                scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
 
     def _heading(self, view: ObjectView, pose: Pose) -> float:
         if view.kinematics != "omni":
@@ -204,8 +205,8 @@ class SceneBuilder:
         every = max(1, int(style.trail_freq))
         shape = _trail_shape(body, style.trail_type)
         fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
-        for index in range((trail.states // every + 1) * every - 1, len(states), every):
-            x, y, theta = states[index, :3].tolist()
+        for index in range(-(-trail.states // every) * every, len(states), every):
+            x, y, theta = states[index].tolist()
             stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
             geometry = place(shape, (x, y, theta))
             trail.marks.append(Mark(object_id, "trail", geometry, fill, stroke, style.trail_alpha, style.trail_zorder))
