@@ -147,6 +147,10 @@ class _Translator:
 
     def _unknown_key(self) -> Finding:
         key, parent = self.path[-1], self.path[:-1]
+        if self.kind == "invalid_key":  # a number or a YAML 1.1 boolean; the location has lost which
+            raw = next((k for k in at(self.data, parent) or () if not isinstance(k, str) and k == key), key)
+            key = str(raw)
+            self.path = (*parent, key)
         model = model_at(Scenario, parent, self.data)
         allowed = list(model.model_fields) if model is not None else []
         near = nearest(key, allowed)

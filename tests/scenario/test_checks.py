@@ -29,6 +29,8 @@ def obstacle(**keys: Any) -> dict[str, Any]:
     return {"obstacle": [{"shape": {"name": "circle"}, **keys}]}
 
 
+TRIANGLES = [{"name": "polygon", "vertices": [[i, 5], [i + 1, 5], [i, 6]]} for i in range(3)]
+
 SANE: list[dict[str, Any]] = [
     {},
     {"world": {}},
@@ -61,8 +63,7 @@ SANE: list[dict[str, Any]] = [
     {"world": {"plot": {"viewpoint": "walle"}}, **robot(name="walle")},
     obstacle(),
     obstacle(state=[20, 20]),
-    obstacle(number=3, state=[0, 0, 0], shape=[{"name": "polygon", "vertices": [[i, 5], [i + 1, 5], [i,
-        6]]} for i in range(3)]),
+    obstacle(number=3, state=[0, 0, 0], shape=TRIANGLES),
     obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 0], [2, 2], [1, 0.5], [0, 2]]}, state=[4, 4, 0]),
     obstacle(shape={"name": "polygon", "vertices": [[0, 0], [2, 0], [0, 2], [0, 0]]}, state=[4, 4, 0]),
     obstacle(shape={"name": "polygon", "vertices": [[0, 0], [1, 0], [2, 0], [2, 2]]}, state=[4, 4, 0]),

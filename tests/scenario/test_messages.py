@@ -1,0 +1,238 @@
+"""What diagnostics say: in the words of the language, with a way out, and edits that work."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import irsim
+from irsim.codes import CODES
+from irsim.diagnostics import Diagnostic, format_path
+from irsim.scenario.compose import compose
+from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.numerals import read_number
+from irsim.scenario.read import read
+from irsim.scenario.repair import applied
+from irsim.scenario.report import format_diagnostics
+from irsim.scenario.wording import flow, number, shown
+
+BAD = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
+PACKAGE = Path(irsim.__file__).parent
+
+
+def first(text: str) -> Diagnostic:
+    return read(text, strict=True).diagnostics[0]
+
+
+def test_a_report_reads_like_a_compiler() -> None:
+    text = (
+        "world: {height: 10}\n"
+        "robot:\n"
+        "  - kinematics: {name: diff}\n"
+        "    shape: {name: circle}\n"
+        "    behavior: {name: rov}\n"
+    )
+    reading = read(text, strict=True, name="crossing.yaml")
+    assert format_diagnostics(reading.diagnostics, text) == (
+        "crossing.yaml:5:22  error unknown-behavior  robot[0].behavior.name\n"
+        "   5 |     behavior: {name: rov}\n"
+        "     |                      ^^^ 'rov' is not a behavior\n"
+        "  allowed: dash, follow, orca, rvo, sfm. Did you mean 'rvo'?   fix: name: rvo\n"
+        "1 error"
+    )
+
+
+def test_a_report_without_text_and_with_color() -> None:
+    reading = read({"world": {"widht": 3}}, strict=True)
+    report = format_diagnostics(reading.diagnostics)
+    assert report.startswith("error unknown-key  world.widht\n  'widht' is not a key of 'world'")
+    text = "world: {widht: 3}\n"
+    colored = format_diagnostics(read(text).diagnostics, text, color=True)
+    assert "\033[1;33mwarning\033[0m" in colored
+    assert format_diagnostics([]) == ""
+
+
+def test_long_lines_are_cut_around_the_place() -> None:
+    text = "custom: [" + "1, " * 300 + "1]\nworld: {" + "height: 10, " + " " * 400 + "widht: 3}\n"
+    report = format_diagnostics(read(text).diagnostics, text)
+    quoted, carets = report.splitlines()[1:3]
+    assert len(quoted) < 200
+    assert quoted[carets.index("^") : carets.index("^") + 5] == "widht"
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("1e3", "m", 1000.0),
+        ("-.5", "m", -0.5),
+        (" 3 ", "m", 3.0),
+        ("pi", "rad", 3.141592653589793),
+        ("-pi/2", "rad", -1.5707963267948966),
+        ("2*pi", "rad", 6.283185307179586),
+        ("np.pi", "rad", 3.141592653589793),
+        ("3 * pi / 4", "rad", 2.356194490192345),
+        ("1/4", "m", 0.25),
+        ("5 m", "m", 5.0),
+        ("50cm", "m", 0.5),
+        ("90 deg", "rad", 1.57079632679),
+        ("36 km/h", "m/s", 10.0),
+        ("100 ms", "s", 0.1),
+        ("5 apples", "m", None),
+        ("inf", "m", None),
+        ("1e999", "m", None),
+        ("1/0", "m", None),
+        ("pi/0", "rad", None),
+        ("hello", "m", None),
+        ("", "m", None),
+    ],
+)
+def test_numbers_written_as_text(text: str, unit: str, value: float | None) -> None:
+    found = read_number(text, unit).value
+    assert found == (None if value is None else pytest.approx(value))
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (1, "1"),
+        (1.0, "1"),
+        (0.1, "0.1"),
+        (-2.5, "-2.5"),
+        (1e20, "1.0e+20"),
+        (float("inf"), ".inf"),
+        (float("-inf"), "-.inf"),
+        (float("nan"), ".nan"),
+        (10**30, str(10**30)),
+    ],
+)
+def test_numbers_as_yaml(value: float, written: str) -> None:
+    assert number(value) == written
+    back = compose(f"a: {written}", DEFAULT_LIMITS).data["a"]
+    assert back == value or value != value
+
+
+def test_values_as_yaml() -> None:
+    assert flow({"name": "circle", "center": [0, 1.5], "on": True, "none": None}) == (
+        "{name: circle, center: [0, 1.5], on: true, none: null}"
+    )
+    assert len(shown(list(range(10_000)))) <= 60
+    assert len(shown({"a" * 100: 1})) <= 60
+    assert shown("x" * 1000).endswith("…")
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "words"),
+    [
+        ("world: {step_time: 1e-1}", "yaml-number-text", ["YAML 1.1", "0.1"]),
+        ("world: {step_time: '0.1'}", "wrong-type", ["text", "0.1"]),
+        ("world: {height: -.5}", "yaml-number-text", ["-0.5"]),
+        ("world: {plot: {show_title: 'no'}}", "wrong-type", ["true or false", "write false"]),
+        ("world: {offset: 3}", "wrong-type", ["a list"]),
+        ("world: {height: [10]}", "scalar-list", ["a number"]),
+        ("world: {collision_mode: stopp}", "unknown-value", ["stop"]),
+        ("world: {collision_mode: null}", "unknown-value", ["null"]),
+        ("gui: {keyboard: {backend: qt}}", "unknown-value", ["mpl"]),
+        ("robot: {kinematics: acker}", "not-a-mapping", ["{name: acker}"]),
+        ("robot: {state: 3}", "wrong-type", ["a list"]),
+        ("robot: {color: 3}", "unknown-color", ["#RRGGBB"]),
+        ("robot: {color: [1, 2, 3]}", "unknown-color", ["0 to 1"]),
+        ("robot: {angle_range: [-pi, pi]}", "wrong-type", ["-3.14159", "no pi"]),
+        ("robot: {number: 3.0}", "wrong-type", ["whole number", "number: 3"]),
+        ("robot: {number: true}", "wrong-type", ["whole number"]),
+        ("robot: {goal: [1]}", "wrong-length", ["2 to 3"]),
+        ("robot: {sensors: [lidar2d]}", "not-a-mapping", ["{name: lidar2d}"]),
+        ("robot: {1: 2}", "unknown-key", ["'1'"]),
+        ("robot: {true: 2}", "unknown-key", ["'True'"]),
+        ("robot: {mass: -1}", "out-of-range", ["> 0", "kg"]),
+        ("robot: {mass: .nan}", "out-of-range", []),
+        ("robot: {acce: [.inf, -1]}", "out-of-range", ["≥ 0"]),
+        ("robot: {fov_radius: .inf}", "infinite-number", ["finite"]),
+        ("robot: {distribution: {name: circle, radius: 0}}", "out-of-range", ["> 0", "m"]),
+    ],
+)
+def test_messages(line: str, code: str, words: list[str]) -> None:
+    item = first(line + "\n")
+    assert item.code == code
+    said = f"{item.message} {item.allowed} {item.fix}"
+    for word in words:
+        assert word in said
+    for jargon in ("Input should", "pydantic", "float_type", "dict", "validation error", "None"):
+        assert jargon not in f"{item.message} {item.fix or ''}"
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
+def test_edits_mend_what_they_are_for(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    reading = read(path, strict=True)
+    edits = [item.edit for item in reading.diagnostics if item.edit is not None]
+    if not edits:
+        return
+    mended = applied(compose(text, DEFAULT_LIMITS).data, edits)
+    left = {(d.code, format_path(d.path)) for d in read(mended, strict=True).diagnostics}
+    gone = {(d.code, format_path(d.path)) for d in reading.diagnostics if d.edit is not None}
+    assert not left & gone
+
+
+def test_lenient_ignores_what_the_suggestion_would_rename() -> None:
+    text = "world: {widht: 30}\n"
+    (item,) = read(text, strict=True).diagnostics
+    assert item.edit is not None
+    assert (item.edit.action, item.edit.value) == ("rename", "width")
+    scenario = read(text).scenario
+    assert scenario is not None
+    assert scenario.world.width == 10
+
+
+@pytest.mark.parametrize(
+    ("data", "check"),
+    [
+        ({"world": {"collision_mode": "stopp"}}, lambda s: s.world.collision_mode == "unobstructed"),
+        ({"world": {"control_mode": "joystick"}}, lambda s: s.world.control_mode == "auto"),
+        ({"world": {"offset": [1, 2, 3]}}, lambda s: s.world.offset == [1, 2]),
+        ({"robot": {"number": -2}}, lambda s: s.objects == []),
+        ({"robot": {"number": True}}, lambda s: len(s.objects) == 1),
+        ({"robot": {"name": 5}}, lambda s: s.objects[0].name == "5"),
+        ({"robot": {"kinematics": {"name": "diff"}, "static": [True, False]}}, lambda s: s.objects[0].static),
+        ({"robot": {"kinematics": {"name": "diff"}, "static": 0}}, lambda s: not s.objects[0].static),
+        ({"robot": {"goal": [1, 2, 3, 4]}}, lambda s: s.objects[0].goals == [[1, 2, 3]]),
+        ({"robot": {"color": "bleu"}}, lambda s: s.objects[0].color == "k"),
+        ({"robot": 5}, lambda s: s.objects == []),
+        ({"robot": {"sensors": [{"angle_range": 9}]}}, lambda s: 6.28 < s.objects[0].sensors[0].angle_range < 6.29),
+        ({"robot": {"sensors": [{"angle_range": -1}]}}, lambda s: s.objects[0].sensors[0].angle_range == 0),
+    ],
+)
+def test_lenient_does_what_2_12_does(data: dict[str, Any], check: Any) -> None:
+    reading = read(data)
+    assert reading.scenario is not None
+    assert check(reading.scenario)
+    assert [item.severity for item in reading.diagnostics if item.tolerated] == ["warning"]
+    assert read(data, strict=True).scenario is None
+
+
+def test_codes_are_a_closed_documented_list() -> None:
+    used = set()
+    for path in PACKAGE.rglob("*.py"):
+        if path.name == "codes.py":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in CODES:
+                used.add(node.value)
+    computed = {code for code in CODES if code.startswith(("unknown-", "yaml-"))}
+    assert set(CODES) - used - computed == set()
+    for name, code in CODES.items():
+        assert name == name.lower()
+        assert code.title[0].islower() or code.title.split()[0] in ("YAML", "NaN")
+        assert code.explanation.endswith((".", "?"))
+    with pytest.raises(ValueError, match="undocumented"):
+        Diagnostic("no-such-code", "error", (), "x")
+
+
+def test_diagnostics_are_data() -> None:
+    (item,) = read("world: {widht: 3}\n", strict=True, name="a.yaml").diagnostics
+    data = item.as_dict()
+    assert data["path"] == "world.widht"
+    assert data["edit"] == {"action": "rename", "path": "world.widht", "value": "width"}
+    assert (data["line"], data["column"], data["length"], data["file"]) == (1, 9, 5, "a.yaml")
