@@ -41,6 +41,8 @@ def describe(
 def _show(answer: Answer, out: Console) -> None:
     from rich.text import Text
 
+    from irsim.lookup.text import facts
+
     def line(*parts: RenderableType) -> None:
         out.print(*parts)
 
@@ -48,7 +50,7 @@ def _show(answer: Answer, out: Console) -> None:
     if answer.text:
         line(answer.text)
     if answer.about is not None:
-        line(Text(_facts(answer.about), style="green"))
+        line(Text(facts(answer.about), style="green"))
         if answer.about.per_object:
             line(Text("also a list of these, one per object of the entry", style="green"))
     for heading, keys in answer.groups.items():
@@ -65,30 +67,18 @@ def _show(answer: Answer, out: Console) -> None:
         line(Text.assemble(("see also: ", "dim"), ", ".join(answer.see)))
 
 
-def _facts(key: Key) -> str:
-    """Type, unit, range and default in one line."""
-    unit = "" if not key.unit else f" {key.unit}" if key.unit.startswith("[") else f" [{key.unit}]"
-    if key.type in ("a name", "a value"):
-        facts = [f"one of {key.allowed}"]
-    else:
-        facts = [key.type + unit if key.type else "", key.allowed or ""]
-    if key.required:
-        facts.append("required")
-    if key.default is not None:
-        facts.append(f"default {key.default}")
-    return "; ".join(fact for fact in facts if fact)
-
-
 def _table(keys: list[Key]) -> RenderableType:
     from rich.table import Table
     from rich.text import Text
+
+    from irsim.lookup.text import facts
 
     table = Table(box=None, pad_edge=False, show_header=False, padding=(0, 2, 0, 2))
     table.add_column(style="bold cyan", no_wrap=True)
     table.add_column()
     for key in keys:
         text = Text(key.text)
-        if facts := _facts(key):
-            text.append(("\n" if key.text else "") + facts, style="green")
+        if told := facts(key):
+            text.append(("\n" if key.text else "") + told, style="green")
         table.add_row(key.name, text)
     return table

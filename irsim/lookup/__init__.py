@@ -4,6 +4,7 @@ Everything comes from the registries, the models' schema, the templates and the 
 """
 
 from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.topics import lookup
+from irsim.lookup.text import as_text
+from irsim.lookup.topics import lookup, schema_part
 
-__all__ = ["Answer", "Key", "TopicError", "lookup"]
+__all__ = ["Answer", "Key", "TopicError", "as_text", "lookup", "schema_part"]

@@ -9,12 +9,22 @@ from irsim import templates
 from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
-from irsim.lookup.walk import Node, component_name, components, key, mappings, paths, step, yaml_text
+from irsim.lookup.walk import (
+    Node,
+    component_name,
+    components,
+    definitions_of,
+    key,
+    mappings,
+    paths,
+    step,
+    yaml_text,
+)
 from irsim.registry import REGISTRIES, Registry
 from irsim.scenario.schema import json_schema
 from irsim.templates import Template
 
-__all__ = ["lookup"]
+__all__ = ["lookup", "schema_part"]
 
 _PLACES = {
     "behavior": ("robot", "behavior"),
@@ -39,7 +49,7 @@ def lookup(topic: str = "") -> Answer:
     Raises:
         TopicError: Nothing goes by that name; the message names similar topics.
     """
-    words = [word for word in re.split(r"[\s.\[\]:]+", topic.strip()) if word and not word.isdigit()]
+    words = _words(topic)
     name = " ".join(words)
     if not words:
         return _index()
@@ -50,13 +60,43 @@ def lookup(topic: str = "") -> Answer:
     if name in templates.names():
         return _template(templates.load(name))
     schema = json_schema()
+    found = _find(schema, words)
+    return _part(schema, *found) if found else _search(schema, topic.strip(), words)
+
+
+def schema_part(topic: str) -> Node:
+    """The JSON Schema of a part of the language, with all definitions it refers to.
+
+    Args:
+        topic: As :func:`lookup` takes it: ``robot``, ``world.plot``, ``sensors.lidar2d``, ``behavior``; empty for all.
+
+    Raises:
+        TopicError: No part of the language goes by that name.
+    """
+    words, schema = _words(topic), json_schema()
+    if not words:
+        return schema
+    found = _find(schema, words)
+    if found is None:
+        raise TopicError(" ".join(words), _near(schema, words))
+    path, nodes = found
+    body = nodes[0] if len(nodes) == 1 else {"anyOf": nodes}
+    return {"$schema": schema["$schema"], "title": ".".join(path), **body, "$defs": definitions_of(schema, body)}
+
+
+def _words(topic: str) -> list[str]:
+    return [word for word in re.split(r"[\s.\[\]:]+", topic.strip()) if word and not word.isdigit()]
+
+
+def _find(schema: Node, words: list[str]) -> tuple[tuple[str, ...], list[Node]] | None:
+    """The part of the language that the words name."""
     for path in _readings(schema, tuple(words)):
         nodes = [schema]
         for word in path:
             nodes = step(schema, nodes, word)
         if nodes:
-            return _part(schema, path, nodes)
-    return _search(schema, topic.strip(), words)
+            return path, nodes
+    return None
 
 
 def _readings(schema: Node, words: tuple[str, ...]) -> list[tuple[str, ...]]:
@@ -218,7 +258,7 @@ def _index() -> Answer:
     schema = json_schema()
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))
     sections = [key(schema, name, node) for name, node in language["properties"].items()]
-    kinds = [Key(name=kind, text=", ".join(registry.names())) for kind, registry in sorted(REGISTRIES.items())]
+    kinds = [Key(name=kind, text=_overview(registry)) for kind, registry in sorted(REGISTRIES.items())]
     return Answer(
         topic="",
         kind="index",
@@ -231,6 +271,15 @@ def _index() -> Answer:
         },
         example="irsim describe robot.sensors.lidar2d",
     )
+
+
+def _overview(registry: Registry) -> str:
+    """The names of a kind of component, those that are not simulated last."""
+    features = registry.features()
+    later = [feature.name for feature in features if not feature.simulated]
+    names = [", ".join(feature.name for feature in features if feature.simulated)]
+    names += [f"not simulated yet: {', '.join(later)}"] if later else []
+    return "; ".join(part for part in names if part)
 
 
 def _code(name: str) -> Answer:

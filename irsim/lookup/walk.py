@@ -9,7 +9,7 @@ from typing import Any
 
 from irsim.lookup.answer import Key
 
-__all__ = ["Node", "component_name", "components", "key", "mappings", "paths", "step", "yaml_text"]
+__all__ = ["Node", "component_name", "components", "definitions_of", "key", "mappings", "paths", "step", "yaml_text"]
 
 Node = dict[str, Any]
 """A schema node with references and siblings merged in."""
@@ -99,6 +99,23 @@ def paths(
         for word, child in option["properties"].items():
             yield (*here, word), child
             yield from paths(root, (*here, word), child, depth - 1)
+
+
+def definitions_of(root: Node, node: Any) -> dict[str, Node]:
+    """The definitions that a node refers to, those that they refer to, and so on; by name, sorted."""
+    found: dict[str, Node] = {}
+    waiting = [node]
+    while waiting:
+        item = waiting.pop()
+        if isinstance(item, list):
+            waiting += item
+        elif isinstance(item, dict):
+            waiting += item.values()
+            name = str(item.get("$ref", "")).removeprefix("#/$defs/")
+            if name and name not in found:
+                found[name] = root["$defs"][name]
+                waiting.append(found[name])
+    return dict(sorted(found.items()))
 
 
 def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
