@@ -1,0 +1,24 @@
+"""What every test leaves as it found it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
+
+
+@pytest.fixture(autouse=True)
+def registered_features() -> Iterator[None]:
+    """Forget what a test has registered: the schema of the next one must not know it."""
+    tables = (CUSTOM_BEHAVIORS._functions, CUSTOM_GROUP_BEHAVIORS._functions)
+    before = [dict(table) for table in tables]
+    yield
+    for table, known in zip(tables, before, strict=True):
+        table.clear()
+        table.update(known)
+    for registry in REGISTRIES.values():
+        for feature in [*registry._features.values()]:
+            if feature.origin != "built-in":
+                del registry._features[feature.name]
