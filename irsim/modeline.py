@@ -8,7 +8,7 @@ from pathlib import Path
 
 from irsim import resources
 
-__all__ = ["schema_reference", "with_modeline"]
+__all__ = ["schema_reference", "with_modeline", "without_modeline"]
 
 _MODELINE = re.compile(r"\A\ufeff?#[ \t]*yaml-language-server:[ \t]*\$schema=[^\r\n]*")
 
@@ -34,3 +34,8 @@ def with_modeline(text: str, target: Path) -> str:
         return _MODELINE.sub(lambda _: line, text, count=1)
     newline = "\r\n" if "\r\n" in text else "\n"
     return line + newline + text.removeprefix("\ufeff")
+
+
+def without_modeline(text: str) -> str:
+    """The text without the editor line, for readers to whom the schema's place means nothing."""
+    return _MODELINE.sub("", text, count=1).lstrip("\r\n")

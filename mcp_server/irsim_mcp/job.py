@@ -1,0 +1,164 @@
+"""Runs in a worker process: reads one job from standard input, does it, writes the answer to standard output.
+
+The answer is one JSON object per line: ``{"progress": [done, total]}`` now and then, and at last either
+``{"result": …}`` or ``{"error": …}``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+__all__ = ["main"]
+
+_PROGRESS_PERIOD = 0.5
+_MOST_FINDINGS = 3
+_FILES = 256
+
+
+def main() -> None:
+    """Do the job and exit."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever prints, does not print into the answer
+    job = json.loads(sys.stdin.buffer.readline())
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    _limit(job["resources"])
+
+    def answer(text: str) -> None:
+        answers.write(text.encode() + b"\n")
+        answers.flush()
+
+    try:
+        result = _TASKS[job["task"]](job, _Progress(answer))
+        answer(f'{{"result": {result}}}')
+    except Exception as error:
+        answer(json.dumps({"error": _described(error)}))
+    os._exit(0)  # at once: nothing here needs tidying up
+
+
+def _end_with_parent() -> None:
+    """Standard input stays open as long as the server lives."""
+    sys.stdin.buffer.read()
+    os._exit(1)
+
+
+def _limit(resources: dict[str, int]) -> None:
+    """Bound what this process may use, where the system has the means."""
+    if os.name != "posix":
+        return
+    import resource
+
+    bounds = {
+        resource.RLIMIT_AS: resources["memory"],
+        resource.RLIMIT_CPU: resources["cpu"],
+        resource.RLIMIT_FSIZE: resources["written"],
+        resource.RLIMIT_NOFILE: _FILES,
+        resource.RLIMIT_CORE: 0,
+    }
+    for kind, most in bounds.items():
+        soft, hard = resource.getrlimit(kind)
+        least = min((limit for limit in (soft, hard, most) if limit != resource.RLIM_INFINITY), default=most)
+        with suppress(ValueError, OSError):  # a system that has no limit of this kind
+            resource.setrlimit(kind, (least, hard))
+
+
+class _Progress:
+    """Passes progress on, not too often."""
+
+    def __init__(self, answer: Callable[[str], None]) -> None:
+        self._answer, self._next = answer, 0.0
+
+    def __call__(self, done: int, total: int) -> None:
+        now = time.monotonic()
+        if now >= self._next:
+            self._next = now + _PROGRESS_PERIOD
+            self._answer(json.dumps({"progress": [done, total]}))
+
+
+def _common(job: dict[str, Any]) -> dict[str, Any]:
+    from irsim.scenario.limits import Limits
+
+    os.chdir(job["workspace"])
+    return {"strict": True, "limits": Limits(**job["limits"]), **job["arguments"]}
+
+
+def _validate(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.api import validate
+
+    report = validate(**_common(job))
+    return report.model_dump_json(exclude={"findings": {"__all__": {"given"}}})
+
+
+def _run(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.api import run
+
+    result = run(**_common(job), progress=progress)
+    return result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})
+
+
+def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
+    import base64
+
+    from irsim.api import snapshot
+
+    if job["arguments"].get("draw", True):
+        import irsim.render.snapshot  # noqa: F401  # before the workspace is the current directory, see _common
+    result = snapshot(**_common(job), progress=progress)
+    png = base64.b64encode(result.png).decode()
+    return f'{{"png": "{png}", "scene": {result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})}}}'
+
+
+_TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
+    "validate": _validate,
+    "run": _run,
+    "snapshot": _snapshot,
+}
+
+
+def _described(error: Exception) -> dict[str, Any]:
+    """An exception as data."""
+    from irsim.diagnostics import format_path
+    from irsim.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError
+
+    if isinstance(error, PlacementError):
+        first = error.diagnostics[0]
+        return {"code": first.code, "what": first.message, "where": format_path(first.path), "fix": first.fix}
+    if isinstance(error, ScenarioError):
+        errors = [item for item in error.diagnostics if item.severity == "error"]
+        named = [
+            {"code": item.code, "what": item.message, "where": format_path(item.path), "line": item.line}
+            for item in errors[:_MOST_FINDINGS]
+        ]
+        return {"code": "invalid-scenario", "errors": len(errors), "first": named}
+    if isinstance(error, ScenarioNotFoundError):
+        return {"code": "file-not-found", "what": "the scenario file is gone"}
+    if isinstance(error, IrsimError):
+        code = getattr(error, "code", "invalid-input")
+        what = getattr(error, "message", str(error))
+        return {"code": code, "what": what, "fix": getattr(error, "fix", None)}
+    if isinstance(error, MemoryError):
+        return {
+            "code": "out-of-memory",
+            "what": "the work needs more memory than a worker may use",
+            "fix": "use fewer objects, lidar beams or steps",
+        }
+    import traceback
+
+    traceback.print_exception(error)
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    place = f"{os.path.basename(frame.filename)}:{frame.lineno}"
+    return {
+        "code": "internal-error",
+        "what": f"{type(error).__name__}: {error} at {place}",
+        "fix": "please report it with the scenario; another way to write the scenario may avoid it",
+    }
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+"""Resources: parts of the JSON Schema of scenario files, and the templates. The tools do not depend on them."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable
+from typing import Any
+
+from mcp.server import MCPServer
+from mcp.server.mcpserver.exceptions import ResourceNotFoundError
+from mcp.server.mcpserver.resources import FunctionResource
+from mcp.types import Completion, CompletionArgument, CompletionContext, PromptReference, ResourceTemplateReference
+
+from irsim import resources
+
+__all__ = ["add_resources"]
+
+_SECTIONS = (
+    "scenario", "world", "robot", "obstacle", "gui",
+    "behavior", "distribution", "kinematics", "map", "planner", "sensor", "shape",
+)  # fmt: skip
+_SCHEMA, _TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
+
+
+def add_resources(server: MCPServer) -> None:
+    """Register all of them with a server."""
+    server.resource(_SCHEMA, title="JSON Schema of a part", mime_type="application/schema+json")(schema)
+    server.resource(_TEMPLATE, title="Scenario template", mime_type="application/yaml")(template)
+    for section in _SECTIONS:
+        server.add_resource(
+            FunctionResource.from_function(
+                functools.partial(schema, section),
+                uri=f"irsim://schema/{section}",
+                name=f"schema-{section}",
+                title=f"JSON Schema of {section}",
+                description="With units and defaults; irsim://schema/robot.sensors.lidar2d goes deeper.",
+                mime_type="application/schema+json",
+            )
+        )
+    for name in _template_names():
+        server.add_resource(
+            FunctionResource.from_function(
+                functools.partial(template, name),
+                uri=f"irsim://templates/{name}",
+                name=f"template-{name}",
+                title=f"Template {name}",
+                description="A complete scenario with its default parameters; the tool lookup fills in others.",
+                mime_type="application/yaml",
+            )
+        )
+
+    completing: Callable[[], Callable[..., Any]] = server.completion  # has no types of its own
+    completing()(_complete)
+
+
+async def _complete(
+    ref: PromptReference | ResourceTemplateReference, argument: CompletionArgument, context: CompletionContext | None
+) -> Completion:
+    choices = {_SCHEMA: _SECTIONS, _TEMPLATE: _template_names()}.get(getattr(ref, "uri", ""), ())
+    return Completion(values=[choice for choice in choices if choice.startswith(argument.value)])
+
+
+def schema(section: str) -> str:
+    """JSON Schema of a section, key or component of scenario files, such as world or robot.sensors.lidar2d."""
+    from irsim.lookup import TopicError, schema_part
+
+    try:
+        part = schema_part("" if section == "scenario" else section)
+    except TopicError as error:
+        near = f" Did you mean {' or '.join(error.near)}?" if error.near else f" There are {', '.join(_SECTIONS)}."
+        raise ResourceNotFoundError(f"no part of the schema is called {section!r}.{near}") from None
+    return json.dumps(part, ensure_ascii=False)
+
+
+def template(name: str) -> str:
+    """A complete scenario as YAML, to start from."""
+    from irsim.modeline import without_modeline
+    from irsim.templates import TemplateError, load
+
+    try:
+        return without_modeline(load(name).text)
+    except TemplateError as error:
+        raise ResourceNotFoundError(str(error)) from None
+
+
+def _template_names() -> tuple[str, ...]:
+    return tuple(sorted(path.parent.name for path in resources.templates_directory().glob("*/template.yaml")))

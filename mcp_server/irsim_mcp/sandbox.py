@@ -1,0 +1,81 @@
+"""The workspace: the one folder that scenarios are read from. Nothing is written there."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+
+from irsim.scenario.confine import why_outside
+from irsim.text import clean
+from irsim_mcp.errors import failure
+
+__all__ = ["Workspace"]
+
+_SUFFIXES = (".yaml", ".yml")
+_LOOKED_AT = 2000
+_NAMED = 3
+
+
+class Workspace:
+    """A folder, and which of its files a call may name.
+
+    Args:
+        root: The folder; links in its own path are followed once, here.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root.resolve()
+
+    def scenario(self, name: str, argument: str = "scenario_path") -> str:
+        """The path of a scenario file, relative to the workspace.
+
+        Args:
+            name: As the caller wrote it.
+            argument: Name of the argument, for errors.
+
+        Raises:
+            ToolError: It leads out of the workspace, or there is no such file.
+        """
+        wrong = why_outside(name, self.root)
+        if wrong is not None:
+            inside = self._relative(name)
+            fix = f"put the file into the workspace {self.root} and name it relative to that, or pass scenario_yaml"
+            if inside is not None:
+                fix = f"{argument}={inside!r}"
+            raise failure("path-outside-workspace", f"{clean(name)!r} {wrong}", where=argument, fix=fix)
+        target = self.root / name
+        if target.is_file():
+            return target.relative_to(self.root).as_posix()
+        if target.is_dir():
+            raise failure("not-a-file", f"{clean(name)!r} is a folder", where=argument, fix=self._advice(target))
+        what = f"there is no file {clean(name)!r} in the workspace {self.root}"
+        raise failure("file-not-found", what, where=argument, fix=self._advice(target))
+
+    def _relative(self, name: str) -> str | None:
+        """The name that an absolute path inside the workspace should have had."""
+        try:
+            found = Path(name).resolve()
+            inside = Path(name).is_absolute() and found.is_file() and found.is_relative_to(self.root)
+        except (OSError, RuntimeError, ValueError):
+            return None
+        return found.relative_to(self.root).as_posix() if inside else None
+
+    def _advice(self, target: Path) -> str:
+        """Scenario files that may be meant."""
+        there = self._scenarios()
+        near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _NAMED, 0.5)
+        if near:
+            return f"did you mean {' or '.join(map(repr, map(clean, near)))}?"
+        some = ", ".join(repr(clean(name)) for name in there[:_NAMED])
+        return f"the workspace has {some}" if some else "write the file first, or pass the text as scenario_yaml"
+
+    def _scenarios(self) -> list[str]:
+        """YAML files of the workspace and of its folders."""
+        found = []
+        for pattern in ("*", "*/*"):
+            for count, path in enumerate(self.root.glob(pattern)):
+                if count >= _LOOKED_AT:
+                    break
+                if path.suffix.lower() in _SUFFIXES and path.is_file():
+                    found.append(path.relative_to(self.root).as_posix())
+        return sorted(found, key=lambda name: (name.count("/"), name))

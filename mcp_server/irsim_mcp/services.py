@@ -1,0 +1,95 @@
+"""What tools and resources work with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from irsim_mcp.errors import failure
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.sandbox import Workspace
+from irsim_mcp.worker import Progress, Workers
+
+__all__ = ["ScenarioPath", "ScenarioYaml", "Seed", "Services"]
+
+ScenarioPath = Annotated[str | None, Field(description="Scenario file: path relative to the workspace.")]
+ScenarioYaml = Annotated[str | None, Field(description="Or the scenario itself as YAML text (at most 256 KiB).")]
+Seed = Annotated[
+    int | None,
+    Field(ge=0, le=2**53, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),
+]
+
+
+@dataclass(frozen=True)
+class Services:
+    """One server's folder, limits and workers."""
+
+    workspace: Workspace
+    limits: ServerLimits
+    workers: Workers
+
+    async def scenario_job(
+        self,
+        task: str,
+        scenario_path: str | None,
+        scenario_yaml: str | None,
+        *,
+        seconds: float,
+        progress: Progress | None = None,
+        **arguments: Any,
+    ) -> dict[str, Any]:
+        """Have a worker do something with a scenario that is given as a file or as text.
+
+        Args:
+            task: What to do.
+            scenario_path: The file.
+            scenario_yaml: Or the text; an empty one counts as none.
+            seconds: Wall-clock time it may take.
+            progress: Told how far it is.
+            **arguments: Further arguments of the task.
+
+        Raises:
+            ToolError: Neither or both are given, the path is refused, or the work failed.
+        """
+        source = self._source(scenario_path, scenario_yaml)
+        answer = await self.workers.call(task, {**source, **arguments}, seconds=seconds, progress=progress)
+        if "error" in answer:
+            raise _as_failure(answer["error"], next(iter(source)))
+        result: dict[str, Any] = answer["result"]
+        return result
+
+    def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
+        if bool(scenario_path) == bool(scenario_yaml):
+            given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"
+            fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
+            raise failure("bad-argument", f"{given} given", fix=fix)
+        if scenario_path:
+            return {"path": self.workspace.scenario(scenario_path)}
+        assert scenario_yaml
+        size = len(scenario_yaml.encode("utf-8", "replace"))
+        if size > self.limits.yaml_bytes:
+            raise failure(
+                "file-too-large",
+                f"{size:,} bytes; a scenario may have {self.limits.yaml_bytes:,}",
+                where="scenario_yaml",
+                fix="write groups of objects with 'number' and 'distribution' instead of one by one",
+            )
+        return {"text": scenario_yaml}
+
+
+def _as_failure(error: dict[str, Any], source: str) -> Exception:
+    argument = {"path": "scenario_path", "text": "scenario_yaml"}[source]
+    if error["code"] == "invalid-scenario":
+        first = "; ".join(
+            f"{item['where']} line {item['line']} {item['code']}: {item['what']}" for item in error["first"]
+        )
+        count = error["errors"]
+        return failure(
+            "invalid-scenario",
+            f"{count} error{'s' * (count != 1)}: {first}",
+            where=argument,
+            fix="validate_scenario lists every problem with its fix",
+        )
+    return failure(error["code"], error["what"], where=error.get("where") or argument, fix=error.get("fix"))

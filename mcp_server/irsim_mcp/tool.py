@@ -1,0 +1,128 @@
+"""Tools that take no argument they do not know, and whose errors are one line each."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from mcp.server.mcpserver import Context
+from mcp.server.mcpserver.exceptions import ToolError, UnexpectedToolError
+from mcp.server.mcpserver.tools import Tool
+from mcp.types import ToolAnnotations
+from pydantic import ValidationError
+
+from irsim.diagnostics import nearest
+from irsim.text import clean
+from irsim_mcp.errors import failure
+
+__all__ = ["StrictTool", "strict"]
+
+_SHOWN = 60
+
+
+class StrictTool(Tool):
+    """Refuses unknown arguments instead of ignoring them, and explains bad ones in our own words."""
+
+    async def run(self, arguments: dict[str, Any], context: Context[Any, Any], convert_result: bool = False) -> Any:
+        """Check the arguments, call the function."""
+        known = list(self.parameters["properties"])
+        for name in arguments:
+            if name not in known:
+                near = nearest(name, known)
+                fix = f"did you mean {near}?" if near else f"{self.name} takes {', '.join(known)}"
+                raise failure("unknown-argument", f"there is no argument {clean(name)!r}", where=self.name, fix=fix)
+        try:
+            return await super().run(arguments, context, convert_result)
+        except UnexpectedToolError as error:
+            what = f"{self.name} failed unexpectedly; the server's log says why"
+            crash = failure("internal-error", what, fix="please report it with the arguments of this call")
+            raise UnexpectedToolError(str(crash)) from error.__cause__
+        except ToolError as error:
+            if isinstance(error.__cause__, ValidationError):
+                raise self._refused(error.__cause__, arguments) from None
+            raise ToolError(str(error).removeprefix(f"Error executing tool {self.name}: ")) from None
+
+    def _refused(self, error: ValidationError, arguments: Mapping[str, Any]) -> ToolError:
+        first = error.errors()[0]
+        path = [str(part) for part in first["loc"]]
+        name = path[0] if path else self.name
+        text = json.dumps(arguments.get(name), ensure_ascii=False, default=str)
+        return failure(
+            "bad-argument",
+            f"{clean(text, _SHOWN)} is not accepted: {first['msg'].lower()}",
+            where=".".join(path) or self.name,
+            fix=_accepted(self.parameters["properties"].get(name, {})),
+        )
+
+
+def strict(
+    function: Callable[..., Any],
+    *,
+    title: str,
+    description: str,
+    read_only: bool,
+    idempotent: bool,
+    destructive: bool = False,
+    open_world: bool = False,
+) -> StrictTool:
+    """Make a tool of a function.
+
+    Args:
+        function: Its parameters become the arguments.
+        title: For people.
+        description: For models: what, when, what comes back, what to do next.
+        read_only: Whether it changes nothing.
+        idempotent: Whether the same call again gives the same.
+        destructive: Whether it may destroy something.
+        open_world: Whether it reaches beyond this machine.
+    """
+    hints = ToolAnnotations(
+        read_only_hint=read_only,
+        destructive_hint=destructive,
+        idempotent_hint=idempotent,
+        open_world_hint=open_world,
+    )
+    tool = StrictTool.from_function(
+        function, title=title, description=" ".join(inspect.cleandoc(description).split()), annotations=hints
+    )
+    tool.parameters = {**_slim(tool.parameters), "additionalProperties": False}
+    if tool.fn_metadata.output_schema is not None:
+        tool.fn_metadata.output_schema = _slim(tool.fn_metadata.output_schema)
+    assert isinstance(tool, StrictTool)
+    return tool
+
+
+def _slim(schema: Any) -> Any:
+    """A schema without what tells a model nothing: titles, and null beside the type of an optional argument."""
+    if isinstance(schema, list):
+        return [_slim(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    slim = {key: _slim(value) for key, value in schema.items() if key not in ("title", "properties", "$defs")}
+    for key in ("properties", "$defs"):  # names in here are not keywords
+        if key in schema:
+            slim[key] = {name: _slim(value) for name, value in schema[key].items()}
+    if slim.get("default", ...) is None:
+        del slim["default"]
+        options = [option for option in slim.get("anyOf", []) if option != {"type": "null"}]
+        if len(options) == 1:
+            del slim["anyOf"]
+            slim = {**options[0], **slim}
+    return slim
+
+
+def _accepted(schema: Mapping[str, Any]) -> str:
+    """What an argument takes, in words."""
+    if "enum" in schema:
+        return f"give one of {', '.join(map(str, schema['enum']))}"
+    if "items" in schema and "enum" in schema["items"]:
+        return f"give a list of some of {', '.join(map(str, schema['items']['enum']))}"
+    low, high = schema.get("minimum"), schema.get("maximum")
+    kind = {"integer": "an integer", "number": "a number", "string": "text", "boolean": "true or false"}.get(
+        schema.get("type", ""), "an object" if schema.get("type") == "object" else "what the schema says"
+    )
+    if low is not None and high is not None:
+        return f"give {kind} from {low} to {high}"
+    return f"give {kind}"

@@ -1,0 +1,1 @@
+"""The tools, one module each: a function ``tool(services)`` that makes it."""

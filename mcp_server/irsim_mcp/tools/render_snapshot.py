@@ -1,0 +1,92 @@
+"""``render_snapshot``: a picture to look at, and one line of text about it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from mcp.server.mcpserver import Context
+from mcp.types import ImageContent, TextContent
+from pydantic import Field
+
+from irsim.text import clean
+from irsim_mcp.limits import STEPS
+from irsim_mcp.progress import reporter
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
+from irsim_mcp.tool import StrictTool, strict
+
+__all__ = ["tool"]
+
+_DESCRIPTION = """
+    Draw one moment of a scenario as a PNG and look at it: bodies, headings (yellow arrows), goals (pale), names, lidar
+    beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0 is the start: do things
+    overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first; -1 is the end of the
+    episode, with the path of every robot. Returns one line of text, which says what the labels r0, G-r0 (its goal)
+    stand for and where the robots are, and the image; writes no file. Next: edit and validate again, or run_episode.
+"""
+_NAMED = 10
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def render_snapshot(
+        ctx: Context[Any, Any],
+        scenario_path: ScenarioPath = None,
+        scenario_yaml: ScenarioYaml = None,
+        step: Annotated[int, Field(ge=-1, le=STEPS, description="0: start; -1: end of the episode.")] = 0,
+        seed: Seed = None,
+        size_px: Annotated[
+            int, Field(ge=200, le=1024, description="Longer side; 600 px cost a model about 480 tokens.")
+        ] = 600,
+        overlays: Annotated[
+            list[Literal["names", "goals", "paths", "sensors"]] | None,
+            Field(
+                description="What to draw besides bodies. Default: names, goals, paths; sensors as the scenario says."
+            ),
+        ] = None,
+        return_image: Annotated[bool, Field(description="false: only the line of text.")] = True,
+    ) -> list[TextContent | ImageContent]:
+        answer = await services.scenario_job(
+            "snapshot",
+            scenario_path,
+            scenario_yaml,
+            seconds=services.limits.draw_seconds,
+            progress=reporter(ctx, "steps"),
+            steps=None if step == -1 else step,
+            seed=seed,
+            size=size_px,
+            overlays=overlays,
+            draw=return_image,
+        )
+        line = TextContent(type="text", text=_line(answer["scene"]))
+        if not return_image:
+            return [line]
+        return [line, ImageContent(type="image", data=answer["png"], mime_type="image/png")]
+
+    return strict(render_snapshot, title="Draw a scenario", description=_DESCRIPTION, read_only=True, idempotent=True)
+
+
+def _line(scene: dict[str, Any]) -> str:
+    left, right, low, top = scene["extent"]
+    size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
+    parts = [
+        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, seed {scene['seed']})",
+        f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
+    ]
+    parts += [_robot(robot) for robot in scene["robots"][:_NAMED]]
+    more = len(scene["robots"]) - _NAMED
+    if more > 0:
+        parts.append(f"{more} robots more")
+    parts.append(f"{scene['obstacles']} obstacle{'s' * (scene['obstacles'] != 1)}")
+    warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
+    if warnings:
+        parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
+    return "; ".join(parts) + f". Again: {clean(scene['reproduce'], 300)}"
+
+
+def _robot(robot: dict[str, Any]) -> str:
+    x, y, heading = robot["pose"]
+    name = "" if robot["name"] == robot["label"] else f" {clean(robot['name'])!r}"
+    goal = "no goal" if robot["goal"] is None else "goal ({:.2f}, {:.2f})".format(*robot["goal"])
+    status = "" if robot["status"] == "under way" else f" {robot['status']}"
+    return f"{robot['label']}{name}{status} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad, {goal}"

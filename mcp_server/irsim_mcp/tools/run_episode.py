@@ -1,0 +1,203 @@
+"""``run_episode``: simulate, and say how it ended and why."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from mcp.server.mcpserver import Context
+from mcp.types import CallToolResult, TextContent
+from pydantic import BaseModel, ConfigDict, Field
+
+from irsim.text import clean
+from irsim_mcp.limits import RUN_SECONDS, STEPS
+from irsim_mcp.progress import reporter
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
+from irsim_mcp.tool import StrictTool, strict
+
+__all__ = ["Episode", "tool"]
+
+_DESCRIPTION = """
+    Simulate one episode, until every robot has arrived or stopped, or time is up, and say how it ended. Outcome is
+    success (every robot reached its goal without a collision), collision, or timeout; none of them is an error. The
+    reason says who hit what, where and when, and who was how far from its goal, doing what. Returns outcome, reason,
+    robots (unsuccessful ones first), first events and the command that repeats the run; the same scenario and seed
+    give the same result. Next: after a failure draw that moment with render_snapshot (same seed), change the scenario,
+    validate and run again; after a success try a few other seeds if anything is random.
+"""
+_CONCISE, _DETAILED, _DECIMALS = 10, 50, 3
+
+
+class Robot(BaseModel):
+    """How it ended for one robot; lengths in m, times in s."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str
+    outcome: Literal["success", "collision", "timeout"]
+    time_to_goal: float | None = None
+    distance_to_goal: float | None = None
+    collision_count: int
+    path_length: float | None = None
+    pose: list[float] | None = None
+
+
+class Event(BaseModel):
+    """Something that happened."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    time: float
+    step: int
+    kind: Literal["arrival", "waypoint", "collision"]
+    object: str
+    partner: str | None = None
+    x: float
+    y: float
+
+
+class Episode(BaseModel):
+    """How it ended."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    outcome: Literal["success", "collision", "timeout"]
+    reason: str | None = None
+    summary: str
+    seed: int
+    steps: int
+    sim_time: float
+    time_limit: float
+    time_limit_from: Literal["argument", "scenario", "default", "limits"]
+    robots: list[Robot]
+    robot_count: int
+    events: list[Event]
+    event_count: int
+    warnings: list[str]
+    reproduce: str
+    next: str
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def run_episode(
+        ctx: Context[Any, Any],
+        scenario_path: ScenarioPath = None,
+        scenario_yaml: ScenarioYaml = None,
+        seed: Seed = None,
+        max_steps: Annotated[
+            int | None,
+            Field(ge=1, le=STEPS, description=f"Default: the scenario's time limit, at most {STEPS:,}."),
+        ] = None,
+        max_wall_s: Annotated[int, Field(ge=1, le=RUN_SECONDS, description="Seconds of computing.")] = RUN_SECONDS,
+        response_format: Annotated[
+            Literal["concise", "detailed"],
+            Field(
+                description=f"detailed: with paths, poses, waypoints, {_DETAILED} robots and events instead of {_CONCISE}."
+            ),
+        ] = "concise",
+    ) -> Annotated[CallToolResult, Episode]:
+        found = await services.scenario_job(
+            "run",
+            scenario_path,
+            scenario_yaml,
+            seconds=max_wall_s,
+            progress=reporter(ctx, "steps"),
+            seed=seed,
+            steps=max_steps,
+        )
+        episode = _episode(found, response_format == "detailed")
+        text = TextContent(type="text", text=_text(episode))
+        return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
+
+    return strict(run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True)
+
+
+def _episode(found: dict[str, Any], detailed: bool) -> Episode:
+    most = _DETAILED if detailed else _CONCISE
+    robots = sorted(found["robots"], key=lambda robot: robot["outcome"] == "success")
+    warnings = [item for item in found["warnings"] if item["severity"] == "warning"]
+    told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:most]]
+    if len(warnings) > most:
+        told.append(f"{len(warnings) - most} more: validate_scenario lists them")
+    return Episode(
+        outcome=found["outcome"],
+        reason=None if found["reason"] is None else clean(found["reason"], 500),
+        summary=clean(found["summary"], 300),
+        seed=found["seed"],
+        steps=found["steps"],
+        sim_time=_rounded(found["sim_time"]),
+        time_limit=_rounded(found["time_limit"]),
+        time_limit_from=found["time_limit_from"],
+        robots=[_robot(robot, detailed) for robot in robots[:most]],
+        robot_count=len(robots),
+        events=[_event(event) for event in found["events"] if detailed or event["kind"] != "waypoint"][:most],
+        event_count=found["event_count"],
+        warnings=[clean(line, 300) for line in told],
+        reproduce=clean(found["reproduce"], 300),
+        next=_advice(found),
+    )
+
+
+def _rounded(value: Any) -> Any:
+    """To a millimetre or a millisecond."""
+    return round(value, _DECIMALS) if isinstance(value, float) else value
+
+
+def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
+    return Robot(
+        name=clean(robot["name"]),
+        outcome=robot["outcome"],
+        time_to_goal=_rounded(robot["time_to_goal"]),
+        distance_to_goal=_rounded(robot["distance_to_goal"]),
+        collision_count=robot["collision_count"],
+        path_length=_rounded(robot["path_length"]) if detailed else None,
+        pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
+    )
+
+
+def _event(event: dict[str, Any]) -> Event:
+    names = {key: None if event[key] is None else clean(event[key]) for key in ("object", "partner")}
+    return Event(**{**{key: _rounded(value) for key, value in event.items()}, **names})
+
+
+def _advice(found: dict[str, Any]) -> str:
+    seed = found["seed"]
+    if found["outcome"] == "success":
+        return f"See the paths with render_snapshot step=-1 seed={seed}; if anything is random, try other seeds."
+    hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
+    step = hits[0] if found["outcome"] == "collision" and hits else -1
+    return f"Look with render_snapshot step={step} seed={seed}, change the scenario, validate and run again."
+
+
+def _text(episode: Episode) -> str:
+    """The result in words; it says all that the structure says."""
+    limit = f"{episode.time_limit:g} s ({episode.time_limit_from})"
+    lines = [f"{episode.outcome}: {episode.summary}"]
+    if episode.reason is not None:
+        lines.append(f"Reason: {episode.reason}")
+    lines.append(f"{episode.steps} steps, {episode.sim_time:g} s of at most {limit}, seed {episode.seed}")
+    lines.append(f"Robots ({len(episode.robots)} of {episode.robot_count}):")
+    lines += [f"- {_robot_text(robot)}" for robot in episode.robots]
+    if episode.events:
+        lines.append(f"Events ({len(episode.events)} of {episode.event_count}):")
+    for event in episode.events:
+        whom = f" with {event.partner!r}" if event.partner is not None else ""
+        place = f"({event.x:g}, {event.y:g})"
+        lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{whom} at {place}")
+    lines += [f"Warning: {warning}" for warning in episode.warnings]
+    return "\n".join([*lines, f"Again: {episode.reproduce}", f"Next: {episode.next}"])
+
+
+def _robot_text(robot: Robot) -> str:
+    facts = [f"{robot.name!r} {robot.outcome}"]
+    if robot.time_to_goal is not None:
+        facts.append(f"arrived at {robot.time_to_goal:g} s")
+    if robot.distance_to_goal is not None:
+        facts.append(f"{robot.distance_to_goal:g} m from its goal")
+    facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
+    if robot.path_length is not None:
+        facts.append(f"drove {robot.path_length:g} m")
+    if robot.pose is not None:
+        facts.append("ends at x {:g} y {:g} heading {:g}".format(*robot.pose))
+    return ", ".join(facts)

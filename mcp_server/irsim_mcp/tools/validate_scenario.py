@@ -1,0 +1,127 @@
+"""``validate_scenario``: every problem of a scenario, as data."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from mcp.types import CallToolResult, TextContent
+from pydantic import BaseModel, ConfigDict, Field
+
+from irsim.text import clean
+from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
+from irsim_mcp.tool import StrictTool, strict
+
+__all__ = ["Report", "tool"]
+
+_DESCRIPTION = """
+    Check a scenario without running it. Use it after every edit, before drawing or running. Returns all problems at
+    once; an invalid scenario is a normal result with valid=false. Each issue has a code, the path and line, what is
+    wrong and how to fix it. Errors must be fixed (misspelt keys are errors too); warnings run, but likely not as
+    meant; hints are worth knowing. not-yet-simulated means that this version cannot do it: tell the user instead of
+    dropping it. Next: apply the fixes and validate again; once valid, look at it with render_snapshot.
+"""
+
+
+class Issue(BaseModel):
+    """One problem."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    code: str
+    severity: Literal["error", "warning", "hint"]
+    path: str
+    message: str
+    fix: str | None = None
+    line: int | None = None
+    column: int | None = None
+    allowed: str | None = None
+
+
+class Report(BaseModel):
+    """What was found."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    valid: bool
+    summary: str
+    error_count: int
+    warning_count: int
+    counts: dict[str, int]
+    issues: list[Issue]
+    truncated: bool
+    next: str
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def validate_scenario(
+        scenario_path: ScenarioPath = None,
+        scenario_yaml: ScenarioYaml = None,
+        max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
+        response_format: Annotated[
+            Literal["concise", "detailed"], Field(description="detailed: with columns, allowed values and hints.")
+        ] = "concise",
+    ) -> Annotated[CallToolResult, Report]:
+        found = await services.scenario_job(
+            "validate", scenario_path, scenario_yaml, seconds=services.limits.check_seconds
+        )
+        report = _report(found, max_issues, response_format == "detailed")
+        text = TextContent(type="text", text=_text(report))
+        return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
+
+    return strict(
+        validate_scenario, title="Validate a scenario", description=_DESCRIPTION, read_only=True, idempotent=True
+    )
+
+
+def _report(found: dict[str, Any], most: int, detailed: bool) -> Report:
+    findings = [item for item in found["findings"] if detailed or item["severity"] != "hint"]
+    summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
+    if found["hints"] and not detailed:
+        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)} with response_format=detailed"
+    cut = len(findings) - most
+    if cut > 0:
+        advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
+    elif not found["valid"]:
+        advice = "Apply the fixes and validate again; lookup explains a code or a key."
+    else:
+        advice = "Look at it with render_snapshot, then run_episode."
+    return Report(
+        valid=found["valid"],
+        summary=summary,
+        error_count=found["errors"],
+        warning_count=found["warnings"],
+        counts=found["counts"],
+        issues=[_issue(item, detailed) for item in findings[:most]],
+        truncated=cut > 0,
+        next=advice,
+    )
+
+
+def _issue(item: dict[str, Any], detailed: bool) -> Issue:
+    allowed = item["allowed"]
+    if isinstance(allowed, list):
+        allowed = ", ".join(allowed)
+    return Issue(
+        code=item["code"],
+        severity=item["severity"],
+        path=clean(item["path"], 120),
+        line=item["line"],
+        message=clean(item["message"], 300),
+        fix=None if item["fix"] is None else clean(item["fix"], 300),
+        column=item["column"] if detailed else None,
+        allowed=clean(allowed, 300) if allowed and (detailed or item["fix"] is None) else None,
+    )
+
+
+def _text(report: Report) -> str:
+    """The report in words; it says all that the structure says."""
+    lines = [report.summary]
+    for number, issue in enumerate(report.issues, 1):
+        place = "" if issue.line is None else f" line {issue.line}"
+        place += "" if issue.column is None else f" column {issue.column}"
+        line = f"{number}. {issue.severity} {issue.code} at {issue.path}{place}: {issue.message}."
+        line += "" if issue.allowed is None else f" Allowed: {issue.allowed}."
+        lines.append(line + ("" if issue.fix is None else f" Fix: {issue.fix}."))
+    return "\n".join([*lines, f"Next: {report.next}"])

@@ -1,0 +1,172 @@
+"""Work in processes of their own: one for each call, with limits, gone when the call is over for whatever reason."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import anyio
+from anyio.abc import Process
+from anyio.streams.buffered import BufferedByteReceiveStream
+
+from irsim_mcp.errors import failure
+from irsim_mcp.limits import ServerLimits, scenario_limits
+from irsim_mcp.sandbox import Workspace
+
+__all__ = ["Progress", "Workers", "missing_limits"]
+
+Progress = Callable[[int, int], Awaitable[None]]
+"""Told (steps done, steps at most)."""
+
+_LONGEST_ANSWER = 16 * 1024**2
+_STARTING = 1.0
+"""Seconds that starting a process takes, added to the time of the work."""
+_KEPT = (
+    ("APPDATA", "LOCALAPPDATA", "PATHEXT", "SYSTEMDRIVE", "SYSTEMROOT", "TEMP", "TMP", "USERPROFILE")
+    if os.name == "nt"
+    else (
+        "HOME",
+        "LANG",
+        "LC_ALL",
+        "LC_CTYPE",
+        "LD_LIBRARY_PATH",
+        "PATH",
+        "TMPDIR",
+        "XDG_CACHE_HOME",
+        "XDG_CONFIG_HOME",
+    )
+)
+_SET = {"MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
+class Workers:
+    """At most so many processes at a time; the next call is told to come back.
+
+    Args:
+        workspace: The folder they stay in.
+        limits: What they may use.
+    """
+
+    def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
+        self._workspace, self._limits = workspace, limits
+        self._at_work = 0
+
+    async def call(
+        self, task: str, arguments: Mapping[str, Any], *, seconds: float, progress: Progress | None = None
+    ) -> dict[str, Any]:
+        """Do something in a process of its own and wait for the result.
+
+        The process is killed when the time is over, when the call is cancelled and when the server ends.
+
+        Args:
+            task: What to do, a name in :mod:`irsim_mcp.job`.
+            arguments: Arguments of it, as JSON has them.
+            seconds: Wall-clock time it may take.
+            progress: Told how far it is.
+
+        Raises:
+            ToolError: There are too many at work, the work failed, or time was over.
+        """
+        if self._at_work >= self._limits.workers:
+            raise failure(
+                "busy",
+                f"{self._at_work} calls are being worked on, which is as many as there may be",
+                fix="wait until one of them has returned, then call again",
+            )
+        self._at_work += 1
+        try:
+            return await self._work({"task": task, "arguments": dict(arguments)}, seconds, progress)
+        finally:
+            self._at_work -= 1
+
+    async def _work(self, job: dict[str, Any], seconds: float, progress: Progress | None) -> dict[str, Any]:
+        job["workspace"] = str(self._workspace.root)
+        job["limits"] = asdict(scenario_limits(self._limits, self._workspace.root))
+        job["resources"] = {
+            "memory": self._limits.memory,
+            "written": self._limits.written,
+            "cpu": int(seconds + _STARTING) + 2,
+        }
+        process = await anyio.open_process(
+            _command(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=None,
+            cwd=Path(__file__).parent,  # not the workspace, whose matplotlibrc would be obeyed
+            env={name: os.environ[name] for name in _KEPT if name in os.environ} | _SET,
+            start_new_session=True,
+        )
+        reached: tuple[int, int] | None = None
+        try:
+            with anyio.move_on_after(seconds + _STARTING):
+                assert process.stdin is not None
+                assert process.stdout is not None
+                with suppress(OSError, anyio.BrokenResourceError):
+                    await process.stdin.send(json.dumps(job).encode() + b"\n")
+                lines = BufferedByteReceiveStream(process.stdout)
+                while True:
+                    try:
+                        message = json.loads(await lines.receive_until(b"\n", _LONGEST_ANSWER))
+                    except (anyio.EndOfStream, anyio.IncompleteRead, anyio.DelimiterNotFound):
+                        await process.wait()
+                        break
+                    if "progress" not in message:
+                        return dict(message)
+                    reached = (message["progress"][0], message["progress"][1])
+                    if progress is not None:
+                        await progress(*reached)
+            raise _gone(process.returncode, seconds, reached)
+        finally:
+            with anyio.CancelScope(shield=True):
+                await _end(process)
+
+
+async def _end(process: Process) -> None:
+    if process.returncode is None:
+        with suppress(ProcessLookupError, PermissionError):
+            if os.name == "posix":
+                os.killpg(process.pid, signal.SIGKILL)
+            else:
+                process.kill()
+    await process.aclose()
+
+
+def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None) -> Exception:
+    """The error for a process that gave no result; ``code`` is None if it had to be stopped."""
+    if code is None or (os.name == "posix" and code == -signal.SIGXCPU):
+        done = "" if reached is None else f" after {reached[0]:,} of {reached[1]:,} steps"
+        fix = "use fewer objects or lidar beams"
+        if reached is not None:
+            fix = f"ask for fewer steps (about {max(1, reached[0] * 9 // 10):,} fit), or {fix}"
+        return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix)
+    fix = "use fewer objects or lidar beams; if it happens with a small scenario too, please report it"
+    return failure("worker-failed", f"the process that did the work ended with code {code}", fix=fix)
+
+
+def _command() -> list[str]:
+    """Isolated: neither the workspace nor the user's environment decides what is imported."""
+    flags = ["-I", "-X", "utf8"]
+    if str(Path(__file__)).startswith(_user_site() + os.sep):  # installed with pip --user, which -I leaves out
+        flags = ["-E", "-X", "utf8"]
+    return [sys.executable, *flags, "-m", "irsim_mcp.job"]
+
+
+def _user_site() -> str:
+    import site
+
+    return site.getusersitepackages()
+
+
+def missing_limits() -> list[str]:
+    """What workers can't be kept from on this system, in words."""
+    if os.name == "posix":
+        return []
+    return ["memory and processor time of a worker are not limited here, only its running time"]
