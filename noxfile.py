@@ -66,6 +66,7 @@ def check_all(session: nox.Session) -> None:
     timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", *sources)
     timed(session, "mypy", "mypy")
     timed(session, "schema", "irsim", "schema", "--check")
+    timed(session, "skill references", "python", "-m", "irsim.lookup.reference", "--check")
     timed(session, "tests", "pytest", "-n", "auto", *session.posargs)
 
 

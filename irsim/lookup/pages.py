@@ -1,0 +1,193 @@
+"""The references of the agent skill ``irsim-scenario``: one Markdown page per part of the language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from irsim import templates
+from irsim.codes import CODES, TOOL_CODES
+from irsim.lookup.answer import Answer, Key
+from irsim.lookup.gaps import Gap, find_gaps
+from irsim.lookup.tables import key_table, plain_table
+from irsim.lookup.topics import lookup
+from irsim.registry import KINEMATICS, REGISTRIES
+
+__all__ = ["PAGES", "pages"]
+
+_STAR = "A key with \\* also takes a list with one value for each object of the entry."
+_COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r, g, b]` from 0 to 1."
+_NOT_SIMULATED = " (not simulated by this version)"
+
+
+def pages() -> dict[str, str]:
+    """Name of each page without the suffix, and its text."""
+    gaps = find_gaps()
+    note = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->\n"
+    return {name: f"# {title}\n\n{note}\n{make(gaps).strip()}\n" for name, (title, make) in PAGES.items()}
+
+
+def _world(gaps: list[Gap]) -> str:
+    parts = [
+        "The section `world`: extent, time, modes. Lengths in meters, times in seconds.",
+        _keys("world", gaps),
+        "`plot` is in [plot.md](plot.md).",
+        f"## Grid maps: `world.obstacle_map`\n\n{_components('map', '###')}",
+        "## The section `gui`\n\n### `gui.keyboard`\n\n" + _keys("gui.keyboard", gaps),
+        "### `gui.mouse`\n\n" + _keys("gui.mouse", gaps),
+        "## The section `custom`\n\n" + lookup("custom").text,
+    ]
+    return "\n\n".join(parts)
+
+
+def _objects(gaps: list[Gap]) -> str:
+    kinds = ("kinematics", "shapes", "behaviors", "sensors", "distributions", "plot")
+    intro = (
+        "One entry of `robot:` or `obstacle:`, which take the same keys: a mapping, or a list of mappings. An "
+        f"obstacle with `kinematics` and `behavior` moves like a robot. {_STAR}"
+    )
+    pages_of = ", ".join(f"[{name}]({name}.md)" for name in kinds)
+    return f"{intro}\n\n{_keys('robot', gaps)}\n\nComponents: {pages_of}. {_COLOR}"
+
+
+def _kinematics(gaps: list[Gap]) -> str:
+    rows = []
+    for feature in KINEMATICS.features():
+        names = getattr(feature.options, "control_rows", ())
+        units = getattr(feature.options, "control_units", ())
+        controls = (
+            "" if feature.name == "static" else ", ".join(f"{n} [{u}]" for n, u in zip(names, units, strict=True))
+        )
+        state = ", ".join(getattr(feature.options, "state_rows", ()))
+        rows.append((f"`{feature.name}`", controls or "none: it never moves", state))
+    orders = plain_table(("name", "controls, in this order", "rows of `state`"), rows)
+    intro = (
+        "`vel_min`, `vel_max`, `acce` and `velocity` have one number per control, and so has an action of a program."
+    )
+    return f"`kinematics: {{name: …}}`, how an object moves.\n\n{orders}\n{intro}\n\n{_components('kinematics')}"
+
+
+def _behaviors(gaps: list[Gap]) -> str:
+    return (
+        "`behavior: {name: …}`, what an object does when no program commands it. All of them need `kinematics`.\n\n"
+        f"{_components('behavior')}\n\n## Planners\n\nFor the key `planner` of `follow`.\n\n"
+        + _components("planner", "###")
+    )
+
+
+def _shapes(gaps: list[Gap]) -> str:
+    return (
+        "`shape: {name: …}`, the footprint, in the body frame: the origin is the `state` of the object, x its heading."
+        " Without `shape` an object is a circle of radius 1 m.\n\n" + _components("shape")
+    )
+
+
+def _sensors(gaps: list[Gap]) -> str:
+    return (
+        "`sensors: [{name: …}, …]`, a list. Lidars see what is not `unobstructed`, robots and obstacles alike.\n\n"
+        + _components("sensor")
+        + f"\n\n{_COLOR}"
+    )
+
+
+def _distributions(gaps: list[Gap]) -> str:
+    return (
+        "`distribution: {name: …}`, how the `number` objects of an entry are placed. `manual` is the default.\n\n"
+        + _components("distribution")
+    )
+
+
+def _plot(gaps: list[Gap]) -> str:
+    parts = [
+        f"How things are drawn; nothing here changes the simulation. {_COLOR}",
+        "## `plot` of an object\n\n" + _keys("robot.plot", gaps),
+        "## `world.plot`\n\n" + _keys("world.plot", gaps),
+        "## `world.plot.saved_figure`\n\n" + _keys("world.plot.saved_figure", gaps),
+    ]
+    return "\n\n".join(parts)
+
+
+def _templates(gaps: list[Gap]) -> str:
+    parts = ["Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file."]
+    for template in templates.load_all():
+        answer = lookup(template.name)
+        about = f"{template.purpose} With the default parameters a run ends in {' or '.join(template.outcomes)}."
+        words = f"About: {', '.join(template.tags)}."
+        table = key_table(_all_keys(answer))
+        parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{table}\n`{answer.example}`")
+    return "\n\n".join(parts)
+
+
+def _diagnostics(gaps: list[Gap]) -> str:
+    intro = (
+        "Every finding has a code, a path, a line, a reason and mostly a fix; the fix in the finding knows more than "
+        "this table. `irsim describe CODE`, or the tool `lookup` with the code, explains one."
+    )
+    parts = [intro]
+    for title, codes in (("Findings about a scenario", CODES), ("Errors of commands and tools", TOOL_CODES)):
+        rows = [(f"`{name}`", code.title) for name, code in codes.items()]
+        parts.append(f"## {title}\n\n{plain_table(('code', 'what it is'), rows)}")
+    return "\n\n".join(parts)
+
+
+def _not_simulated(gaps: list[Gap]) -> str:
+    rows = [
+        (f"`{gap.section}`" + (", `obstacle`" if gap.section == "robot" else ""), f"`{gap.example}`", gap.message)
+        for gap in gaps
+    ]
+    table = plain_table(("section", "for example", "what the validator says"), rows)
+    return (
+        "Valid language that this version does not compute. It never runs a scenario without it: validating, drawing "
+        "and running all refuse with the code `not-yet-simulated`. The list was made by asking the validator about "
+        "each key and component alone; about combinations, and if the two differ, the validator is right.\n\n" + table
+    )
+
+
+def _keys(topic: str, gaps: list[Gap]) -> str:
+    """The table of a mapping's keys."""
+    answer = lookup(topic)
+    missing: dict[str, list[str]] = {}
+    for gap in gaps:
+        if gap.section == topic:
+            missing.setdefault(gap.key, []).append(gap.value)
+    return key_table(_all_keys(answer), missing).strip()
+
+
+def _components(kind: str, level: str = "##") -> str:
+    """A section for each component of a kind, after the keys that mean the same in all of them."""
+    features = REGISTRIES[kind].features()
+    answers = {feature.name: lookup(f"{kind}.{feature.name}") for feature in features}
+    everyones = [
+        key for key in _all_keys(answers[features[0].name]) if all(key in _all_keys(a) for a in answers.values())
+    ]
+    parts = [f"All of them also take:\n\n{key_table(everyones)}"] if everyones else []
+    for feature in features:
+        mark = "" if feature.simulated else _NOT_SIMULATED
+        own = [key for key in _all_keys(answers[feature.name]) if key not in everyones]
+        example = answers[feature.name].example or ""
+        body = [
+            " ".join((feature.options.__doc__ or "").split()),
+            key_table(own) if own else "",
+            f"`{example}`" if example and "\n" not in example else "",
+        ]
+        parts.append(f"{level} {feature.name}{mark}\n\n" + "\n\n".join(part.strip() for part in body if part))
+    return "\n\n".join(part.strip() for part in parts)
+
+
+def _all_keys(answer: Answer) -> list[Key]:
+    return [key for keys in answer.groups.values() for key in keys]
+
+
+PAGES: dict[str, tuple[str, Callable[[list[Gap]], str]]] = {
+    "world": ("World", _world),
+    "objects": ("Robots and obstacles", _objects),
+    "shapes": ("Shapes", _shapes),
+    "kinematics": ("Kinematics", _kinematics),
+    "behaviors": ("Behaviors", _behaviors),
+    "sensors": ("Sensors", _sensors),
+    "distributions": ("Distributions", _distributions),
+    "plot": ("Plot", _plot),
+    "templates": ("Templates", _templates),
+    "diagnostics": ("Diagnostics", _diagnostics),
+    "not-simulated": ("Not simulated by this version", _not_simulated),
+}
+"""Title and maker of each page."""

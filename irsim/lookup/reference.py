@@ -1,0 +1,53 @@
+"""Writes the references of the agent skill: ``python -m irsim.lookup.reference [--check]``.
+
+They are generated from the models, registries, templates and codes, as the answers of :func:`irsim.lookup.lookup` are.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from irsim import resources
+from irsim.files import write_atomically
+from irsim.lookup.pages import pages
+
+__all__ = ["main", "out_of_date"]
+
+SKILL = "irsim-scenario"
+
+
+def out_of_date(folder: Path) -> list[Path]:
+    """Pages that are missing, differ from what would be written, or should not be there."""
+    wanted = {folder / f"{name}.md": text for name, text in pages().items()}
+    stale = [path for path, text in wanted.items() if not path.is_file() or path.read_text(encoding="utf-8") != text]
+    return stale + sorted(set(folder.glob("*")) - set(wanted))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the pages, or check them.
+
+    Returns:
+        0, or 1 if ``--check`` found some out of date.
+    """
+    parser = argparse.ArgumentParser(prog="python -m irsim.lookup.reference", description=__doc__.partition("\n")[0])
+    parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if pages are out of date")
+    folder = resources.skills_directory() / SKILL / "references"
+    if parser.parse_args(arguments).check:
+        stale = out_of_date(folder)
+        for path in stale:
+            print(f"{path} is out of date; python -m irsim.lookup.reference writes it again", file=sys.stderr)
+        return 1 if stale else 0
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in out_of_date(folder):
+        path.unlink(missing_ok=True)
+    for name, text in pages().items():
+        write_atomically(folder / f"{name}.md", text)
+    print(f"wrote {folder}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
