@@ -93,7 +93,7 @@ def tool(services: Services) -> StrictTool:
         response_format: Annotated[
             Literal["concise", "detailed"],
             Field(
-                description=f"detailed: with paths, poses, waypoints, {_DETAILED} robots and events instead of {_CONCISE}."
+                description=f"detailed: paths, poses, waypoints; {_DETAILED} robots and events instead of {_CONCISE}."
             ),
         ] = "concise",
     ) -> Annotated[CallToolResult, Episode]:
