@@ -145,9 +145,11 @@ def _shared(values: list[Any]) -> list[Any]:
 
 
 def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:
-    """(N, 4) RGBA; None is transparent."""
+    """(N, 4) RGBA; None is transparent; (0, 4), which Matplotlib need not draw at all, when all are None."""
+    if all(color is None for color in colors):
+        return np.empty((0, 4))
     levels = [_NONE if c is None else rgba(c, a) for c, a in zip(colors, alphas, strict=True)]
-    return np.array(levels, dtype=np.float64).reshape(-1, 4)
+    return np.array(levels, dtype=np.float64)
 
 
 def _path(geometry: Geometry) -> Path:
