@@ -8,6 +8,7 @@ import itertools
 import textwrap
 from collections.abc import Callable
 from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,18 +19,32 @@ from pydantic_core import CoreSchema, PydanticCustomError
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-__all__ = ["SHARED_SCHEMAS", "Options", "field_docs", "problem", "shared_schema"]
+__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "problem", "shared_schema"]
 
-SHARED_SCHEMAS: ContextVar[dict[str, Callable[[], dict[str, Any]]] | None] = ContextVar("SHARED_SCHEMAS", default=None)
-"""Parts that the schema in the making refers to by name, and what makes them; None when nobody makes one."""
+
+@dataclass
+class SchemaParts:
+    """A schema in the making.
+
+    Attributes:
+        makers: Parts that it refers to by name, and what makes them.
+        user_code: Whether names that user code has registered in this process belong into it.
+    """
+
+    makers: dict[str, Callable[[], dict[str, Any]]]
+    user_code: bool
+
+
+SCHEMA_PARTS: ContextVar[SchemaParts | None] = ContextVar("SCHEMA_PARTS", default=None)
+"""The schema that is being made; None when nobody makes one."""
 
 
 def shared_schema(name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """A reference to a part of the schema that occurs more than once; the part itself where none is collected."""
-    shared = SHARED_SCHEMAS.get()
-    if shared is None:
+    parts = SCHEMA_PARTS.get()
+    if parts is None:
         return make()
-    shared[name] = make
+    parts.makers[name] = make
     return {"x-shared": name}  # pydantic would look a $ref up among its own definitions
 
 

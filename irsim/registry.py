@@ -101,12 +101,16 @@ class Registry:
 
     def names(self) -> list[str]:
         """All names, sorted: built-in, registered, and offered by installed plug-ins."""
+        return sorted({*self.installed(), *self._features})
+
+    def installed(self) -> list[str]:
+        """Names that are there in every process, sorted: built-in and offered by installed plug-ins."""
         builtin = (
             info.name
             for info in pkgutil.iter_modules(importlib.import_module(self.package).__path__)
             if not info.name.startswith("_")
         )
-        return sorted({*builtin, *self._features, *self._plugin_entries()})
+        return sorted({*builtin, *self._plugin_entries()})
 
     def get(self, name: str) -> Feature | None:
         """The feature, imported on first use; None when there is none of that name."""

@@ -10,7 +10,7 @@ from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
 
-from irsim._options import problem, shared_schema
+from irsim._options import SCHEMA_PARTS, problem, shared_schema
 from irsim.diagnostics import nearest
 from irsim.registry import CustomBehaviors, Registry
 
@@ -39,6 +39,10 @@ class Choices:
     def names(self) -> list[str]:
         """All names, sorted."""
         return sorted(self.models)
+
+    def installed(self) -> list[str]:
+        """The same: nobody registers anything here."""
+        return self.names()
 
     def get(self, name: str) -> Choice | None:
         """The choice of that name."""
@@ -177,7 +181,9 @@ class Select:
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         options = [self._option_schema(name) for name in self._schema_names()]
-        if self.custom is not None and self.fallback is not None and (names := self.custom.names()):
+        parts = SCHEMA_PARTS.get()
+        user_code = parts is None or parts.user_code
+        if user_code and self.custom is not None and self.fallback is not None and (names := self.custom.names()):
             option = self._model_schema(self.fallback)
             options.append({**option, "properties": {"name": {"enum": names}}, "required": ["name"]})
         if self.short is not None:
@@ -191,7 +197,9 @@ class Select:
 
     def _schema_names(self) -> list[str]:
         names = []
-        for name in self.registry.names():
+        parts = SCHEMA_PARTS.get()
+        registered = parts is None or parts.user_code
+        for name in self.registry.names() if registered else self.registry.installed():
             feature = self.registry.get(name)
             if feature is None or name in self.exclude:
                 continue

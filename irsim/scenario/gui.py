@@ -8,6 +8,7 @@ from pydantic import Field
 
 from irsim._options import Options
 from irsim.units import Bool, Count, MetersPerSecond, Number, RadiansPerSecond
+from irsim.vectors import OrNull
 
 __all__ = ["Gui", "Keyboard", "Mouse"]
 
@@ -43,7 +44,7 @@ class Mouse(Options):
 class Gui(Options):
     """Keyboard and mouse."""
 
-    keyboard: Keyboard = Keyboard()
+    keyboard: Annotated[Keyboard, OrNull({})] = Keyboard()
     """Keyboard control of a robot."""
-    mouse: Mouse = Mouse()
+    mouse: Annotated[Mouse, OrNull({})] = Mouse()
     """Mouse control of the view."""

@@ -100,6 +100,11 @@ def load_text(
     if len(text) > limits.bytes:
         problem = _too_large(len(text), limits, name)
         return Document(None, [problem], True, name=name, path=path, limits=limits)
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        problem = _half_a_character(text, error.start, name)
+        return Document(None, [problem], True, name=name, path=path, limits=limits)
     composed: Composed = compose(text, limits)
     document = Document(composed.data, composed.problems, composed.fatal, text, name, path, (), limits)
     return _unwrapped(document)
@@ -148,6 +153,18 @@ def _too_large(size: int, limits: Limits, name: str | None) -> Diagnostic:
         given=size,
         allowed=f"at most {limits.bytes:,} bytes",
         fix="write groups of objects with 'number' and 'distribution'",
+        file=name,
+    )
+
+
+def _half_a_character(text: str, place: int, name: str | None) -> Diagnostic:
+    return Diagnostic(
+        "not-text",
+        "error",
+        (),
+        f"half of a surrogate pair (character {place + 1}), which is no text",
+        line=text.count("\n", 0, place) + 1,
+        fix="remove it, or write the whole character",
         file=name,
     )
 

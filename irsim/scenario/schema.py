@@ -7,7 +7,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from irsim._options import SHARED_SCHEMAS
+from irsim._options import SCHEMA_PARTS, SchemaParts
 from irsim.scenario.model import Scenario
 
 __all__ = ["INEXPRESSIBLE", "SCHEMA_ID", "build_schema", "check", "json_schema", "schema_text"]
@@ -47,12 +47,13 @@ INEXPRESSIBLE: dict[str, str] = {
 """Rules that the models or checks enforce and the schema does not, with the reason; by diagnostic code."""
 
 
-def json_schema() -> dict[str, Any]:
-    """The schema of scenario files.
+def json_schema(*, user_code: bool = True) -> dict[str, Any]:
+    """The schema of scenario files: everything built in and everything installed plug-ins offer.
 
-    Features that plug-ins or user code have registered in this process are part of it.
+    Args:
+        user_code: Also what user code has registered in this process.
     """
-    definitions = _definitions()
+    definitions = _definitions(user_code)
     definitions["Wrapped"] = {
         "description": "A file shared with another simulator: only what is under 'irsim' counts.",
         "type": "object",
@@ -79,11 +80,11 @@ def json_schema() -> dict[str, Any]:
     return schema
 
 
-def _definitions() -> dict[str, Any]:
+def _definitions(user_code: bool) -> dict[str, Any]:
     """The schema of every model, the scenario's own and those of all features it can name."""
     makers: dict[str, Callable[[], dict[str, Any]]] = {"Scenario": Scenario.model_json_schema}
     definitions: dict[str, Any] = {}
-    collecting = SHARED_SCHEMAS.set(makers)
+    collecting = SCHEMA_PARTS.set(SchemaParts(makers, user_code))
     try:
         while waiting := [name for name in makers if name not in definitions]:
             for name in waiting:
@@ -91,7 +92,7 @@ def _definitions() -> dict[str, Any]:
                 definitions.update(schema.pop("$defs", {}))
                 definitions[name] = schema
     finally:
-        SHARED_SCHEMAS.reset(collecting)
+        SCHEMA_PARTS.reset(collecting)
     return {name: _with_references(schema) for name, schema in definitions.items()}
 
 
@@ -112,7 +113,7 @@ build_schema = json_schema
 
 def schema_text() -> str:
     """The schema as it stands in ``schema/scenario.schema.json``."""
-    return json.dumps(json_schema(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(json_schema(user_code=False), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def check(path: str | os.PathLike[str]) -> bool:

@@ -102,15 +102,10 @@ def test_every_section_at_once() -> None:
 )
 def test_keys_of_objects(entry: str) -> None:
     base = {"kinematics": "{name: diff}", "shape": "{name: circle}", "behavior": "{name: dash}"}
-    lines = [
-        f"    {key}: {value}" for key, value in base.items() if f"{key}: " not in entry.replace("group_behavior", "")
-    ]
-    text = "robot:\n  - number: 1\n" + "\n".join(lines) + f"\n    {entry}\n"
-    accepted(
-        text.replace("name: contact2d", "name: contact2d")
-        if "contact2d" not in entry
-        else "world: {collision_mode: contact}\n" + text
-    )
+    given = entry.replace("group_behavior", "")
+    lines = [f"    {key}: {value}" for key, value in base.items() if f"{key}: " not in given]
+    world = "world: {collision_mode: contact}\n" if "contact2d" in entry else ""
+    accepted(world + "robot:\n  - number: 1\n" + "\n".join(lines) + f"\n    {entry}\n")
 
 
 @pytest.mark.parametrize(
