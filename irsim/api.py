@@ -24,7 +24,7 @@ from irsim.verdict import command, run_result
 
 __all__ = ["default_time_limit", "import_modules", "read_scenario", "render", "run", "snapshot", "validate"]
 
-VIDEO_SUFFIXES = (".gif", ".mp4", ".apng", ".webm", ".avi", ".mov", ".mkv")
+VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 
 
 def validate(
@@ -177,6 +177,8 @@ def render(
 
 def _animate(env: Env, steps: int, save: Path | None, progress: Progress | None) -> list[str]:
     env.save_ani = save is not None
+    if save is not None:
+        env.ani_kwargs["suffix"] = save.suffix  # how many colours a kept frame needs
     env.render()
     for step in range(steps):
         if env.done():

@@ -136,12 +136,12 @@ class EnvDrawing(EnvAccess):
         if not self.headless:
             self._env_plot.draw_trajectory(traj, traj_type, **kwargs)
 
-    def draw_points(self, points: Any, s: float = 30, c: str = "b", refresh: bool = True, **kwargs: Any) -> None:
+    def draw_points(self, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
         """Draw points: a list of points or (2, N) [m]; ``s`` in points squared."""
         if not self.headless:
             self._env_plot.draw_points(points, s, c, refresh, **kwargs)
 
-    def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-b") -> None:
+    def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-") -> None:
         """Draw a closed outline (2, N) [m]."""
         if not self.headless:
             self._env_plot.draw_box(vertex, refresh, color)
