@@ -9,11 +9,12 @@ from typing import Literal
 from irsim.env import Env
 from irsim.episode import Progress, advance, horizon_of, read_scenario
 from irsim.observers.outcome import robot_outcomes
-from irsim.results import RobotPose, SnapshotResult
+from irsim.results import Finding, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.objects import ResolvedScenario
 from irsim.verdict import command
 
-__all__ = ["OVERLAYS", "Overlay", "snapshot"]
+__all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of"]
 
 Overlay = Literal["names", "goals", "paths", "sensors"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -59,6 +60,36 @@ def snapshot(
         ValueError: Neither or both of ``path`` and ``text``.
     """
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
+    return snapshot_of(
+        scenario,
+        path,
+        warnings=warnings,
+        seed=seed,
+        steps=steps,
+        size=size,
+        overlays=overlays,
+        draw=draw,
+        strict=strict,
+        limits=limits,
+        progress=progress,
+    )
+
+
+def snapshot_of(
+    scenario: ResolvedScenario,
+    path: str | Path | None,
+    *,
+    warnings: list[Finding],
+    seed: int | None = None,
+    steps: int | None = 0,
+    size: int = 600,
+    overlays: Iterable[Overlay] | None = None,
+    draw: bool = True,
+    strict: bool = False,
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> SnapshotResult:
+    """The same of a scenario that has been read, with what was odd about it; ``path`` is only told."""
     env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
     horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     advance(env, horizon, progress, until_done=steps is None)

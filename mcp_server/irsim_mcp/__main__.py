@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,10 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     for missing in missing_limits():
         print(f"irsim-mcp: {missing}", file=sys.stderr)
-    try:
-        build_server(workspace, limits).run("stdio")
-    except KeyboardInterrupt:
-        raise SystemExit(130) from None
+    # Ctrl-C ends the process at once, without waiting for input that a thread is reading; workers notice and end too.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    build_server(workspace, limits).run("stdio")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -13,7 +13,10 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from irsim.scenario.limits import Limits
 
 __all__ = ["main"]
 
@@ -29,6 +32,7 @@ def main() -> None:
     job = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _limit(job["resources"])
+    os.chdir(job["workspace"])  # paths of scenarios, and in them, are relative to it
 
     def answer(text: str) -> None:
         answers.write(text.encode() + b"\n")
@@ -81,35 +85,41 @@ class _Progress:
             self._answer(json.dumps({"progress": [done, total]}))
 
 
-def _common(job: dict[str, Any]) -> dict[str, Any]:
+def _limits(job: dict[str, Any]) -> Limits:
     from irsim.scenario.limits import Limits
 
-    os.chdir(job["workspace"])
-    return {"strict": True, "limits": Limits(**job["limits"]), **job["arguments"]}
+    return Limits(**job["limits"])
 
 
 def _validate(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import validate
 
-    report = validate(**_common(job))
+    report = validate(**job["arguments"], strict=True, limits=_limits(job))
     return report.model_dump_json(exclude={"findings": {"__all__": {"given"}}})
 
 
 def _run(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import run
 
-    result = run(**_common(job), progress=progress)
+    result = run(**job["arguments"], strict=True, limits=_limits(job), progress=progress)
     return result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})
 
 
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
-    from irsim.api import snapshot
+    from irsim.episode import read_scenario
+    from irsim.snapshot import snapshot_of
 
-    if job["arguments"].get("draw", True):
-        import irsim.render.snapshot  # noqa: F401  # before the workspace is the current directory, see _common
-    result = snapshot(**_common(job), progress=progress)
+    arguments, limits = job["arguments"], _limits(job)
+    path, text = arguments.pop("path", None), arguments.pop("text", None)
+    scenario, warnings = read_scenario(path, text=text, strict=True, limits=limits)
+    if arguments["draw"]:
+        os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
+        import irsim.render.snapshot  # noqa: F401
+
+        os.chdir(job["workspace"])
+    result = snapshot_of(scenario, path, warnings=warnings, strict=True, limits=limits, progress=progress, **arguments)
     png = base64.b64encode(result.png).decode()
     return f'{{"png": "{png}", "scene": {result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})}}}'
 

@@ -100,7 +100,7 @@ class Workers:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=None,
-            cwd=Path(__file__).parent,  # not the workspace, whose matplotlibrc would be obeyed
+            cwd=Path(__file__).parent,
             env={name: os.environ[name] for name in _KEPT if name in os.environ} | _SET,
             start_new_session=True,
         )
