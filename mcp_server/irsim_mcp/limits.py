@@ -46,7 +46,7 @@ class ServerLimits:
     yaml_aliases: int = 64
     check_seconds: int = 20
     draw_seconds: int = 45
-    memory: int = 4 * 1024**3
+    memory: int = 2 * 1024**3
     written: int = 16 * 1024**2
     text: int = 24_000
 

@@ -1,0 +1,106 @@
+"""Clients of the server, in this process and of a process of its own, in both eras of the protocol."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.server import build_server
+from mcp import Client, StdioServerParameters
+from mcp.types import CallToolResult, ImageContent, TextContent
+
+ERAS = ("auto", "legacy")
+"""Newest protocol, without a handshake, and the one before."""
+
+ROOM = """\
+world: {width: 8, height: 6}
+robot:
+  - name: rover
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.3}
+    state: [1, 1, 0]
+    goal: [4, 3, 0]
+    behavior: {name: dash}
+"""
+
+CRASH = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 1, 0]") + (
+    "obstacle:\n  - {name: crate, shape: {name: circle, radius: 0.5}, state: [4, 1, 0]}\n"
+)
+
+LONG = """\
+world: {width: 100, height: 100}
+robot:
+  - number: 300
+    kinematics: {name: diff}
+    behavior: {name: dash, wander: true}
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [99, 99, 3]}
+    shape: {name: circle, radius: 0.2}
+    sensors: [{name: lidar2d, number: 1000}]
+"""
+"""Takes minutes."""
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    folder = tmp_path / "workspace"
+    folder.mkdir()
+    return folder
+
+
+@asynccontextmanager
+async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> AsyncIterator[Client]:
+    """A client of a server in this process."""
+    server = build_server(workspace, ServerLimits(**limits))
+    async with Client(server, mode=era, raise_exceptions=True) as client:
+        yield client
+
+
+def as_process(workspace: Path) -> StdioServerParameters:
+    """How a host starts the server."""
+    return StdioServerParameters(command=sys.executable, args=["-m", "irsim_mcp", "--workspace", str(workspace)])
+
+
+def text_of(result: CallToolResult) -> str:
+    """The text of a result, which every result has."""
+    first = result.content[0]
+    assert isinstance(first, TextContent)
+    return first.text
+
+
+def error_of(result: CallToolResult) -> str:
+    """The line of an error: its form is checked."""
+    assert result.is_error
+    assert result.structured_content is None
+    text = text_of(result)
+    assert len(result.content) == 1
+    assert len(text) <= 400
+    assert "\n" not in text
+    assert "Traceback" not in text
+    assert "pydantic" not in text
+    return text
+
+
+def data_of(result: CallToolResult) -> dict[str, Any]:
+    """The structure of a result that is no error."""
+    assert not result.is_error, text_of(result)
+    assert result.structured_content is not None
+    return dict(result.structured_content)
+
+
+def image_of(result: CallToolResult) -> ImageContent:
+    """The picture of a result that is no error."""
+    assert not result.is_error, text_of(result)
+    assert result.structured_content is None
+    image = result.content[1]
+    assert isinstance(image, ImageContent)
+    return image

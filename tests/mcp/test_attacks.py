@@ -1,0 +1,175 @@
+"""Inputs made to hurt: each is refused at once, and told why."""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from irsim_mcp.limits import ServerLimits
+
+from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
+
+pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform == "win32", reason="limits and links of POSIX")]
+
+SECOND = 1.0
+"""What a refusal may take; bounds are in processor time, since tests share a machine."""
+
+
+def bomb(first: str, others: str) -> str:
+    """Text that grows ninefold with each line."""
+    lines = [f"a0: &a0 {first}"]
+    for number in range(1, 9):
+        lines.append(f"a{number}: &a{number} {others % ', '.join([f'*a{number - 1}'] * 9)}")
+    return "\n".join(lines) + "\n"
+
+
+SCENARIOS = {
+    "python object": ("world: !!python/object/apply:os.system ['touch pwned']\n", "unsupported-tag"),
+    "python name": ("world: {width: !!python/name:os.system }\n", "unsupported-tag"),
+    "python module": ("robot: !!python/module:antigravity {}\n", "unsupported-tag"),
+    "merge bomb": (bomb("{x: 1, y: 2, z: 3}", "{<<: [%s]}"), "alias-expansion"),
+    "alias bomb": (bomb("[a, b, c, d, e, f, g, h, i]", "[%s]"), "alias-expansion"),
+    "many aliases": ("a: &a 1\nb: [" + "*a, " * 65 + "*a]\n", "alias-expansion"),
+    "deep": ("world: " + "[" * 20_000 + "]" * 20_000, "too-deep"),
+    "deep for a server": ("custom: " + "[" * 33 + "]" * 33, "too-deep"),
+    "long list": ("a: [" + "1," * 60_000 + "1]", "too-many-events"),
+    "recursive": ("world: &w {width: *w}\n", "recursive-alias"),
+    "a million robots": (ROOM + "    number: 1000000\n", "too-many-objects"),
+    "a million robots, as text": (ROOM + "    number: '1000000'\n", "too-many-objects"),
+    "a thousand and one robots": (ROOM + "    number: 1001\n", "too-many-objects"),
+    "five thousand obstacles": (ROOM + "obstacle: {number: 5000}\n", "too-many-objects"),
+    "map above": ("world: {obstacle_map: ../secret.png}\n", "path-outside-workspace"),
+    "map somewhere": ("world: {obstacle_map: /etc/passwd}\n", "path-outside-workspace"),
+    "map behind a link": ("world: {obstacle_map: link.png}\n", "path-outside-workspace"),
+    "map with options": ("world: {obstacle_map: {name: ros, path: folder/secret.png}}\n", "path-outside-workspace"),
+    "picture above": (ROOM + "    description: ../secret.png\n", "path-outside-workspace"),
+    "pipe as a picture": (ROOM + "    description: pipe.png\n", "path-outside-workspace"),
+    "half a character": ("robot: {name: '\ud800'}\n", "not-text"),
+}
+FILES = {
+    "above": "../secret.yaml",
+    "above, hidden": "folder/../../secret.yaml",
+    "backslashes": "..\\secret.yaml",
+    "absolute": "/etc/passwd",
+    "drive": "C:\\secret.yaml",
+    "share": "\\\\host\\share\\secret.yaml",
+    "home": "~/secret.yaml",
+    "NUL": "room.yaml\0.png",
+    "link out": "link.yaml",
+    "folder link out": "folder/secret.yaml",
+    "ring": "ring",
+    "pipe": "pipe.png",
+    "device": "zero",
+    "endless": "x/" * 3000,
+}
+
+
+@pytest.fixture
+def trap(workspace: Path) -> Path:
+    """A workspace with links that lead out, beside a file that nobody may read."""
+    for name in ("secret.yaml", "secret.png"):
+        (workspace.parent / name).write_text(ROOM, encoding="utf-8")
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    (workspace / "link.yaml").symlink_to(workspace.parent / "secret.yaml")
+    (workspace / "link.png").symlink_to(workspace.parent / "secret.png")
+    (workspace / "folder").symlink_to(workspace.parent)
+    (workspace / "ring").symlink_to("ring")
+    (workspace / "zero").symlink_to("/dev/zero")
+    os.mkfifo(workspace / "pipe.png")
+    return workspace
+
+
+@contextmanager
+def at_once() -> Iterator[None]:
+    """The block and the processes it starts take at most a second of processor time."""
+
+    def spent() -> float:
+        children = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return time.process_time() + children.ru_utime + children.ru_stime
+
+    before = spent()
+    yield
+    assert spent() - before < SECOND
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+async def test_scenarios(trap: Path, name: str) -> None:
+    scenario, code = SCENARIOS[name]
+    async with connected(trap) as client:
+        with at_once():
+            result = await client.call_tool("validate_scenario", {"scenario_yaml": scenario})
+    data = data_of(result)
+    assert data["valid"] is False
+    assert code in [issue["code"] for issue in data["issues"]]
+    assert code in text_of(result)
+    assert not (trap / "pwned").exists()
+
+
+@pytest.mark.parametrize("name", ["python object", "merge bomb", "a million robots", "map behind a link"])
+@pytest.mark.parametrize("tool", ["run_episode", "render_snapshot"])
+async def test_scenarios_that_are_not_validated_first(trap: Path, tool: str, name: str) -> None:
+    scenario, code = SCENARIOS[name]
+    async with connected(trap) as client:
+        with at_once():
+            told = error_of(await client.call_tool(tool, {"scenario_yaml": scenario}))
+    assert told.startswith("invalid-scenario: ")
+    assert code in told
+
+
+@pytest.mark.parametrize("name", FILES)
+async def test_paths(trap: Path, name: str) -> None:
+    async with connected(trap) as client:
+        with at_once():
+            told = error_of(await client.call_tool("run_episode", {"scenario_path": FILES[name]}))
+    assert told.startswith("path-outside-workspace: ")
+    assert str(trap) in told
+    assert "(scenario_path). Fix: " in told
+
+
+async def test_an_absolute_path_into_the_workspace_is_told_its_name(trap: Path) -> None:
+    async with connected(trap) as client:
+        told = error_of(await client.call_tool("run_episode", {"scenario_path": str(trap / "room.yaml")}))
+    assert told.endswith("Fix: scenario_path='room.yaml'.")
+
+
+async def test_links_inside_are_fine(trap: Path) -> None:
+    (trap / "alias.yaml").symlink_to(trap / "room.yaml")
+    async with connected(trap) as client:
+        assert data_of(await client.call_tool("validate_scenario", {"scenario_path": "alias.yaml"}))["valid"]
+
+
+async def test_scenarios_in_files_have_the_same_limits(trap: Path) -> None:
+    (trap / "big.yaml").write_text("#" * (ServerLimits().yaml_bytes + 1), encoding="utf-8")
+    (trap / "inner").mkdir()
+    (trap / "inner" / "map.yaml").write_text("world: {obstacle_map: ../../secret.png}\n", encoding="utf-8")
+    async with connected(trap) as client:
+        for name, code in (("big.yaml", "file-too-large"), ("inner/map.yaml", "path-outside-workspace")):
+            with at_once():
+                data = data_of(await client.call_tool("validate_scenario", {"scenario_path": name}))
+            assert code in [issue["code"] for issue in data["issues"]]
+
+
+async def test_checking_that_takes_too_long_is_stopped(workspace: Path) -> None:
+    star = ", ".join(f"[{(i * 7919) % 1000}, {(i * 104_729) % 1000}]" for i in range(9000))
+    scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
+    async with connected(workspace, check_seconds=1) as client:
+        told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": scenario}))
+    assert told.startswith("out-of-time: 1 s of computing were over")
+
+
+async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (workspace / "evil").mkdir()
+    (workspace / "evil" / "numpy.py").write_text("raise SystemExit(3)\n", encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(workspace / "evil"))
+    monkeypatch.setenv("PYTHONSTARTUP", "/nowhere")
+    monkeypatch.setenv("MPLBACKEND", "nonsense")
+    async with connected(workspace) as client:
+        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
+        result = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
+    assert not result.is_error

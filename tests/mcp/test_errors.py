@@ -1,0 +1,107 @@
+"""Errors of calls: one line with code, reason and fix."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from irsim_mcp.errors import failure
+
+from irsim.codes import CODES, TOOL_CODES
+from tests.mcp.conftest import ERAS, ROOM, connected, error_of
+
+pytestmark = pytest.mark.anyio
+
+
+@pytest.mark.parametrize("era", ERAS)
+@pytest.mark.parametrize(
+    ("tool", "arguments", "error"),
+    [
+        (
+            "run_episode",
+            {"scenario_yml": ROOM},
+            "unknown-argument: there is no argument 'scenario_yml' (run_episode). Fix: did you mean scenario_yaml?",
+        ),
+        (
+            "lookup",
+            {"behavior": "rvo"},
+            "unknown-argument: there is no argument 'behavior' (lookup). Fix: lookup takes topic, parameters.",
+        ),
+        ("run_episodes", {}, "unknown-tool: there is no tool 'run_episodes'. Fix: did you mean run_episode?"),
+        (
+            "delete_everything",
+            {},
+            "unknown-tool: there is no tool 'delete_everything'. Fix: there are lookup, validate_",
+        ),
+        ("run_episode", {"scenario_yaml": ROOM, "max_steps": 0}, "(max_steps). Fix: give an integer from 1 to 5000."),
+        ("run_episode", {"scenario_yaml": ROOM, "seed": -1}, "bad-argument: -1 is not accepted"),
+        ("run_episode", {"scenario_yaml": ROOM, "max_wall_s": 46}, "(max_wall_s). Fix: give an integer from 1 to 45."),
+        ("render_snapshot", {"scenario_yaml": ROOM, "size_px": 2000}, "Fix: give an integer from 200 to 1024."),
+        ("render_snapshot", {"scenario_yaml": ROOM, "step": 5001}, "(step). Fix: give an integer from -1 to 5000."),
+        (
+            "validate_scenario",
+            {"scenario_yaml": ROOM, "response_format": "short"},
+            "Fix: give one of concise, detailed.",
+        ),
+        ("validate_scenario", {"scenario_yaml": {"world": {}}}, "(scenario_yaml). Fix: give text."),
+        ("validate_scenario", {}, "bad-argument: no scenario is given. Fix: give scenario_yaml"),
+        ("run_episode", {"scenario_path": "", "scenario_yaml": ""}, "bad-argument: no scenario is given."),
+        (
+            "render_snapshot",
+            {"scenario_path": "a.yaml", "scenario_yaml": ROOM},
+            "bad-argument: both scenario_path and ",
+        ),
+        ("validate_scenario", {"scenario_path": "room.yml"}, "(scenario_path). Fix: did you mean 'room.yaml'?"),
+        (
+            "validate_scenario",
+            {"scenario_path": "nothing-like-it"},
+            "file-not-found: there is no file 'nothing-like-it' ",
+        ),
+        ("validate_scenario", {"scenario_path": "folder"}, "not-a-file: 'folder' is a folder"),
+        (
+            "validate_scenario",
+            {"scenario_yaml": "#" * 262_145},
+            "file-too-large: 262,145 bytes; a scenario may have 262,144",
+        ),
+    ],
+)
+async def test_one_line_with_a_fix(
+    workspace: Path, era: str, tool: str, arguments: dict[str, object], error: str
+) -> None:
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    (workspace / "folder").mkdir()
+    async with connected(workspace, era) as client:
+        told = error_of(await client.call_tool(tool, arguments))
+    assert error in told
+    code = told.partition(":")[0]
+    assert code in CODES or code in TOOL_CODES
+    assert re.search(r"\. Fix: .*[.?]$", told)
+
+
+@pytest.mark.parametrize("tool", ["run_episode", "render_snapshot"])
+async def test_an_invalid_scenario_names_its_first_problems(workspace: Path, tool: str) -> None:
+    wrong = ROOM.replace("dash", "dahs").replace("world: {", "world: {foo: 1, ").replace("goal:", "gaol:")
+    async with connected(workspace) as client:
+        told = error_of(await client.call_tool(tool, {"scenario_yaml": wrong}))
+    assert told.startswith("invalid-scenario: 3 errors: world.foo line 1 unknown-key: ")
+    assert "robot[0].behavior.name line 8 unknown-behavior" in told
+    assert told.endswith("Fix: validate_scenario lists every problem with its fix.")
+
+
+async def test_no_room_for_random_objects(workspace: Path) -> None:
+    crowd = ROOM + "  - {number: 99, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
+    async with connected(workspace) as client:
+        told = error_of(await client.call_tool("run_episode", {"scenario_yaml": crowd, "seed": 1}))
+    assert told.startswith("placement-crowded: no room for ")
+    assert "with seed 1" in told
+    assert "Fix: lower `number`" in told
+
+
+def test_errors_are_short_and_documented() -> None:
+    told = str(failure("busy", "x" * 1000 + "\n\x1b[31m", where="y" * 300, fix="wait"))
+    assert len(told) <= 400
+    assert told.isprintable()
+    assert told.endswith("Fix: wait.")
+    with pytest.raises(LookupError, match="undocumented"):
+        failure("no-such-code", "what")

@@ -1,0 +1,151 @@
+"""``lookup`` and the resources: the language and the templates, as text."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from mcp import Client, MCPError
+from mcp.types import ResourceTemplateReference, TextResourceContents
+
+from irsim import api, templates
+from irsim.registry import REGISTRIES
+from tests.mcp.conftest import ERAS, connected, error_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+SECTIONS = ["scenario", "world", "robot", "obstacle", "gui", *sorted(REGISTRIES)]
+MOST_CHARACTERS = 32_000  # 8k tokens
+
+
+async def looked_up(workspace: Path, topic: str, **arguments: object) -> str:
+    async with connected(workspace) as client:
+        return text_of(await client.call_tool("lookup", {"topic": topic, **arguments}))
+
+
+async def test_index_fits_a_screen_and_leads_on(workspace: Path) -> None:
+    index = await looked_up(workspace, "")
+    lines = index.splitlines()
+    assert len(lines) <= 60
+    for name in ("world", "robot", "obstacle", "dash", "lidar2d", "diff", "rectangle", "codes", *templates.names()):
+        assert name in index
+    assert "irsim describe" not in index
+
+
+@pytest.mark.parametrize(
+    ("topic", "said"),
+    [
+        ("robot.sensors.lidar2d.range_max", ["default 10", "[m]"]),
+        ("lidar2d", ["range_max", "angle_range", "For example"]),
+        ("robot", ["kinematics", "behavior", "goal_threshold"]),
+        ("vel_max", ["Upper limits"]),
+        ("behavior", ["dash", "not simulated yet"]),
+        ("unknown-key", ["not part of the language"]),
+        ("out-of-time", ["stopped"]),
+        ("codes", ["unknown-key", "path-outside-workspace", "busy"]),
+        ("parking", ["car-park"]),
+        ("hallway", ["corridor-passing"]),
+    ],
+)
+async def test_topics(workspace: Path, topic: str, said: list[str]) -> None:
+    text = await looked_up(workspace, topic)
+    assert len(text) < MOST_CHARACTERS
+    for word in said:
+        assert word in text
+
+
+@pytest.mark.parametrize("name", templates.names())
+async def test_templates_come_as_yaml_that_is_valid(workspace: Path, name: str) -> None:
+    text = await looked_up(workspace, name)
+    assert text.startswith(f"template {name}")
+    assert "yaml-language-server" not in text
+    assert api.validate(text=text.split("```yaml\n")[1].split("```")[0]).valid
+
+
+async def test_parameters_are_filled_in(workspace: Path) -> None:
+    text = await looked_up(workspace, "circle-swap", parameters={"robots": 5, "kinematics": "omni"})
+    assert "number: 5" in text
+    assert "kinematics: {name: omni}" in text
+    as_text = await looked_up(workspace, "circle-swap", parameters='{"robots": 5}')  # some hosts send objects as text
+    assert "number: 5" in as_text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        (
+            {"topic": "corridor-pasing"},
+            "unknown-topic: nothing is called 'corridor-pasing' (topic). Fix: did you mean ",
+        ),
+        ({"topic": "xyzzy"}, "Fix: lookup without a topic lists what there is."),
+        ({"topic": "xyzzy", "parameters": {"a": 1}}, "unknown-template: there is no template 'xyzzy'"),
+        ({"topic": "crossing", "parameters": {"beam": 1}}, "(parameters). Fix: did you mean beams?"),
+        ({"topic": "crossing", "parameters": {"beams": 1.5}}, "bad-parameter: beams cannot be 1.5"),
+        ({"topic": "x" * 300}, "bad-argument: "),
+    ],
+)
+async def test_errors(workspace: Path, arguments: dict[str, object], error: str) -> None:
+    async with connected(workspace) as client:
+        assert error in error_of(await client.call_tool("lookup", arguments))
+
+
+async def text_at(client: Client, uri: str) -> str:
+    content = (await client.read_resource(uri)).contents[0]
+    assert isinstance(content, TextResourceContents)
+    return content.text
+
+
+@pytest.mark.parametrize("era", ERAS)
+async def test_resources_can_be_listed_and_read(workspace: Path, era: str) -> None:
+    async with connected(workspace, era) as client:
+        uris = [str(resource.uri) for resource in (await client.list_resources()).resources]
+        patterns = [template.uri_template for template in (await client.list_resource_templates()).resource_templates]
+        text = await text_at(client, "irsim://templates/crossing")
+        deeper = json.loads(await text_at(client, "irsim://schema/robot.sensors.lidar2d"))
+    assert patterns == ["irsim://schema/{section}", "irsim://templates/{name}"]
+    assert len(uris) == len(set(uris)) == len(SECTIONS) + len(templates.names())
+    assert api.validate(text=text).valid
+    assert "range_max" in deeper["properties"]
+
+
+async def test_every_listed_resource_can_be_read_and_is_what_it_says(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        uris = [str(resource.uri) for resource in (await client.list_resources()).resources]
+        texts = {uri: await text_at(client, uri) for uri in uris}
+    for text in texts.values():
+        assert 100 < len(text) < 1_000_000
+    schemas = {name: json.loads(texts[f"irsim://schema/{name}"]) for name in SECTIONS}
+    for schema in schemas.values():
+        jsonschema.Draft202012Validator.check_schema(schema)
+    entry = jsonschema.Draft202012Validator(schemas["robot"])
+    assert entry.is_valid({"kinematics": {"name": "diff"}, "state": [1, 1, 0]})
+    assert not entry.is_valid({"kinematics": {"name": "dif"}})
+    for name in templates.names():
+        assert f"irsim://templates/{name}" in texts
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "irsim://templates/nope",
+        "irsim://templates/..%2F..%2Fpyproject.toml",
+        "irsim://templates/../../x",
+        "irsim://templates//etc/passwd",
+        "irsim://schema/nope",
+        "irsim://runs/1",
+    ],
+)
+async def test_other_resources_do_not_exist(workspace: Path, uri: str) -> None:
+    async with connected(workspace) as client:
+        with pytest.raises(MCPError) as error:
+            await client.read_resource(uri)
+    assert error.value.code == -32602
+
+
+async def test_names_are_completed(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        ref = ResourceTemplateReference(type="ref/resource", uri="irsim://templates/{name}")
+        found = await client.complete(ref, {"name": "name", "value": "c"})
+    assert found.completion.values == ["car-park", "circle-swap", "corridor-passing", "crossing"]

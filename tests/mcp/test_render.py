@@ -1,0 +1,78 @@
+"""``render_snapshot``: one line and one small picture; nothing is written."""
+
+from __future__ import annotations
+
+import base64
+import io
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.mcp.conftest import CRASH, ROOM, connected, error_of, image_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+
+async def test_line_and_picture(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        result = await client.call_tool("render_snapshot", {"scenario_yaml": CRASH, "seed": 1, "size_px": 300})
+    line = text_of(result)
+    assert "\n" not in line
+    assert "t=0 s (step 0, seed 1); world x 0..8 m, y 0..6 m; r0 'rover' at (1.00, 1.00)" in line
+    assert "goal (7.00, 1.00); 1 obstacle" in line
+    assert "irsim render scenario.yaml --seed 1 --steps 0 --strict --size 300" in line
+    picture = image_of(result)
+    data = base64.b64decode(picture.data)
+    assert picture.mime_type == "image/png"
+    assert len(data) < 40_000
+    with Image.open(io.BytesIO(data)) as image:
+        assert (image.format, image.mode, max(image.size)) == ("PNG", "P", 300)
+        assert f"{image.width}x{image.height} px" in line
+    assert len(result.content) == 2
+    assert list(workspace.iterdir()) == []
+
+
+async def test_later_moments_and_no_picture(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
+            arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
+            result = await client.call_tool("render_snapshot", arguments)
+            assert said in text_of(result)
+            assert len(result.content) == 1
+
+
+async def test_overlays(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        pictures = [
+            image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": overlays})).data
+            for overlays in ([], ["names", "goals"])
+        ]
+        bad = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": ["grid"]})
+    assert pictures[0] != pictures[1]
+    assert "names, goals, paths, sensors" in error_of(bad)
+
+
+async def test_settings_of_the_workspace_have_no_effect(workspace: Path) -> None:
+    """A matplotlibrc could switch on LaTeX, which runs programs."""
+    (workspace / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: 123456\n", encoding="utf-8")
+    (workspace / "numpy.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
+    (workspace / "sitecustomize.py").write_text("raise SystemExit('imported from the workspace')\n", encoding="utf-8")
+    async with connected(workspace) as client:
+        result = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
+    with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
+        assert (0x12, 0x34, 0x56) not in {color for _, color in image.convert("RGB").getcolors(10_000) or []}
+
+
+async def test_pictures_of_the_workspace_are_found(workspace: Path) -> None:
+    (workspace / "maps").mkdir()
+    Image.new("RGB", (40, 40), (250, 10, 200)).save(workspace / "maps" / "body.png")
+    (workspace / "maps" / "a.yaml").write_text(ROOM + "    description: body.png\n", encoding="utf-8")
+    async with connected(workspace) as client:
+        by_scenario = await client.call_tool("render_snapshot", {"scenario_path": "maps/a.yaml", "size_px": 400})
+        text = ROOM + "    description: maps/body.png\n"
+        by_workspace = await client.call_tool("render_snapshot", {"scenario_yaml": text, "size_px": 400})
+    for result in (by_scenario, by_workspace):
+        with Image.open(io.BytesIO(base64.b64decode(image_of(result).data))) as image:
+            colors = {color for _, color in image.convert("RGB").getcolors(100_000) or []}
+        assert any(abs(r - 250) + abs(g - 10) + abs(b - 200) < 12 for r, g, b in colors)
