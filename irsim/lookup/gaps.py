@@ -8,7 +8,6 @@ from typing import Any
 
 from irsim.lookup.walk import Node, alternatives, components, mappings, yaml_text
 from irsim.scenario.read import read
-from irsim.scenario.schema import json_schema
 
 __all__ = ["Gap", "find_gaps"]
 
@@ -41,12 +40,14 @@ class Gap:
     message: str
 
 
-def find_gaps() -> list[Gap]:
+def find_gaps(schema: Node) -> list[Gap]:
     """Every key and value of ``world``, ``robot`` and ``obstacle`` that is language only, in the order of the schema.
 
     Each word, switch and component is tried in a small scenario of its own; combinations are not.
+
+    Args:
+        schema: That of the language.
     """
-    schema = json_schema()
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))["properties"]
     found = []
     for section, base in (("world", _WORLD), ("robot", _ROBOT)):

@@ -7,10 +7,12 @@ from collections.abc import Callable
 from irsim import templates
 from irsim.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
-from irsim.lookup.gaps import Gap, find_gaps
+from irsim.lookup.gaps import find_gaps
 from irsim.lookup.tables import key_table, plain_table
 from irsim.lookup.topics import lookup
+from irsim.lookup.walk import Node
 from irsim.registry import KINEMATICS, REGISTRIES
+from irsim.scenario.schema import json_schema
 
 __all__ = ["PAGES", "pages"]
 
@@ -19,37 +21,47 @@ _COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r
 _NOT_SIMULATED = " (not simulated by this version)"
 
 
+class _Source:
+    """The language, made and asked once."""
+
+    def __init__(self, schema: Node) -> None:
+        self.schema, self.gaps = schema, find_gaps(schema)
+
+    def about(self, topic: str) -> Answer:
+        return lookup(topic, schema=self.schema)
+
+
 def pages() -> dict[str, str]:
     """Name of each page without the suffix, and its text."""
-    gaps = find_gaps()
+    source = _Source(json_schema())
     note = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->\n"
-    return {name: f"# {title}\n\n{note}\n{make(gaps).strip()}\n" for name, (title, make) in PAGES.items()}
+    return {name: f"# {title}\n\n{note}\n{make(source).strip()}\n" for name, (title, make) in PAGES.items()}
 
 
-def _world(gaps: list[Gap]) -> str:
+def _world(source: _Source) -> str:
     parts = [
         "The section `world`: extent, time, modes. Lengths in meters, times in seconds.",
-        _keys("world", gaps),
+        _keys(source, "world"),
         "`plot` is in [plot.md](plot.md).",
-        f"## Grid maps: `world.obstacle_map`\n\n{_components('map', '###')}",
-        "## The section `gui`\n\n### `gui.keyboard`\n\n" + _keys("gui.keyboard", gaps),
-        "### `gui.mouse`\n\n" + _keys("gui.mouse", gaps),
-        "## The section `custom`\n\n" + lookup("custom").text,
+        f"## Grid maps: `world.obstacle_map`\n\n{_components(source, 'map', '###')}",
+        "## The section `gui`\n\n### `gui.keyboard`\n\n" + _keys(source, "gui.keyboard"),
+        "### `gui.mouse`\n\n" + _keys(source, "gui.mouse"),
+        "## The section `custom`\n\n" + source.about("custom").text,
     ]
     return "\n\n".join(parts)
 
 
-def _objects(gaps: list[Gap]) -> str:
+def _objects(source: _Source) -> str:
     kinds = ("kinematics", "shapes", "behaviors", "sensors", "distributions", "plot")
     intro = (
         "One entry of `robot:` or `obstacle:`, which take the same keys: a mapping, or a list of mappings. An "
         f"obstacle with `kinematics` and `behavior` moves like a robot. {_STAR}"
     )
     pages_of = ", ".join(f"[{name}]({name}.md)" for name in kinds)
-    return f"{intro}\n\n{_keys('robot', gaps)}\n\nComponents: {pages_of}. {_COLOR}"
+    return f"{intro}\n\n{_keys(source, 'robot')}\n\nComponents: {pages_of}. {_COLOR}"
 
 
-def _kinematics(gaps: list[Gap]) -> str:
+def _kinematics(source: _Source) -> str:
     rows = []
     for feature in KINEMATICS.features():
         names = getattr(feature.options, "control_rows", ())
@@ -63,53 +75,55 @@ def _kinematics(gaps: list[Gap]) -> str:
     intro = (
         "`vel_min`, `vel_max`, `acce` and `velocity` have one number per control, and so has an action of a program."
     )
-    return f"`kinematics: {{name: …}}`, how an object moves.\n\n{orders}\n{intro}\n\n{_components('kinematics')}"
+    return (
+        f"`kinematics: {{name: …}}`, how an object moves.\n\n{orders}\n{intro}\n\n{_components(source, 'kinematics')}"
+    )
 
 
-def _behaviors(gaps: list[Gap]) -> str:
+def _behaviors(source: _Source) -> str:
     return (
         "`behavior: {name: …}`, what an object does when no program commands it. All of them need `kinematics`.\n\n"
-        f"{_components('behavior')}\n\n## Planners\n\nFor the key `planner` of `follow`.\n\n"
-        + _components("planner", "###")
+        f"{_components(source, 'behavior')}\n\n## Planners\n\nFor the key `planner` of `follow`.\n\n"
+        + _components(source, "planner", "###")
     )
 
 
-def _shapes(gaps: list[Gap]) -> str:
+def _shapes(source: _Source) -> str:
     return (
         "`shape: {name: …}`, the footprint, in the body frame: the origin is the `state` of the object, x its heading."
-        " Without `shape` an object is a circle of radius 1 m.\n\n" + _components("shape")
+        " Without `shape` an object is a circle of radius 1 m.\n\n" + _components(source, "shape")
     )
 
 
-def _sensors(gaps: list[Gap]) -> str:
+def _sensors(source: _Source) -> str:
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see what is not `unobstructed`, robots and obstacles alike.\n\n"
-        + _components("sensor")
+        + _components(source, "sensor")
         + f"\n\n{_COLOR}"
     )
 
 
-def _distributions(gaps: list[Gap]) -> str:
+def _distributions(source: _Source) -> str:
     return (
         "`distribution: {name: …}`, how the `number` objects of an entry are placed. `manual` is the default.\n\n"
-        + _components("distribution")
+        + _components(source, "distribution")
     )
 
 
-def _plot(gaps: list[Gap]) -> str:
+def _plot(source: _Source) -> str:
     parts = [
         f"How things are drawn; nothing here changes the simulation. {_COLOR}",
-        "## `plot` of an object\n\n" + _keys("robot.plot", gaps),
-        "## `world.plot`\n\n" + _keys("world.plot", gaps),
-        "## `world.plot.saved_figure`\n\n" + _keys("world.plot.saved_figure", gaps),
+        "## `plot` of an object\n\n" + _keys(source, "robot.plot"),
+        "## `world.plot`\n\n" + _keys(source, "world.plot"),
+        "## `world.plot.saved_figure`\n\n" + _keys(source, "world.plot.saved_figure"),
     ]
     return "\n\n".join(parts)
 
 
-def _templates(gaps: list[Gap]) -> str:
+def _templates(source: _Source) -> str:
     parts = ["Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file."]
     for template in templates.load_all():
-        answer = lookup(template.name)
+        answer = source.about(template.name)
         about = f"{template.purpose} With the default parameters a run ends in {' or '.join(template.outcomes)}."
         words = f"About: {', '.join(template.tags)}."
         table = key_table(_all_keys(answer))
@@ -117,7 +131,7 @@ def _templates(gaps: list[Gap]) -> str:
     return "\n\n".join(parts)
 
 
-def _diagnostics(gaps: list[Gap]) -> str:
+def _diagnostics(source: _Source) -> str:
     intro = (
         "Every finding has a code, a path, a line, a reason and mostly a fix; the fix in the finding knows more than "
         "this table. `irsim describe CODE`, or the tool `lookup` with the code, explains one."
@@ -129,10 +143,10 @@ def _diagnostics(gaps: list[Gap]) -> str:
     return "\n\n".join(parts)
 
 
-def _not_simulated(gaps: list[Gap]) -> str:
+def _not_simulated(source: _Source) -> str:
     rows = [
         (f"`{gap.section}`" + (", `obstacle`" if gap.section == "robot" else ""), f"`{gap.example}`", gap.message)
-        for gap in gaps
+        for gap in source.gaps
     ]
     table = plain_table(("section", "for example", "what the validator says"), rows)
     return (
@@ -142,20 +156,20 @@ def _not_simulated(gaps: list[Gap]) -> str:
     )
 
 
-def _keys(topic: str, gaps: list[Gap]) -> str:
+def _keys(source: _Source, topic: str) -> str:
     """The table of a mapping's keys."""
-    answer = lookup(topic)
+    answer = source.about(topic)
     missing: dict[str, list[str]] = {}
-    for gap in gaps:
+    for gap in source.gaps:
         if gap.section == topic:
             missing.setdefault(gap.key, []).append(gap.value)
     return key_table(_all_keys(answer), missing).strip()
 
 
-def _components(kind: str, level: str = "##") -> str:
+def _components(source: _Source, kind: str, level: str = "##") -> str:
     """A section for each component of a kind, after the keys that mean the same in all of them."""
     features = REGISTRIES[kind].features()
-    answers = {feature.name: lookup(f"{kind}.{feature.name}") for feature in features}
+    answers = {feature.name: source.about(f"{kind}.{feature.name}") for feature in features}
     everyones = [
         key for key in _all_keys(answers[features[0].name]) if all(key in _all_keys(a) for a in answers.values())
     ]
@@ -177,7 +191,7 @@ def _all_keys(answer: Answer) -> list[Key]:
     return [key for keys in answer.groups.values() for key in keys]
 
 
-PAGES: dict[str, tuple[str, Callable[[list[Gap]], str]]] = {
+PAGES: dict[str, tuple[str, Callable[[_Source], str]]] = {
     "world": ("World", _world),
     "objects": ("Robots and obstacles", _objects),
     "shapes": ("Shapes", _shapes),

@@ -39,12 +39,13 @@ _PLACES = {
 _MOST_HITS = 20
 
 
-def lookup(topic: str = "") -> Answer:
+def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     """What is known about a topic.
 
     Args:
         topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of
             component (``sensors``), a key, a template, a code, or a word to search for; empty for an index.
+        schema: That of the language, if it is at hand; making it is most of the work.
 
     Raises:
         TopicError: Nothing goes by that name; the message names similar topics.
@@ -59,7 +60,7 @@ def lookup(topic: str = "") -> Answer:
         return _code(topic.strip())
     if name in templates.names():
         return _template(templates.load(name))
-    schema = json_schema()
+    schema = json_schema() if schema is None else schema
     found = _find(schema, words)
     return _part(schema, *found) if found else _search(schema, topic.strip(), words)
 

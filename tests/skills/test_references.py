@@ -12,6 +12,7 @@ import pytest
 from irsim.lookup.gaps import find_gaps
 from irsim.lookup.reference import main, out_of_date
 from irsim.registry import REGISTRIES
+from irsim.scenario.schema import json_schema
 
 REFERENCES = Path(__file__).resolve().parents[2] / "skills" / "irsim-scenario" / "references"
 PAGE_OF = {
@@ -63,7 +64,7 @@ def test_every_built_in_component_has_its_section() -> None:
 
 
 def test_what_the_validator_refuses_is_listed_and_nothing_else() -> None:
-    gaps = find_gaps()
+    gaps = find_gaps(json_schema())
     components = {"behavior": "behavior", "sensor": "sensors", "shape": "shape", "kinematics": "kinematics"}
     refused = {(gap.key, gap.value) for gap in gaps if gap.section == "robot"}
     for kind, key in components.items():

@@ -1,0 +1,41 @@
+"""The skill's folder and its Markdown."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+SKILL = ROOT / "skills" / "irsim-scenario"
+EXAMPLES = sorted(path for path in (SKILL / "examples").iterdir() if path.is_dir())
+PAGES = sorted(SKILL.rglob("*.md"))
+
+
+def parts(path: Path = SKILL / "SKILL.md") -> tuple[dict[str, Any], str]:
+    """Frontmatter and body."""
+    _, front, body = path.read_text(encoding="utf-8").split("---\n", 2)
+    return yaml.safe_load(front), body
+
+
+def fences(text: str, language: str) -> list[str]:
+    """What stands in fenced blocks of a language."""
+    return re.findall(rf"^ *```{language}\n(.*?)^ *```", text, re.DOTALL | re.MULTILINE)
+
+
+def spans(text: str) -> list[str]:
+    """Inline code, on one line, outside of fenced blocks."""
+    prose = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+    return [" ".join(found.split()) for found in re.findall(r"`([^`]+)`", prose)]
+
+
+def execute(words: list[str], folder: Path) -> str:
+    """Run a command as a process of its own; it must succeed."""
+    command = [sys.executable, *words[1:]] if words[0] == "python" else [sys.executable, "-m", *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
+    return done.stdout

@@ -1,0 +1,203 @@
+"""SKILL.md follows the rules of its format, and every file, key, command and tool in it is real."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from irsim_mcp.server import build_server
+from mcp import Client
+
+import irsim
+from irsim.codes import CODES, TOOL_CODES
+from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
+
+FRONT, BODY = parts()
+[SKELETON] = fences(BODY, "yaml")
+SCOUT: dict[str, Any] = {
+    "kinematics": {"name": "omni_angular"},
+    "shape": {"name": "circle", "radius": 0.2},
+    "state": [1, 1, 0],
+    "goal": [2, 2],
+    "behavior": {"name": "dash"},
+}
+
+
+def test_frontmatter_follows_the_specification() -> None:
+    assert set(FRONT) <= {"name", "description", "license", "compatibility", "metadata", "allowed-tools"}
+    assert FRONT["name"] == SKILL.name
+    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", FRONT["name"])
+    assert len(FRONT["name"]) <= 64
+    assert 0 < len(FRONT["description"]) <= 1024
+    assert "<" not in FRONT["description"]
+    assert len(FRONT["compatibility"]) <= 500
+    assert all(isinstance(value, str) for value in FRONT["metadata"].values())
+    assert FRONT["metadata"]["version"] == irsim.__version__
+
+
+if sys.version_info >= (3, 11):  # which the validator needs; the test above has its rules
+
+    def test_the_reference_validator_agrees() -> None:
+        command = [sys.executable, "-c", "from skills_ref.cli import main; main()", "validate", str(SKILL)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_short_enough_to_be_loaded_whole() -> None:
+    assert len((FRONT["description"] + BODY).splitlines()) < 300
+    assert len(BODY) / 4 < 5000  # about four characters to a token
+
+
+def test_links_lead_to_files_of_the_skill() -> None:
+    for page in PAGES:
+        for link in re.findall(r"\[[^]]+\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            target = (page.parent / link).resolve()
+            assert target.is_file(), f"{page.name}: {link}"
+            assert target.is_relative_to(SKILL)
+
+
+def test_every_page_can_be_reached_from_it() -> None:
+    linked = {(SKILL / link).resolve() for link in re.findall(r"\]\(([^)#]+)\)", BODY)}
+    linked |= {page for example in linked for page in example.parent.glob("*.md")}
+    assert set(PAGES) - linked == {SKILL / "SKILL.md"}
+
+
+def test_the_skeleton_is_valid_without_a_remark_and_succeeds(tmp_path: Path) -> None:
+    report = irsim.validate(text=SKELETON)
+    assert [finding.code for finding in report.findings] == []
+    path = tmp_path / "skeleton.yaml"
+    path.write_text(SKELETON, encoding="utf-8")
+    assert irsim.run(path, seed=3).outcome == "success"
+
+
+def test_commands_work_as_written(tmp_path: Path) -> None:
+    (tmp_path / "hall.yaml").write_text(SKELETON, encoding="utf-8")
+    commands = [span for span in spans(BODY) if span.startswith("irsim ")]
+    assert len(commands) >= 6
+    for command in dict.fromkeys(commands):
+        execute(shlex.split(command), tmp_path)
+    assert (tmp_path / "start.png").is_file()
+
+
+def test_the_script_works_as_written(tmp_path: Path) -> None:
+    [command] = [span for span in spans(BODY) if span.startswith("python ")]
+    after = SKELETON.replace("behavior:", "sensors: [{name: lidar2d}]\n    behavior:")
+    (tmp_path / "before.yaml").write_text(SKELETON, encoding="utf-8")
+    (tmp_path / "after.yaml").write_text(after, encoding="utf-8")
+    words = shlex.split(command)
+    assert words[1] == "scripts/changed.py"
+    output = execute(["python", str(SKILL / words[1]), *words[2:]], tmp_path)
+    assert '"path": "robot[0].sensors[0].name"' in output
+
+
+def test_codes_are_those_of_the_program() -> None:
+    known = {*CODES, *TOOL_CODES}
+    named = {"not-yet-simulated", "placement-crowded", "no-behavior"}
+    assert named <= set(spans(BODY))
+    assert named <= known
+
+
+async def tool_arguments(workspace: Path) -> dict[str, set[str]]:
+    async with Client(build_server(workspace)) as client:
+        listed = await client.list_tools()
+    return {tool.name: set(tool.input_schema["properties"]) for tool in listed.tools}
+
+
+def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> None:
+    tools = asyncio.run(tool_arguments(tmp_path))
+    table = BODY.partition("## Tools")[2].partition("## The loop")[0]
+    rows = [cells[1] for row in table.splitlines() if row.startswith("| ") and (cells := row.strip("|").split("|"))]
+    calls = [spans(cell) for cell in rows[1:] if "`" in cell]
+    assert {names[0] for names in calls if names[0] in tools} == set(tools)
+    assert {"scenario_path", "scenario_yaml"} <= tools["validate_scenario"] & set(spans(table))
+    assert "response_format" in tools["validate_scenario"]
+    assert {"seed"} <= tools["run_episode"]
+    assert {"step", "seed"} <= tools["render_snapshot"]
+    assert {"topic", "parameters"} <= tools["lookup"]
+
+
+def snippets() -> Iterator[str]:
+    """Inline code that looks like a key with its value."""
+    for span in spans(BODY.partition("## From words to keys")[2].partition("## Editing a file")[0]):
+        text = re.sub(r"\bx\b", "1", re.sub(r"\by\b", "2", re.sub(r"\btheta\b", "0.5", span)))
+        text = text.replace(", …]", "]").replace("omni_angular` ", "")
+        if re.fullmatch(r"[a-z_.]+: .+", text):
+            yield text
+
+
+@pytest.mark.parametrize("text", sorted(set(snippets())))
+def test_keys_and_values_are_valid_where_they_belong(text: str) -> None:
+    key, _, value = text.partition(": ")
+    data = yaml.safe_load(value)
+    if key.startswith("world."):
+        scenario = {"world": {key.removeprefix("world."): data}}
+    elif key in ("step_mode", "control_mode", "collision_mode"):
+        scenario = {"world": {key: data}}
+    elif key in ("offset", "noise") or (key == "number" and data > 100):
+        scenario = {"robot": {**SCOUT, "sensors": [{"name": "lidar2d", key: data}]}}
+    elif key == "waypoints":
+        scenario = {"robot": {**{name: SCOUT[name] for name in SCOUT if name != "goal"}, key: data}}
+    elif key == "vel_min":
+        scenario = {"robot": {**SCOUT, "kinematics": {"name": "diff"}, key: [*data, -1][:2]}}
+    else:
+        scenario = {"robot": {**SCOUT, key: data}}
+    report = irsim.validate(text=yaml.safe_dump({"world": {}, **scenario}))
+    assert [finding.message for finding in report.findings if finding.severity == "error"] == []
+
+
+def test_angles_are_right() -> None:
+    pairs = re.findall(r"(\d+)° (\d+\.\d+)", BODY)
+    assert len(pairs) >= 7
+    for degrees, radians in pairs:
+        assert math.radians(float(degrees)) == pytest.approx(float(radians), abs=1e-4)
+
+
+def found(text: str) -> set[str]:
+    return {finding.code for finding in irsim.validate(text=text).findings}
+
+
+def test_marked_traps_go_unnoticed_by_the_validator() -> None:
+    assert found(SKELETON.replace("[1.5, 4, 0]", "[1.5, 4, 90]")) == set()  # degrees
+    assert found(SKELETON.replace("radius: 0.3", "radius: 0.6")) == set()  # a diameter
+    assert found(SKELETON.replace("{name: dash}", "{name: dash, loop: true}")) == set()
+    assert found(SKELETON.replace("state: [[6, 6.5, 0], [6, 1.5, 0]]", "state: [[6, 4, 0], [6, 1.5, 0]]")) == set()
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        (("state: [1.5, 4, 0]", "state: [1.5, 4, 0]\n    number: 3"), "stacked"),
+        (("goal: [10.5, 4]", "goal: [[10.5, 4], [2, 2]]"), "goal-levels"),
+        (("vel_min: [-1.0, -1.5]", ""), "vel-min-default"),
+        (("shape: {name: circle, radius: 0.3}", ""), "default-shape"),
+        (("behavior: {name: dash}", ""), "no-behavior"),
+        (("goal: [10.5, 4]", "goal: [10.5, 4]\n    acce: [1e3, 1]"), "yaml-number-text"),
+        (("height: 8 ", "height: 010 "), "yaml-octal"),
+        (("name: scout", "name: on"), "yaml-boolean"),
+        (("width: 12 ", "width: 12:30 "), "yaml-sexagesimal"),
+    ],
+)
+def test_the_other_traps_are_named_by_it(change: tuple[str, str], code: str) -> None:
+    text = SKELETON.replace(*change)
+    assert text != SKELETON
+    assert code in found(text)
+
+
+def test_what_it_says_about_loops_and_headings_is_so(tmp_path: Path) -> None:
+    path = tmp_path / "run.yaml"
+    path.write_text(SKELETON.replace("{name: dash}", "{name: dash, loop: true}"), encoding="utf-8")
+    assert irsim.run(path).outcome == "success"
+    for drive, limits, outcome in (("omni_angular", "[1, 1, 1]", "success"), ("diff", "[1, 1.5]", "timeout")):
+        text = SKELETON.replace("goal: [10.5, 4]", "goal: [10.5, 4, 1.5708]\n    arrive_mode: state")
+        text = text.replace("{name: diff}", f"{{name: {drive}}}").replace("vel_max: [1.0, 1.5]", f"vel_max: {limits}")
+        path.write_text(text.replace("    vel_min: [-1.0, -1.5]\n", ""), encoding="utf-8")
+        assert irsim.run(path).outcome == outcome, drive
