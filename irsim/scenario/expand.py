@@ -23,6 +23,7 @@ DEFAULT_STATE = [1.0, 1.0, 0.0]
 DEFAULT_GOAL = [1.0, 9.0, 0.0]
 DEFAULT_RADIUS = 1.0
 ACKER_PICTURE = "car_green.png"
+_STATIC_CONTROLS = 3  # rows of the control of an object that never moves, as in IR-SIM
 _MARGIN = 0.5  # of random placement and the circle distribution, from the world's edge [m]
 
 
@@ -124,7 +125,7 @@ class _Maker:
         kinematics = _drive(value["kinematics"])
         shape = value["shape"] if value["shape"] is not None else _default_shape()
         state_dim = entry.state_dim or (len(kinematics.state_rows) if kinematics else 3)
-        vel_dim = entry.vel_dim or (len(kinematics.control_rows) if kinematics else 2)
+        vel_dim = entry.vel_dim or (len(kinematics.control_rows) if kinematics else _STATIC_CONTROLS)
         random = self._is_random()
         state = placed[0] if placed is not None else self.world.center if random else value["state"]
         options = value["behavior"] if value["behavior"] is not None else value["group_behavior"]
@@ -144,10 +145,10 @@ class _Maker:
             shape=shape,
             state=_fitted(DEFAULT_STATE if state is None else state, state_dim),
             goals=[] if random else self._goals(value, placed),
-            velocity=[0.0] * vel_dim if value["velocity"] is None else list(value["velocity"]),
-            vel_min=[-1.0] * vel_dim if value["vel_min"] is None else list(value["vel_min"]),
-            vel_max=[1.0] * vel_dim if value["vel_max"] is None else list(value["vel_max"]),
-            acce=[math.inf] * vel_dim if value["acce"] is None else list(value["acce"]),
+            velocity=_control(value["velocity"], 0.0, vel_dim, kinematics),
+            vel_min=_limit(value["vel_min"], -1.0, vel_dim, kinematics),
+            vel_max=_limit(value["vel_max"], 1.0, vel_dim, kinematics),
+            acce=_control(value["acce"], math.inf, vel_dim, kinematics),
             state_dim=state_dim,
             vel_dim=vel_dim,
             angle_range=(angles[0], angles[0] + 2 * math.pi) if value["angle_range"] else (-math.pi, math.pi),
@@ -180,6 +181,8 @@ class _Maker:
         if value["waypoints"] is not None:
             return [list(point) for point in value["waypoints"]]
         goal = value["goal"]
+        if goal is None and isinstance(self.entry.goal, list):
+            return []  # null among the goals of the objects: this one has none
         if goal is None:
             return [placed[1] if placed is not None else list(DEFAULT_GOAL)]
         return [list(point) for point in goal] if isinstance(goal[0], list) else [list(goal)]
@@ -240,6 +243,20 @@ def _default_shape() -> BaseModel:
     from irsim.shapes.circle import Circle
 
     return Circle(radius=DEFAULT_RADIUS)
+
+
+def _control(values: list[float] | None, default: float, size: int, kinematics: Any) -> list[float]:
+    """A vector of control components; without a drive nobody reads it, so any length is brought to ``size``."""
+    if values is None:
+        return [default] * size
+    return list(values) if kinematics is not None else (list(values) + [default] * size)[:size]
+
+
+def _limit(values: list[float] | None, default: float, size: int, kinematics: Any) -> list[float]:
+    """Limits of the control components; a single number holds for all of them."""
+    if values is not None and len(values) == 1:
+        return list(values) * size
+    return _control(values, default, size, kinematics)
 
 
 def _fitted(values: Sequence[float], length: int) -> list[float]:

@@ -23,6 +23,7 @@ _FALLBACKS = {
     "entry.group_behavior.target_roles": "all",
     "gui.keyboard.backend": "mpl",
 }
+_SINGLE = ("entry.vel_min", "entry.vel_max")
 _NAMES = ("entry.name", "entry.group_name", "world.status", "world.name")
 _TRUNCATED = ("alpha", "offset", "goal", "range_low", "range_high", "center")
 _CLIPPED = {"entry.number": 0, "entry.fov": 0.0, "entry.sensors.angle_range": 0.0}
@@ -43,11 +44,13 @@ def carry_on_unknown_key(path: Path, parent: Any) -> Edit | None:
 
 
 def carry_on_type(kind: str, path: Path, value: Any) -> Edit | None:
-    """2.12 takes booleans by truthiness, booleans as numbers, and any scalar as a name."""
+    """2.12 takes booleans by truthiness, booleans as numbers, any scalar as a name, and one number as all limits."""
     if kind in ("bool_type", "bool_parsing"):
         return Edit("replace", path, bool(value))
     if kind in ("float_type", "int_type") and isinstance(value, bool):
         return Edit("replace", path, int(value))
+    if kind == "list_type" and place(path) in _SINGLE and isinstance(value, (int, float)):
+        return Edit("replace", path, [value])
     if kind == "string_type" and place(path) in _NAMES and isinstance(value, (str, int, float)):
         return Edit("replace", path, str(value))
     if kind in ("model_type", "model_attributes_type") and path in (("robot",), ("obstacle",)):

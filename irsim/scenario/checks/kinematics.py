@@ -13,6 +13,7 @@ from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.wording import flow
 
 _CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
+_BROADCAST = ("vel_min", "vel_max")  # IR-SIM takes a single number for all components
 _ROUNDING = 1e-6
 
 
@@ -54,21 +55,33 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
-    values: list[float] = getattr(record, key)
-    if len(values) == record.vel_dim:
+    values = _written(context, record, key)
+    if values is None or len(values) == record.vel_dim or record.kinematics is None:  # without a drive nobody reads it
         return None
     drive: Any = record.kinematics
-    rows = (
-        f" ({', '.join(drive.control_rows)})" if drive is not None and record.vel_dim == len(drive.control_rows) else ""
-    )
-    name = f"'{drive.name}'" if drive is not None else "an object without kinematics"
+    rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
+    name = f"'{drive.name}'"
+    path = context.entry_path(record, key)
+    same = Edit("replace", path, values * record.vel_dim) if key in _BROADCAST and len(values) == 1 else None
     return error(
         "wrong-length",
-        context.entry_path(record, key),
+        path,
         f"{len(values)} number{'s' if len(values) != 1 else ''}; {name} takes {record.vel_dim}{rows}",
         given=values,
         allowed=f"{record.vel_dim} numbers{rows}",
+        fix=f"{key}: {flow(values * record.vel_dim)}" if same else None,
+        edit=same,
+        carry_on=same,
     )
+
+
+def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
+    """The vector as the file has it for this object."""
+    entry = next(item for path, item in context.scenario.entries(record.role) if path == record.path)
+    value: Any = getattr(entry, key)
+    if isinstance(value, list) and any(isinstance(item, list) or item is None for item in value):
+        value = value[min(record.index, len(value) - 1)]
+    return value if value is None else list(value)
 
 
 def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
@@ -99,9 +112,7 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _angle_range(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    entry = context.scenario.entries(record.role)
-    given = next(item for path, item in entry if path == record.path).angle_range
-    values: Any = given[min(record.index, len(given) - 1)] if isinstance(given[0], list) else given
+    values = _written(context, record, "angle_range") or [-math.pi, math.pi]
     if abs(values[1] - values[0] - 2 * math.pi) > _ROUNDING:
         path = context.entry_path(record, "angle_range")
         yield error(
