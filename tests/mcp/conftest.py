@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -10,7 +11,7 @@ from typing import Any
 
 import pytest
 from irsim_mcp.limits import ServerLimits
-from irsim_mcp.server import build_server
+from irsim_mcp.server import IrsimServer, build_server
 from mcp import Client, StdioServerParameters
 from mcp.types import CallToolResult, ImageContent, TextContent
 
@@ -57,10 +58,21 @@ def workspace(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace that nobody writes to, so that tests can share a server."""
+    return tmp_path_factory.mktemp("empty")
+
+
+@functools.lru_cache(maxsize=8)
+def server_for(workspace: Path, limits: ServerLimits) -> IrsimServer:
+    return build_server(workspace, limits)
+
+
 @asynccontextmanager
 async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> AsyncIterator[Client]:
     """A client of a server in this process."""
-    server = build_server(workspace, ServerLimits(**limits))
+    server = server_for(workspace, ServerLimits(**limits))
     async with Client(server, mode=era, raise_exceptions=True) as client:
         yield client
 

@@ -70,9 +70,11 @@ FILES = {
 }
 
 
-@pytest.fixture
-def trap(workspace: Path) -> Path:
+@pytest.fixture(scope="module")
+def trap(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workspace with links that lead out, beside a file that nobody may read."""
+    workspace = tmp_path_factory.mktemp("outside") / "workspace"
+    workspace.mkdir()
     for name in ("secret.yaml", "secret.png"):
         (workspace.parent / name).write_text(ROOM, encoding="utf-8")
     (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
@@ -155,10 +157,10 @@ async def test_scenarios_in_files_have_the_same_limits(trap: Path) -> None:
             assert code in [issue["code"] for issue in data["issues"]]
 
 
-async def test_checking_that_takes_too_long_is_stopped(workspace: Path) -> None:
+async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     star = ", ".join(f"[{(i * 7919) % 1000}, {(i * 104_729) % 1000}]" for i in range(9000))
     scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
-    async with connected(workspace, check_seconds=1) as client:
+    async with connected(empty, check_seconds=1) as client:
         told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": scenario}))
     assert told.startswith("out-of-time: 1 s of computing were over")
 

@@ -14,6 +14,15 @@ from tests.mcp.conftest import ERAS, ROOM, connected, error_of
 pytestmark = pytest.mark.anyio
 
 
+@pytest.fixture(scope="module")
+def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace with a scenario and a folder."""
+    workspace = tmp_path_factory.mktemp("furnished")
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    (workspace / "folder").mkdir()
+    return workspace
+
+
 @pytest.mark.parametrize("era", ERAS)
 @pytest.mark.parametrize(
     ("tool", "arguments", "error"),
@@ -67,11 +76,9 @@ pytestmark = pytest.mark.anyio
     ],
 )
 async def test_one_line_with_a_fix(
-    workspace: Path, era: str, tool: str, arguments: dict[str, object], error: str
+    furnished: Path, era: str, tool: str, arguments: dict[str, object], error: str
 ) -> None:
-    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
-    (workspace / "folder").mkdir()
-    async with connected(workspace, era) as client:
+    async with connected(furnished, era) as client:
         told = error_of(await client.call_tool(tool, arguments))
     assert error in told
     code = told.partition(":")[0]
@@ -80,18 +87,18 @@ async def test_one_line_with_a_fix(
 
 
 @pytest.mark.parametrize("tool", ["run_episode", "render_snapshot"])
-async def test_an_invalid_scenario_names_its_first_problems(workspace: Path, tool: str) -> None:
+async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: str) -> None:
     wrong = ROOM.replace("dash", "dahs").replace("world: {", "world: {foo: 1, ").replace("goal:", "gaol:")
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         told = error_of(await client.call_tool(tool, {"scenario_yaml": wrong}))
     assert told.startswith("invalid-scenario: 3 errors: world.foo line 1 unknown-key: ")
     assert "robot[0].behavior.name line 8 unknown-behavior" in told
     assert told.endswith("Fix: validate_scenario lists every problem with its fix.")
 
 
-async def test_no_room_for_random_objects(workspace: Path) -> None:
+async def test_no_room_for_random_objects(empty: Path) -> None:
     crowd = ROOM + "  - {number: 99, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         told = error_of(await client.call_tool("run_episode", {"scenario_yaml": crowd, "seed": 1}))
     assert told.startswith("placement-crowded: no room for ")
     assert "with seed 1" in told

@@ -147,8 +147,8 @@ async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> N
 
 
 @pytest.mark.anyio
-async def test_more_calls_than_workers_are_told_to_come_back(workspace: Path) -> None:
-    async with connected(workspace, workers=1) as client:
+async def test_more_calls_than_workers_are_told_to_come_back(empty: Path) -> None:
+    async with connected(empty, workers=1) as client:
         async with anyio.create_task_group() as tasks:
 
             async def occupy() -> None:
@@ -163,11 +163,11 @@ async def test_more_calls_than_workers_are_told_to_come_back(workspace: Path) ->
 
 
 @pytest.mark.anyio
-async def test_calls_at_the_same_time_do_not_mix(workspace: Path) -> None:
+async def test_calls_at_the_same_time_do_not_mix(empty: Path) -> None:
     goals = {2: "success", 3: "success", 4: "success"}
     found: dict[int, Any] = {}
 
-    async with connected(workspace) as client, anyio.create_task_group() as tasks:
+    async with connected(empty) as client, anyio.create_task_group() as tasks:
 
         async def call(goal: int) -> None:
             scenario = ROOM.replace("goal: [4, 3, 0]", f"goal: [{goal}, 3, 0]").replace("rover", f"rover_{goal}")

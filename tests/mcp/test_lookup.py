@@ -20,13 +20,13 @@ SECTIONS = ["scenario", "world", "robot", "obstacle", "gui", *sorted(REGISTRIES)
 MOST_CHARACTERS = 32_000  # 8k tokens
 
 
-async def looked_up(workspace: Path, topic: str, **arguments: object) -> str:
-    async with connected(workspace) as client:
+async def looked_up(empty: Path, topic: str, **arguments: object) -> str:
+    async with connected(empty) as client:
         return text_of(await client.call_tool("lookup", {"topic": topic, **arguments}))
 
 
-async def test_index_fits_a_screen_and_leads_on(workspace: Path) -> None:
-    index = await looked_up(workspace, "")
+async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
+    index = await looked_up(empty, "")
     lines = index.splitlines()
     assert len(lines) <= 60
     for name in ("world", "robot", "obstacle", "dash", "lidar2d", "diff", "rectangle", "codes", *templates.names()):
@@ -49,26 +49,26 @@ async def test_index_fits_a_screen_and_leads_on(workspace: Path) -> None:
         ("hallway", ["corridor-passing"]),
     ],
 )
-async def test_topics(workspace: Path, topic: str, said: list[str]) -> None:
-    text = await looked_up(workspace, topic)
+async def test_topics(empty: Path, topic: str, said: list[str]) -> None:
+    text = await looked_up(empty, topic)
     assert len(text) < MOST_CHARACTERS
     for word in said:
         assert word in text
 
 
 @pytest.mark.parametrize("name", templates.names())
-async def test_templates_come_as_yaml_that_is_valid(workspace: Path, name: str) -> None:
-    text = await looked_up(workspace, name)
+async def test_templates_come_as_yaml_that_is_valid(empty: Path, name: str) -> None:
+    text = await looked_up(empty, name)
     assert text.startswith(f"template {name}")
     assert "yaml-language-server" not in text
     assert api.validate(text=text.split("```yaml\n")[1].split("```")[0]).valid
 
 
-async def test_parameters_are_filled_in(workspace: Path) -> None:
-    text = await looked_up(workspace, "circle-swap", parameters={"robots": 5, "kinematics": "omni"})
+async def test_parameters_are_filled_in(empty: Path) -> None:
+    text = await looked_up(empty, "circle-swap", parameters={"robots": 5, "kinematics": "omni"})
     assert "number: 5" in text
     assert "kinematics: {name: omni}" in text
-    as_text = await looked_up(workspace, "circle-swap", parameters='{"robots": 5}')  # some hosts send objects as text
+    as_text = await looked_up(empty, "circle-swap", parameters='{"robots": 5}')  # some hosts send objects as text
     assert "number: 5" in as_text
 
 
@@ -86,8 +86,8 @@ async def test_parameters_are_filled_in(workspace: Path) -> None:
         ({"topic": "x" * 300}, "bad-argument: "),
     ],
 )
-async def test_errors(workspace: Path, arguments: dict[str, object], error: str) -> None:
-    async with connected(workspace) as client:
+async def test_errors(empty: Path, arguments: dict[str, object], error: str) -> None:
+    async with connected(empty) as client:
         assert error in error_of(await client.call_tool("lookup", arguments))
 
 
@@ -98,8 +98,8 @@ async def text_at(client: Client, uri: str) -> str:
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_resources_can_be_listed_and_read(workspace: Path, era: str) -> None:
-    async with connected(workspace, era) as client:
+async def test_resources_can_be_listed_and_read(empty: Path, era: str) -> None:
+    async with connected(empty, era) as client:
         uris = [str(resource.uri) for resource in (await client.list_resources()).resources]
         patterns = [template.uri_template for template in (await client.list_resource_templates()).resource_templates]
         text = await text_at(client, "irsim://templates/crossing")
@@ -110,8 +110,8 @@ async def test_resources_can_be_listed_and_read(workspace: Path, era: str) -> No
     assert "range_max" in deeper["properties"]
 
 
-async def test_every_listed_resource_can_be_read_and_is_what_it_says(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_every_listed_resource_can_be_read_and_is_what_it_says(empty: Path) -> None:
+    async with connected(empty) as client:
         uris = [str(resource.uri) for resource in (await client.list_resources()).resources]
         texts = {uri: await text_at(client, uri) for uri in uris}
     for text in texts.values():
@@ -137,15 +137,15 @@ async def test_every_listed_resource_can_be_read_and_is_what_it_says(workspace: 
         "irsim://runs/1",
     ],
 )
-async def test_other_resources_do_not_exist(workspace: Path, uri: str) -> None:
-    async with connected(workspace) as client:
+async def test_other_resources_do_not_exist(empty: Path, uri: str) -> None:
+    async with connected(empty) as client:
         with pytest.raises(MCPError) as error:
             await client.read_resource(uri)
     assert error.value.code == -32602
 
 
-async def test_names_are_completed(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_names_are_completed(empty: Path) -> None:
+    async with connected(empty) as client:
         ref = ResourceTemplateReference(type="ref/resource", uri="irsim://templates/{name}")
         found = await client.complete(ref, {"name": "name", "value": "c"})
     assert found.completion.values == ["car-park", "circle-swap", "corridor-passing", "crossing"]

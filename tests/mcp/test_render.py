@@ -33,8 +33,8 @@ async def test_line_and_picture(workspace: Path) -> None:
     assert list(workspace.iterdir()) == []
 
 
-async def test_later_moments_and_no_picture(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_later_moments_and_no_picture(empty: Path) -> None:
+    async with connected(empty) as client:
         for step, said in ((10, "(step 10,"), (-1, "'rover' arrived")):
             arguments = {"scenario_yaml": ROOM, "step": step, "return_image": False}
             result = await client.call_tool("render_snapshot", arguments)
@@ -42,8 +42,8 @@ async def test_later_moments_and_no_picture(workspace: Path) -> None:
             assert len(result.content) == 1
 
 
-async def test_overlays(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_overlays(empty: Path) -> None:
+    async with connected(empty) as client:
         pictures = [
             image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": overlays})).data
             for overlays in ([], ["names", "goals"])

@@ -16,8 +16,8 @@ from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, erro
 pytestmark = pytest.mark.anyio
 
 
-async def test_success(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_success(empty: Path) -> None:
+    async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "seed": 3})
     data = data_of(result)
     assert (data["outcome"], data["seed"], data["time_limit_from"]) == ("success", 3, "default")
@@ -29,8 +29,8 @@ async def test_success(workspace: Path) -> None:
     assert [event["kind"] for event in data["events"]] == ["arrival"]
 
 
-async def test_collision_names_both_the_place_and_the_step_to_look_at(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_collision_names_both_the_place_and_the_step_to_look_at(empty: Path) -> None:
+    async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3})
         data, text = data_of(result), text_of(result)
         hit = data["events"][0]
@@ -44,24 +44,24 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(workspace:
         assert "'rover' collided" in text_of(await client.call_tool("render_snapshot", look))
 
 
-async def test_timeout_says_what_the_robot_was_doing(workspace: Path) -> None:
+async def test_timeout_says_what_the_robot_was_doing(empty: Path) -> None:
     still = ROOM.replace("    behavior: {name: dash}\n", "")
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": still, "max_steps": 20})
     data = data_of(result)
     assert (data["outcome"], data["steps"], data["time_limit_from"]) == ("timeout", 20, "argument")
     assert "rover has no behavior, so it stands still 3.61 m from its goal" in data["reason"]
 
 
-async def test_the_same_seed_gives_the_same(workspace: Path) -> None:
+async def test_the_same_seed_gives_the_same(empty: Path) -> None:
     random = ROOM.replace("    state: [1, 1, 0]\n    goal: [4, 3, 0]\n", "    distribution: {name: random}\n")
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         first = data_of(await client.call_tool("run_episode", {"scenario_yaml": random}))
         again = data_of(await client.call_tool("run_episode", {"scenario_yaml": random, "seed": first["seed"]}))
     assert first == again
 
 
-async def test_unsuccessful_robots_come_first_and_long_lists_are_cut(workspace: Path) -> None:
+async def test_unsuccessful_robots_come_first_and_long_lists_are_cut(empty: Path) -> None:
     states = ", ".join(f"[2, {2 * i + 1}]" for i in range(14))
     goals = ", ".join(f"[{2.5 if i < 12 else 9}, {2 * i + 1}]" for i in range(14))
     many = (
@@ -69,7 +69,7 @@ async def test_unsuccessful_robots_come_first_and_long_lists_are_cut(workspace: 
         "  - {number: 14, kinematics: {name: diff}, behavior: {name: dash}, shape: {name: circle, radius: 0.2},\n"
         f"     state: [{states}], goal: [{goals}]}}\n"
     )
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": many}))
         full = data_of(await client.call_tool("run_episode", {"scenario_yaml": many, "response_format": "detailed"}))
     assert (data["robot_count"], len(data["robots"])) == (14, 10)
@@ -106,14 +106,14 @@ async def test_command_line_and_server_say_the_same(workspace: Path, monkeypatch
 
 
 @pytest.mark.parametrize("era", ERAS)
-async def test_progress_increases_at_most_once_a_second(workspace: Path, era: str) -> None:
+async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -> None:
     told: list[tuple[float, float, float]] = []
 
     async def on_progress(done: float, total: float | None, message: str | None) -> None:
         assert total is not None
         told.append((time.monotonic(), done, total))
 
-    async with connected(workspace, era) as client:
+    async with connected(empty, era) as client:
         arguments = {"scenario_yaml": LONG, "max_wall_s": 3, "max_steps": 4000}
         result = await client.call_tool("run_episode", arguments, progress_callback=on_progress)
     assert "out-of-time" in error_of(result)
@@ -123,32 +123,32 @@ async def test_progress_increases_at_most_once_a_second(workspace: Path, era: st
     assert all(a[1] < b[1] and b[0] - a[0] > 0.9 for a, b in itertools.pairwise(told))
 
 
-async def test_time_is_limited_and_the_error_says_what_fits(workspace: Path) -> None:
-    async with connected(workspace) as client:
+async def test_time_is_limited_and_the_error_says_what_fits(empty: Path) -> None:
+    async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": LONG, "max_wall_s": 1})
     assert error_of(result).startswith("out-of-time: 1 s of computing were over after ")
     assert "fewer steps" in error_of(result)
 
 
-async def test_work_is_limited(workspace: Path) -> None:
-    async with connected(workspace, work=100) as client:
+async def test_work_is_limited(empty: Path) -> None:
+    async with connected(empty, work=100) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "max_steps": 101})
         assert error_of(result).startswith("over-limit: 101 steps are too many: at most 100 steps x objects")
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": ROOM, "max_steps": 100}))
     assert data["outcome"] == "success"
 
 
-async def test_a_longer_horizon_is_cut_and_said(workspace: Path) -> None:
+async def test_a_longer_horizon_is_cut_and_said(empty: Path) -> None:
     slow = ROOM.replace("height: 6", "height: 6, step_time: 0.001, time_limit: 60") + "    vel_max: [0.1, 1]\n"
-    async with connected(workspace) as client:
+    async with connected(empty) as client:
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": slow}))
     assert (data["steps"], data["time_limit_from"]) == (5000, "limits")
     assert "the most steps of one run here" in data["reason"]
 
 
-async def test_memory_is_limited(workspace: Path) -> None:
+async def test_memory_is_limited(empty: Path) -> None:
     huge = ROOM.replace("name: rover", "number: 100") + "    sensors: [{name: lidar2d, number: 1000000}]\n"
-    async with connected(workspace, memory=512 * 1024**2) as client:
+    async with connected(empty, memory=512 * 1024**2) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": huge, "max_steps": 1})
     assert error_of(result).startswith("out-of-memory: ")
     assert "fewer objects, lidar beams or steps" in error_of(result)
