@@ -179,6 +179,12 @@ CODES: dict[str, Code] = {
         "Vertices are in the body frame. An object without 'state' stands at [1, 1, 0]; write 'state: [0, 0, 0]' for "
         "vertices in world coordinates.",
     ),
+    "default-goal": Code(
+        "no goal given", "Every object has a goal; without one of its own it is [1, 9, 0], whatever the world's size."
+    ),
+    "heading-in-degrees": Code(
+        "heading looks like degrees", "All angles are in radians: a right angle is 1.5708, half a turn 3.14159."
+    ),
     "default-shape": Code(
         "no shape given", "The default is a circle of radius 1 m, while {name: circle} has radius 0.2 m."
     ),

@@ -39,20 +39,20 @@ def format_diagnostic(item: Diagnostic, lines: Sequence[str] = (), color: bool =
         color: Use ANSI colors.
     """
     paint = _painter(color)
-    place = ":".join(str(part) for part in (item.file, item.line, item.column) if part is not None)
-    head = f"{paint(item.severity, _COLORS[item.severity])} {item.code}  {format_path(item.path)}"
+    place = _printable(":".join(str(part) for part in (item.file, item.line, item.column) if part is not None))
+    head = f"{paint(item.severity, _COLORS[item.severity])} {item.code}  {_printable(format_path(item.path))}"
     out = [f"{paint(place, _BOLD)}  {head}" if place else head]
     if item.line is not None and 1 <= item.line <= len(lines):
         out += _quoted(item, lines[item.line - 1], paint)
     else:
-        out.append(f"  {item.message}")
+        out.append(f"  {_printable(item.message)}")
     advice = []
     if item.allowed:
         advice.append("allowed: " + _allowed(item.allowed) + _suggestion(item))
     if item.fix:
         advice.append("fix: " + item.fix)
     if advice:
-        out.append("  " + "   ".join(advice))
+        out.append("  " + _printable("   ".join(advice)))
     return "\n".join(out)
 
 
@@ -68,7 +68,7 @@ def _quoted(item: Diagnostic, line: str, paint: Any) -> list[str]:
     carets = paint("^" * length, _COLORS[item.severity])
     return [
         f"{paint(f'   {number} | ', _DIM)}{shown}",
-        f"{gutter}{paint(' | ', _DIM)}{' ' * offset}{carets} {item.message}",
+        f"{gutter}{paint(' | ', _DIM)}{' ' * offset}{carets} {_printable(item.message)}",
     ]
 
 

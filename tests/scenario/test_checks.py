@@ -12,7 +12,7 @@ from irsim import registry
 from irsim.scenario.read import read
 
 ROOT = Path(__file__).parent.parent.parent
-DIFF = {"kinematics": {"name": "diff"}, "shape": {"name": "circle"}, "behavior": {"name": "dash"}}
+DIFF = {"kinematics": {"name": "diff"}, "shape": {"name": "circle"}, "behavior": {"name": "dash"}, "goal": [9, 9]}
 Found = list[tuple[str, str, tuple[str | int, ...]]]
 
 
@@ -22,7 +22,10 @@ def findings(data: Any, *, strict: bool = True, hints: bool = True) -> Found:
 
 
 def robot(**keys: Any) -> dict[str, Any]:
-    return {"robot": [{**DIFF, **keys}]}
+    entry = {**DIFF, **keys}
+    if "waypoints" in keys or ("distribution" in keys and "goal" not in keys):
+        del entry["goal"]
+    return {"robot": [entry]}
 
 
 def obstacle(**keys: Any) -> dict[str, Any]:
@@ -97,8 +100,10 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (robot(kinematics={"name": "omni", "noise": True}), "hint", "omni-noise", ("robot", 0, "kinematics", "noise")),
     (robot(kinematics=None), "warning", "behavior-without-kinematics", ("robot", 0, "behavior")),
     (robot(behavior=None), "hint", "no-behavior", ("robot", 0)),
-    ({"robot": [{"kinematics": {"name": "diff"}, "behavior": {"name": "dash"}}]}, "hint", "default-shape",
-        ("robot", 0)),
+    (robot(shape=None), "hint", "default-shape", ("robot", 0)),
+    (robot(goal=None), "hint", "default-goal", ("robot", 0)),
+    (robot(state=[1, 1, 90]), "hint", "heading-in-degrees", ("robot", 0, "state")),
+    (robot(goal=[[[2, 2, 0], [3, 3, -180]]]), "hint", "heading-in-degrees", ("robot", 0, "goal", 0)),
     (robot(state=[20, 1]), "hint", "outside-world", ("robot", 0, "state")),
     (robot(goal=[20, 1]), "hint", "outside-world", ("robot", 0, "goal")),
     (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints")),

@@ -97,13 +97,15 @@ def test_every_section_at_once() -> None:
         "kinematics: [{name: omni_angular, noise: false, alpha: [0.1, 0.1, 0.1]}]\n    velocity: [1, 0, 0]",
         "tags: [pedestrian, slow]",
         "waypoints: [[2, 2], [3, 3, 1.5]]",
-        "vel_min: null\n    vel_max: null\n    acce: null\n    goal: null\n    state: null",
+        "vel_min: null\n    vel_max: null\n    acce: null\n    state: null",
     ],
 )
 def test_keys_of_objects(entry: str) -> None:
     base = {"kinematics": "{name: diff}", "shape": "{name: circle}", "behavior": "{name: dash}"}
+    if "waypoints" not in entry:
+        base["goal"] = "[9, 9]"
     given = entry.replace("group_behavior", "")
-    lines = [f"    {key}: {value}" for key, value in base.items() if f"{key}: " not in given]
+    lines = [f"    {key}: {value}" for key, value in base.items() if f"{key}: " not in given.replace("show_goal: ", "")]
     world = "world: {collision_mode: contact}\n" if "contact2d" in entry else ""
     accepted(world + "robot:\n  - number: 1\n" + "\n".join(lines) + f"\n    {entry}\n")
 
@@ -185,7 +187,8 @@ def test_every_key_is_documented(model: type[BaseModel]) -> None:
 def test_reading_needs_no_heavy_library(tmp_path: Path) -> None:
     code = (
         "import sys; from irsim.scenario.read import read\n"
-        "r = read('robot: {kinematics: {name: diff}, shape: {name: circle}, behavior: {name: dash}}\\n')\n"
+        "r = read('robot: {kinematics: {name: diff}, shape: {name: circle}, '\n"
+        "         'behavior: {name: dash}, goal: [9, 9]}\\n')\n"
         "assert r.scenario is not None and not r.diagnostics\n"
         "heavy = {'matplotlib', 'shapely', 'jsonschema', 'typer', 'mcp', 'numpy'} & set(sys.modules)\n"
         "assert not heavy, heavy\n"

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
 from irsim.diagnostics import Edit, Path
 from irsim.scenario.checks._context import Context
+from irsim.scenario.expand import DEFAULT_GOAL
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.wording import flow
 from irsim.vectors import is_vector
+
+_TURN = 6.3
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -28,8 +33,10 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _ignored(path, entry)
         elif records:
             yield from _state(context, path, entry, records)
-        if records and entry.distribution is None:
+        if records and (entry.distribution is None or entry.distribution.name == "manual"):
             yield from _outside(context, records)
+            yield from _default_goal(path, entry, records)
+            yield from _degrees(context, records)
 
 
 def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
@@ -86,6 +93,36 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
                 (*path, "state"),
                 f"{longest} numbers; the state has {records[0].state_dim}, the rest is dropped",
             )
+
+
+def _default_goal(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+    driven = [r for r in records if not r.static and not r.wander and (r.behavior or r.group_behavior) is not None]
+    if driven and entry.goal is None and entry.waypoints is None:
+        yield hint(
+            "default-goal",
+            path,
+            f"without 'goal' it drives to {flow(DEFAULT_GOAL)}",
+            fix="add 'goal: [x, y]', or 'wander: true' to the behavior",
+            edit=Edit("add", (*path, "goal"), DEFAULT_GOAL),
+        )
+
+
+def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+    """Headings that are more than a turn and a whole number of degrees."""
+    for key in ("state", "goal", "waypoints"):
+        for record in records:
+            if not context.given(record, key):
+                break
+            poses = [record.state] if key == "state" else record.goals
+            angle = next((pose[2] for pose in poses if len(pose) > 2 and abs(pose[2]) > _TURN), None)
+            if angle is not None and angle == int(angle):
+                yield hint(
+                    "heading-in-degrees",
+                    context.entry_path(record, key),
+                    f"a heading of {angle:g} radians is {abs(angle) / (2 * math.pi):.1f} turns",
+                    fix=f"angles are in radians: {angle:g} degrees are {math.radians(angle):.5g}",
+                )
+                break
 
 
 def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
