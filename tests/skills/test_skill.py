@@ -166,7 +166,6 @@ def found(text: str) -> set[str]:
 
 
 def test_marked_traps_go_unnoticed_by_the_validator() -> None:
-    assert found(SKELETON.replace("[1.5, 4, 0]", "[1.5, 4, 90]")) == set()  # degrees
     assert found(SKELETON.replace("radius: 0.3", "radius: 0.6")) == set()  # a diameter
     assert found(SKELETON.replace("{name: dash}", "{name: dash, loop: true}")) == set()
     assert found(SKELETON.replace("state: [[6, 6.5, 0], [6, 1.5, 0]]", "state: [[6, 4, 0], [6, 1.5, 0]]")) == set()
@@ -177,6 +176,8 @@ def test_marked_traps_go_unnoticed_by_the_validator() -> None:
     [
         (("state: [1.5, 4, 0]", "state: [1.5, 4, 0]\n    number: 3"), "stacked"),
         (("goal: [10.5, 4]", "goal: [[10.5, 4], [2, 2]]"), "goal-levels"),
+        (("state: [1.5, 4, 0]", "state: [1.5, 4, 90]"), "heading-in-degrees"),
+        (("goal: [10.5, 4]", ""), "default-goal"),
         (("vel_min: [-1.0, -1.5]", ""), "vel-min-default"),
         (("shape: {name: circle, radius: 0.3}", ""), "default-shape"),
         (("behavior: {name: dash}", ""), "no-behavior"),
