@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from mcp.types import TextContent
 from pydantic import Field
@@ -10,9 +10,6 @@ from pydantic import Field
 from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
-
-if TYPE_CHECKING:
-    from irsim.lookup import Answer
 
 __all__ = ["tool"]
 
@@ -24,9 +21,10 @@ _DESCRIPTION = """
     meaning, unit, range, default and an example. Returns text. Start from the nearest template rather than from
     nothing. Next: edit the YAML and call validate_scenario.
 """
+_INDEX_TITLE = "What lookup knows"
 _INDEX_HELP = (
-    "Ask for any of these, or for a path such as robot.sensors.lidar2d or world.plot. Units: m, s, rad; heading 0 "
-    "looks along +x and grows counter-clockwise."
+    "Ask for any of these, or for a path such as robot.sensors.lidar2d or world.plot. Templates are whole scenarios; "
+    "empty-room is the smallest. Units: m, s, rad; heading 0 looks along +x and grows counter-clockwise."
 )
 
 
@@ -62,14 +60,12 @@ def _answer(topic: str) -> str:
         raise failure("unknown-topic", f"nothing is called {topic!r}", where="topic", fix=fix) from None
     if answer.kind == "template":
         return _template(answer.topic, {})
-    if answer.kind == "index":
-        answer = answer.model_copy(update={"title": "What lookup knows"} if not answer.topic else {})
-        return f"{as_text(answer)}\n\n{_INDEX_HELP}" if not answer.topic else as_text(answer)
-    return as_text(answer) + _example(answer)
-
-
-def _example(answer: Answer) -> str:
-    return f"\n\nFor example:\n{answer.example}" if answer.example else ""
+    if answer.kind != "index":
+        return as_text(answer) + (f"\n\nFor example:\n{answer.example}" if answer.example else "")
+    if answer.topic:
+        return as_text(answer)
+    groups = {**answer.groups, **look_up("templates").groups}  # with what they are for
+    return f"{as_text(answer.model_copy(update={'title': _INDEX_TITLE, 'groups': groups}))}\n\n{_INDEX_HELP}"
 
 
 def _template(name: str, parameters: dict[str, Any]) -> str:
