@@ -164,7 +164,7 @@ def _reason(env: Env, robots: list[RobotResult], events: Sequence[Event], source
     views = {view.name: view for view in env.robot_list}
     late = [robot for robot in robots if robot.outcome == "timeout"]
     if late:
-        named = [f"{robot.name} {_state_of(views[robot.name], robot)}" for robot in late[:_NAMED]]
+        named = [f"{robot.name} {_state_of(env, views[robot.name], robot)}" for robot in late[:_NAMED]]
         more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
         reasons.append(f"at {env.sim_time:.1f} s ({_LIMITS[source]}) {', '.join(named)}{more}")
     return "; ".join(reasons)
@@ -177,11 +177,13 @@ def _first_hit(names: set[str], events: Sequence[Event]) -> str | None:
     return f"{first.object} hit {first.partner} at {first.time:.1f} s near ({first.x:.2f}, {first.y:.2f})"
 
 
-def _state_of(view: ObjectView, robot: RobotResult) -> str:
+def _state_of(env: Env, view: ObjectView, robot: RobotResult) -> str:
     """What a robot is doing that has not arrived: ``stands still 3.21 m from its goal``."""
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
+    if not _inside(env, robot):
+        place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if speed >= _STANDING:
         return f"still moved at {speed:.2g} m/s, {place}"
     if record.kinematics is None:
@@ -189,3 +191,8 @@ def _state_of(view: ObjectView, robot: RobotResult) -> str:
     if record.behavior is None and record.group_behavior is None:
         return f"has no behavior, so it stands still {place}"
     return f"stands still {place}"
+
+
+def _inside(env: Env, robot: RobotResult) -> bool:
+    left, low, right, top = env.scenario.world.bounds
+    return left <= robot.pose[0] <= right and low <= robot.pose[1] <= top

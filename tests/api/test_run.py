@@ -80,3 +80,10 @@ def test_robots_and_aliases_have_limits_of_their_own() -> None:
     aliases = "custom: &a [1]\nrobot:\n  - {tags: *a}\n  - {tags: *a}\n"
     with pytest.raises(ScenarioError, match="more than 1 aliases"):
         irsim.run(text=aliases, limits=Limits(aliases=1))
+
+
+def test_a_robot_that_left_the_world_is_said_to_be_outside() -> None:
+    away = (
+        text(4, DASH, ", time_limit: 3").replace("goal: [4, 3]", "goal: [-9, 3]").replace("[1, 3]", "[1, 3, 3.14159]")
+    )
+    assert "from its goal, outside the world at (-2.00, 3.00)" in str(irsim.run(text=away).reason)

@@ -22,6 +22,10 @@ _DESCRIPTION = """
 """
 
 
+_ALLOWED = 800
+"""Characters of the values that would be accepted."""
+
+
 class Issue(BaseModel):
     """One problem."""
 
@@ -60,7 +64,7 @@ def tool(services: Services) -> StrictTool:
         scenario_yaml: ScenarioYaml = None,
         max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
         response_format: Annotated[
-            Literal["concise", "detailed"], Field(description="detailed: with columns, allowed values and hints.")
+            Literal["concise", "detailed"], Field(description="detailed: with hints, columns, all allowed values.")
         ] = "concise",
     ) -> Annotated[CallToolResult, Report]:
         found = await services.scenario_job(
@@ -85,6 +89,8 @@ def _report(found: dict[str, Any], most: int, detailed: bool) -> Report:
         advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
     elif not found["valid"]:
         advice = "Apply the fixes and validate again; lookup explains a code or a key."
+    elif found["warnings"]:
+        advice = "See whether the warnings are meant, look at it with render_snapshot, then run_episode."
     else:
         advice = "Look at it with render_snapshot, then run_episode."
     return Report(
@@ -111,7 +117,7 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
         message=clean(item["message"], 300),
         fix=None if item["fix"] is None else clean(item["fix"], 300),
         column=item["column"] if detailed else None,
-        allowed=clean(allowed, 300) if allowed and (detailed or item["fix"] is None) else None,
+        allowed=clean(allowed, _ALLOWED if detailed else _ALLOWED // 4) if allowed else None,
     )
 
 
