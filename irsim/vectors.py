@@ -10,8 +10,11 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 __all__ = [
+    "LIST",
+    "MAPPING",
     "ONE",
     "PER_OBJECT",
+    "UNION_TAGS",
     "Offset",
     "OrNull",
     "PerObject",
@@ -23,7 +26,8 @@ __all__ = [
     "vector",
 ]
 
-ONE, PER_OBJECT = "<one>", "<per object>"
+ONE, PER_OBJECT, MAPPING, LIST = "<one>", "<per object>", "<mapping>", "<list>"
+UNION_TAGS = frozenset({ONE, PER_OBJECT, MAPPING, LIST})
 """Tags in the location of a validation error; they name no part of the document."""
 
 

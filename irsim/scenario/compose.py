@@ -6,38 +6,21 @@ from tags. Positions of nodes are recorded only when asked for: most files have 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
 
 from irsim.diagnostics import Diagnostic, Path
 from irsim.scenario.limits import Limits
+from irsim.scenario.nodes import NO_KEY, Anchored, Frame, Mark, Node, merge, scalar_mark, start_mark
 from irsim.scenario.scalars import resolve, tagged
+from irsim.scenario.syntax import syntax_problem
 
-__all__ = ["Composed", "Mark", "Node", "compose"]
+__all__ = ["Composed", "compose"]
 
 _MERGE = object()
-_NO_KEY = object()
 _COLLECTION_TAGS = (None, "!", "tag:yaml.org,2002:map", "tag:yaml.org,2002:seq")
-
-
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """A place in the text, counted from 1, and how many characters to underline."""
-
-    line: int
-    column: int
-    length: int = 1
-
-
-@dataclass(slots=True)
-class Node:
-    """Where a value stands, and where its parts stand."""
-
-    mark: Mark
-    keys: dict[Any, Mark] = field(default_factory=dict)
-    children: dict[Any, Node] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -54,29 +37,6 @@ class _Stop(Exception):
     """A problem after which reading on makes no sense."""
 
 
-@dataclass(slots=True)
-class _Frame:
-    """A list or mapping that is being read."""
-
-    value: Any
-    mapping: bool
-    anchor: str | None
-    node: Node | None
-    key: Any = _NO_KEY
-    key_mark: Mark | None = None
-    size: int = 1
-    height: int = 1
-    merges: list[tuple[Any, Node | None]] | None = None
-
-
-@dataclass(slots=True)
-class _Anchored:
-    value: Any
-    size: int
-    height: int
-    node: Node | None
-
-
 def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
     """Read one YAML document.
 
@@ -91,7 +51,7 @@ def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
     except _Stop:
         return Composed(None, composer.problems, True, composer.root)
     except yaml.YAMLError as error:
-        composer.syntax_error(error)
+        composer.problems.append(syntax_problem(error, text, composer.path()))
         return Composed(None, composer.problems, True, composer.root)
     return Composed(composer.data, composer.problems, composer.fatal, composer.root)
 
@@ -99,8 +59,8 @@ def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
 class _Composer:
     def __init__(self, text: str, limits: Limits, positions: bool) -> None:
         self.text, self.limits, self.positions = text, limits, positions
-        self.stack: list[_Frame] = []
-        self.anchors: dict[str, _Anchored | None] = {}  # None: still being read
+        self.stack: list[Frame] = []
+        self.anchors: dict[str, Anchored | None] = {}  # None: still being read
         self.problems: list[Diagnostic] = []
         self.data: Any = None
         self.root: Node | None = None
@@ -176,9 +136,9 @@ class _Composer:
             except ValueError as error:
                 self._problem("unsupported-tag", str(error), event)
         anchor = event.anchor
-        node = Node(_scalar_mark(event)) if self.positions else None
+        node = Node(scalar_mark(event)) if self.positions else None
         if anchor is not None:
-            self.anchors[anchor] = _Anchored(value, 1, 0, node)
+            self.anchors[anchor] = Anchored(value, 1, 0, node)
         self._add(value, 1, 0, node, plain=bool(event.implicit[0]), event=event)
 
     def _open(self, event: Any, mapping: bool) -> None:
@@ -189,8 +149,8 @@ class _Composer:
         anchor = event.anchor
         if anchor is not None:
             self.anchors[anchor] = None
-        node = Node(_start_mark(event)) if self.positions else None
-        self.stack.append(_Frame({} if mapping else [], mapping, anchor, node))
+        node = Node(start_mark(event)) if self.positions else None
+        self.stack.append(Frame({} if mapping else [], mapping, anchor, node))
 
     def _close(self, event: Any) -> None:
         frame = self.stack.pop()
@@ -199,9 +159,9 @@ class _Composer:
             if event.end_mark.line + 1 == mark.line and event.end_mark.column > mark.column:
                 frame.node.mark = Mark(mark.line, mark.column, event.end_mark.column + 1 - mark.column)
         if frame.merges:
-            _merge(frame)
+            merge(frame)
         if frame.anchor is not None:
-            self.anchors[frame.anchor] = _Anchored(frame.value, frame.size, frame.height, frame.node)
+            self.anchors[frame.anchor] = Anchored(frame.value, frame.size, frame.height, frame.node)
         self._add(frame.value, frame.size, frame.height, frame.node)
 
     def _alias(self, event: Any) -> None:
@@ -247,19 +207,19 @@ class _Composer:
             if node is not None and frame.node is not None:
                 frame.node.children[len(frame.value)] = node
             frame.value.append(value)
-        elif frame.key is _NO_KEY:
+        elif frame.key is NO_KEY:
             self._key(frame, value, node, plain, event)
         elif frame.key is _MERGE:
             self._add_merge(frame, value, node)
-            frame.key = _NO_KEY
+            frame.key = NO_KEY
         else:
             frame.value[frame.key] = value
             if node is not None and frame.node is not None and frame.key_mark is not None:
                 frame.node.keys[frame.key] = frame.key_mark
                 frame.node.children[frame.key] = node
-            frame.key = _NO_KEY
+            frame.key = NO_KEY
 
-    def _key(self, frame: _Frame, key: Any, node: Node | None, plain: bool, event: Any) -> None:
+    def _key(self, frame: Frame, key: Any, node: Node | None, plain: bool, event: Any) -> None:
         if plain and key == "<<":
             frame.key = _MERGE
             return
@@ -279,7 +239,7 @@ class _Composer:
         frame.key = key
         frame.key_mark = node.mark if node is not None else None
 
-    def _add_merge(self, frame: _Frame, value: Any, node: Node | None) -> None:
+    def _add_merge(self, frame: Frame, value: Any, node: Node | None) -> None:
         sources = [(value, node)]
         if isinstance(value, list):
             children = node.children if node is not None else {}
@@ -292,14 +252,15 @@ class _Composer:
 
     # problems
 
-    def _path(self, key: Any = _NO_KEY) -> Path:
+    def path(self, key: Any = NO_KEY) -> Path:
+        """Where reading has got to."""
         parts: list[str | int] = []
         for frame in self.stack:
             if not frame.mapping:
                 parts.append(len(frame.value))
-            elif frame.key is not _NO_KEY and frame.key is not _MERGE:
+            elif frame.key is not NO_KEY and frame.key is not _MERGE:
                 parts.append(str(frame.key))
-        if key is not _NO_KEY:
+        if key is not NO_KEY:
             parts.append(str(key))
         return tuple(parts)
 
@@ -310,12 +271,12 @@ class _Composer:
         event: Any,
         *,
         severity: Any = "error",
-        key: Any = _NO_KEY,
+        key: Any = NO_KEY,
         tolerated: bool = False,
         given: Any = None,
         fix: str | None = None,
     ) -> None:
-        mark = None if event is None else _scalar_mark(event)
+        mark = None if event is None else scalar_mark(event)
         self.fatal = self.fatal or (severity == "error" and not tolerated)
         if len(self.problems) >= self.limits.problems:
             return
@@ -323,7 +284,7 @@ class _Composer:
             Diagnostic(
                 code,
                 severity,
-                self._path(key),
+                self.path(key),
                 message,
                 line=mark.line if mark else None,
                 column=mark.column if mark else None,
@@ -359,32 +320,6 @@ class _Composer:
             fix=f"write {value} for the number, or '{text}' in quotes for the text",
         )
 
-    def syntax_error(self, error: yaml.YAMLError) -> None:
-        """Turn the parser's complaint into a diagnostic."""
-        line = column = 1
-        message = " ".join(str(error).split())
-        if isinstance(error, yaml.MarkedYAMLError):
-            mark = error.problem_mark or error.context_mark
-            if mark is not None:
-                line, column = mark.line + 1, mark.column + 1
-            message = ", ".join(part for part in (error.context, error.problem) if part)
-        elif isinstance(error, yaml.reader.ReaderError):
-            position = error.position if isinstance(error.position, int) else 0
-            before = self.text[:position]
-            line, column = before.count("\n") + 1, position - before.rfind("\n")
-            message = "a character that YAML does not allow"
-        fix = None
-        if "cannot start any token" in message and self._character(line, column) == "\t":
-            message, fix = "a tab is used for indentation", "indent with spaces"
-        self.fatal = True
-        self.problems.append(
-            Diagnostic("yaml-syntax", "error", self._path(), message, line=line, column=column, fix=fix)
-        )
-
-    def _character(self, line: int, column: int) -> str:
-        lines = self.text.splitlines()
-        return lines[line - 1][column - 1 : column] if 0 < line <= len(lines) else ""
-
 
 def _parser(text: str) -> Any:
     """The event parser of libyaml, or PyYAML's own where PyYAML was built without libyaml."""
@@ -393,27 +328,3 @@ def _parser(text: str) -> Any:
 
         return CParser(text)
     return yaml.SafeLoader(text)  # used for its events only; nothing is constructed
-
-
-def _merge(frame: _Frame) -> None:
-    """Give a mapping the pairs of those it merges; its own pairs win."""
-    own, merged = dict(frame.value), frame.value
-    merged.clear()
-    for source, node in frame.merges or []:
-        merged.update(source)
-        if node is not None and frame.node is not None:
-            for key, child in node.children.items():
-                if key not in own:
-                    frame.node.children[key] = child
-                    frame.node.keys[key] = node.keys[key]
-    merged.update(own)
-
-
-def _start_mark(event: Any) -> Mark:
-    return Mark(event.start_mark.line + 1, event.start_mark.column + 1, 1)
-
-
-def _scalar_mark(event: Any) -> Mark:
-    start, end = event.start_mark, event.end_mark
-    length = end.column - start.column if end.line == start.line else 1
-    return Mark(start.line + 1, start.column + 1, max(1, length))

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from irsim.diagnostics import Diagnostic, Path
-from irsim.scenario.compose import Composed, Mark, Node, compose
+from irsim.scenario.compose import Composed, compose
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.nodes import Mark, Node
 
 __all__ = ["Document", "Mark", "load_data", "load_path", "load_text"]
 

@@ -13,7 +13,7 @@ from irsim.scenario.entry import Entry
 from irsim.scenario.gui import Gui, Keyboard, Mouse
 from irsim.scenario.plot import ObjectPlot
 from irsim.scenario.world import SavedFigure, WorldModel, WorldPlot
-from irsim.vectors import any_of
+from irsim.vectors import LIST, MAPPING, any_of
 
 __all__ = ["Entry", "Gui", "Keyboard", "Mouse", "ObjectPlot", "SavedFigure", "Scenario", "WorldModel", "WorldPlot"]
 
@@ -27,8 +27,8 @@ class _OneOrList:
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         item = handler.generate_schema(self.model)
         return core_schema.tagged_union_schema(
-            {"<mapping>": item, "<list>": core_schema.list_schema(item)},
-            lambda value: "<list>" if isinstance(value, (list, tuple)) else "<mapping>",
+            {MAPPING: item, LIST: core_schema.list_schema(item)},
+            lambda value: LIST if isinstance(value, (list, tuple)) else MAPPING,
         )
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
