@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 import stat
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
 __all__ = ["why_outside"]
 
+_INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Unicode categories: controls, marks that turn text around, halves of characters, line and paragraph separators."""
 _DRIVE = re.compile(r"[A-Za-z]:")
 _WINDOWS_DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
@@ -27,7 +30,7 @@ def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None
     Returns:
         What is wrong, to be put behind the name: ``"leads upwards ('..')"``; None if the name is fine.
     """
-    if any(not character.isprintable() for character in name):
+    if any(unicodedata.category(character) in _INVISIBLE for character in name):
         return "holds a control character"
     words = re.split(r"[/\\]", name)
     if name.startswith(("/", "\\")) or _DRIVE.match(name):
@@ -44,6 +47,8 @@ def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None
             target = (base / name).resolve()
             if not target.is_relative_to(limit):
                 return "is a link that leads out of it"
+            if any(part.is_symlink() for part in (target, *target.parents)):  # from 3.13 on a ring is left as it is
+                return "cannot be followed"
             if target.exists() and not _ordinary(target):
                 return "is a device or pipe"
     except (OSError, RuntimeError, ValueError):  # a ring of links, a name too long, …

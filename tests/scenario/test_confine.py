@@ -27,7 +27,7 @@ def root(tmp_path: Path) -> Path:
     return root
 
 
-@pytest.mark.parametrize("name", ["maps/a.png", "./maps/a.png", "maps//a.png", "not-there.png", "car_blue.png", "a..b"])
+@pytest.mark.parametrize("name", ["maps/a.png", "./maps/a.png", "maps//a.png", "not-there.png", "a..b", "地图　1.png"])
 def test_names_that_lead_downwards_pass(root: Path, name: str) -> None:
     assert why_outside(name, root) is None
 
@@ -46,6 +46,7 @@ def test_names_that_lead_downwards_pass(root: Path, name: str) -> None:
         ("~/secret.png", "home"),
         ("~root/secret.png", "home"),
         ("maps/a.png\0", "control character"),
+        ("maps/\u202egnp.a", "control character"),
         ("maps/nul.png", "device"),
         ("maps/" + "x" * 5000, "cannot be followed"),
     ],
@@ -64,6 +65,7 @@ def test_links_count_as_what_they_lead_to(root: Path) -> None:
     assert "link that leads out" in str(why_outside("outside.png", root))
     assert "link that leads out" in str(why_outside("folder/secret.png", root))
     assert "cannot be followed" in str(why_outside("ring", root))
+    assert "cannot be followed" in str(why_outside("ring/a.png", root))
 
 
 @POSIX
