@@ -12,6 +12,7 @@ import numpy as np
 from irsim.observers.events import Event, first_events
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
+from irsim.text import clean
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -22,6 +23,7 @@ __all__ = ["command", "run_result"]
 _MAX_EVENTS = 100
 _NAMED = 3
 """Robots named one by one in a sentence."""
+_LONGEST_NAME = 40
 _STANDING = 1e-3
 """Slower than this is standing still [m/s]."""
 _NO_FILE = "scenario.yaml"
@@ -164,7 +166,7 @@ def _reason(env: Env, robots: list[RobotResult], events: Sequence[Event], source
     views = {view.name: view for view in env.robot_list}
     late = [robot for robot in robots if robot.outcome == "timeout"]
     if late:
-        named = [f"{robot.name} {_state_of(env, views[robot.name], robot)}" for robot in late[:_NAMED]]
+        named = [f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot)}" for robot in late[:_NAMED]]
         more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
         reasons.append(f"at {env.sim_time:.1f} s ({_LIMITS[source]}) {', '.join(named)}{more}")
     return "; ".join(reasons)
@@ -174,7 +176,12 @@ def _first_hit(names: set[str], events: Sequence[Event]) -> str | None:
     first = next((e for e in events if e.kind == "collision" and names & {e.object, str(e.partner)}), None)
     if first is None:
         return None
-    return f"{first.object} hit {first.partner} at {first.time:.1f} s near ({first.x:.2f}, {first.y:.2f})"
+    place = f"({first.x:.2f}, {first.y:.2f})"
+    return f"{_quoted(first.object)} hit {_quoted(first.partner)} at {first.time:.1f} s near {place}"
+
+
+def _quoted(name: object) -> str:
+    return f"'{clean(name, _LONGEST_NAME)}'"
 
 
 def _state_of(env: Env, view: ObjectView, robot: RobotResult) -> str:

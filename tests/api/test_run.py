@@ -46,9 +46,9 @@ def test_success_needs_no_reason() -> None:
 @pytest.mark.parametrize(
     ("scenario", "reason"),
     [
-        (text(extra=""), "rover has no behavior, so it stands still 3.00 m from its goal"),
-        (text(19, world=", time_limit: 5"), "at 5.0 s (world.time_limit) rover still moved at 1 m/s, 13.00 m from"),
-        (text() + "obstacle:\n  - {name: crate, state: [2.5, 3], shape: {name: circle}}\n", "rover hit crate at "),
+        (text(extra=""), "'rover' has no behavior, so it stands still 3.00 m from its goal"),
+        (text(19, world=", time_limit: 5"), "at 5.0 s (world.time_limit) 'rover' still moved at 1 m/s, 13.00 m from"),
+        (text() + "obstacle:\n  - {name: crate, state: [2.5, 3], shape: {name: circle}}\n", "'rover' hit 'crate' at "),
         ("world: {width: 5}\n", "there are no robots"),
     ],
 )

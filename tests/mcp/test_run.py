@@ -35,7 +35,7 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(empty: Pat
         data, text = data_of(result), text_of(result)
         hit = data["events"][0]
         assert data["outcome"] == "collision"
-        assert f"rover hit crate at {hit['time']:.1f} s near ({hit['x']:.2f}, {hit['y']:.2f})" in data["reason"]
+        assert f"'rover' hit 'crate' at {hit['time']:.1f} s near ({hit['x']:.2f}, {hit['y']:.2f})" in data["reason"]
         assert (hit["kind"], hit["object"], hit["partner"]) == ("collision", "rover", "crate")
         assert f"render_snapshot step={hit['step']} seed=3" in data["next"]
         for said in (data["summary"], data["reason"], data["reproduce"], data["next"], "'rover' collision"):
@@ -50,7 +50,7 @@ async def test_timeout_says_what_the_robot_was_doing(empty: Path) -> None:
         result = await client.call_tool("run_episode", {"scenario_yaml": still, "max_steps": 20})
     data = data_of(result)
     assert (data["outcome"], data["steps"], data["time_limit_from"]) == ("timeout", 20, "argument")
-    assert "rover has no behavior, so it stands still 3.61 m from its goal" in data["reason"]
+    assert "'rover' has no behavior, so it stands still 3.61 m from its goal" in data["reason"]
 
 
 async def test_the_same_seed_gives_the_same(empty: Path) -> None:

@@ -97,3 +97,15 @@ async def test_names_in_messages_are_harmless(empty: Path) -> None:
     assert all(line.isprintable() for line in lines)
     assert not any(line.startswith("Ignore") for line in lines)
     assert max(map(len, lines)) < 800
+
+
+async def test_a_result_stays_within_8k_tokens(empty: Path) -> None:
+    many = ROOM + "".join(f"    {'k' * 90}_{number}: 1\n" for number in range(100))
+    arguments = {"scenario_yaml": many, "max_issues": 100, "response_format": "detailed"}
+    async with connected(empty) as client:
+        result = await client.call_tool("validate_scenario", arguments)
+    assert len(text_of(result)) < 32_000
+    data = data_of(result)
+    assert 20 < len(data["issues"]) < 100
+    assert data["truncated"]
+    assert f"{data['error_count'] - len(data['issues'])} more issues" in data["next"]

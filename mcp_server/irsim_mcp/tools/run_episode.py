@@ -117,9 +117,9 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
     most = _DETAILED if detailed else _CONCISE
     robots = sorted(found["robots"], key=lambda robot: robot["outcome"] == "success")
     warnings = [item for item in found["warnings"] if item["severity"] == "warning"]
-    told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:most]]
-    if len(warnings) > most:
-        told.append(f"{len(warnings) - most} more: validate_scenario lists them")
+    told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:_CONCISE]]
+    if len(warnings) > _CONCISE:
+        told.append(f"{len(warnings) - _CONCISE} more: validate_scenario lists them")
     return Episode(
         outcome=found["outcome"],
         reason=None if found["reason"] is None else clean(found["reason"], 500),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Annotated, Any, Literal
 
 from mcp.types import CallToolResult, TextContent
@@ -70,7 +71,7 @@ def tool(services: Services) -> StrictTool:
         found = await services.scenario_job(
             "validate", scenario_path, scenario_yaml, seconds=services.limits.check_seconds
         )
-        report = _report(found, max_issues, response_format == "detailed")
+        report = _report(found, max_issues, response_format == "detailed", services.limits.text)
         text = TextContent(type="text", text=_text(report))
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
@@ -79,12 +80,13 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _report(found: dict[str, Any], most: int, detailed: bool) -> Report:
+def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Report:
     findings = [item for item in found["findings"] if detailed or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
     if found["hints"] and not detailed:
         summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)} with response_format=detailed"
-    cut = len(findings) - most
+    issues = _fitting([_issue(item, detailed) for item in findings[:most]], room)
+    cut = len(findings) - len(issues)
     if cut > 0:
         advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
     elif not found["valid"]:
@@ -99,10 +101,16 @@ def _report(found: dict[str, Any], most: int, detailed: bool) -> Report:
         error_count=found["errors"],
         warning_count=found["warnings"],
         counts=found["counts"],
-        issues=[_issue(item, detailed) for item in findings[:most]],
+        issues=issues,
         truncated=cut > 0,
         next=advice,
     )
+
+
+def _fitting(issues: list[Issue], room: int) -> list[Issue]:
+    """The first of them, as many as fit into so many characters of text."""
+    sizes = itertools.accumulate(len(_issue_text(0, issue)) for issue in issues)
+    return [issue for issue, size in zip(issues, sizes, strict=True) if size <= room]
 
 
 def _issue(item: dict[str, Any], detailed: bool) -> Issue:
@@ -123,11 +131,13 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
 
 def _text(report: Report) -> str:
     """The report in words; it says all that the structure says."""
-    lines = [report.summary]
-    for number, issue in enumerate(report.issues, 1):
-        place = "" if issue.line is None else f" line {issue.line}"
-        place += "" if issue.column is None else f" column {issue.column}"
-        line = f"{number}. {issue.severity} {issue.code} at {issue.path}{place}: {issue.message}."
-        line += "" if issue.allowed is None else f" Allowed: {issue.allowed}."
-        lines.append(line + ("" if issue.fix is None else f" Fix: {issue.fix}."))
-    return "\n".join([*lines, f"Next: {report.next}"])
+    issues = [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]
+    return "\n".join([report.summary, *issues, f"Next: {report.next}"])
+
+
+def _issue_text(number: int, issue: Issue) -> str:
+    place = "" if issue.line is None else f" line {issue.line}"
+    place += "" if issue.column is None else f" column {issue.column}"
+    line = f"{number}. {issue.severity} {issue.code} at {issue.path}{place}: {issue.message}."
+    line += "" if issue.allowed is None else f" Allowed: {issue.allowed}."
+    return line + ("" if issue.fix is None else f" Fix: {issue.fix}.")
