@@ -99,6 +99,25 @@ def install_without_compiler(environment: Any, request: pytest.FixtureRequest) -
     assert "no C++ compiler found, building with" in log.read_text(encoding="utf-8")
 
 
+CLIENT = """
+import sys
+
+import anyio
+from mcp import Client, StdioServerParameters
+
+
+async def main():
+    async with Client(StdioServerParameters(command=sys.argv[1])) as client:
+        print((await client.list_tools()).tools[0].name)
+        result = await client.call_tool("validate_scenario", {"scenario_path": "scene.yaml"})
+        print(result.structured_content["valid"])
+
+
+anyio.run(main)
+"""
+"""Asks the server of another environment, in the current directory, about ``scene.yaml``."""
+
+
 def unpacked(sdist: Path, folder: Path) -> Path:
     """The single folder inside a source distribution."""
     with tarfile.open(sdist) as archive:
@@ -135,7 +154,9 @@ def test_installed_package_works_from_elsewhere(installed: Any, tmp_path: Path) 
     assert json.loads((tmp_path / "schema.json").read_text(encoding="utf-8"))["$schema"]
     installed.run("irsim", "demo", cwd=tmp_path)
     assert [path.read_bytes()[:4] for path in tmp_path.rglob("*.gif")] == [b"GIF8"]
-    assert installed.run("python", "-c", "import irsim_mcp; print(irsim_mcp.__version__)", cwd=tmp_path).strip()
+    assert installed.run("irsim-mcp", "--version", cwd=tmp_path).startswith("irsim-mcp ")
+    script = installed.bin / "irsim-mcp"
+    assert installed.run("python", "-c", CLIENT, script, cwd=tmp_path).split() == ["lookup", "True"]
 
 
 def test_ir_sim_installed_on_top_is_refused(wheel: Path, new_environment: Callable[[str], Any], tmp_path: Path) -> None:
