@@ -158,11 +158,11 @@ class _Maker:
             unobstructed=entry.unobstructed,
             behavior=value["behavior"],
             group_behavior=value["group_behavior"],
-            wander=options is not None and options.wander,
-            loop=options is not None and options.loop,
+            wander=getattr(options, "wander", False),
+            loop=getattr(options, "loop", False),
             range_low=low,
             range_high=high,
-            target_roles=options.target_roles if options is not None else "all",
+            target_roles=getattr(options, "target_roles", "all"),
             sensors=list(value["sensors"] or []),
             plot=value["plot"],
             color=self._color(i, value, kinematics),
@@ -277,7 +277,7 @@ def _wheelbase(kinematics: KinematicsOptions | None, shape: BaseModel) -> float 
 
 def _view(entry: Entry, sensors: Sequence[Any]) -> tuple[float | None, float | None]:
     """Field of view: the entry's own, else the lidar's; without an own angle an own radius does not count."""
-    lidar = next((sensor for sensor in sensors if sensor.is_lidar), None)
+    lidar = next((sensor for sensor in sensors if getattr(sensor, "is_lidar", False)), None)
     reach = lidar.range_max if lidar is not None else None
     if entry.fov is None:
         return (lidar.angle_range if lidar is not None else None), reach

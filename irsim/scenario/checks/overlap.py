@@ -74,7 +74,7 @@ class _Body:
 
 def _reach(shape: Any) -> float:
     """No point of the shape is farther from the origin than this [m]."""
-    wheelbase = (shape.wheelbase or 0.0) / 2
+    wheelbase = (getattr(shape, "wheelbase", None) or 0.0) / 2
     if shape.name == "circle":
         return wheelbase + math.hypot(*shape.center) + float(shape.radius)
     if shape.name == "rectangle":
