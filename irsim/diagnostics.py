@@ -39,9 +39,9 @@ class Diagnostic:
         given: The offending value, as written.
         allowed: What would be accepted: names, a range, a type.
         fix: What to write instead, in words a person or agent can act on.
-        edit: The same as a machine-applicable edit, where that is safe.
-        tolerated: True for errors that IR-SIM 2.12 carries on with: ``irsim.make`` and ``irsim run`` apply ``edit``
-            (or ignore the finding) and show it as a warning unless asked to be strict.
+        edit: The best repair as a machine-applicable edit, where that is safe.
+        tolerated: True for errors that IR-SIM 2.12 carries on with: ``irsim.make`` and ``irsim run`` do what it does
+            (which may be to ignore the key that ``edit`` would rename) and show a warning unless asked to be strict.
         file: Name of the document.
     """
 

@@ -39,6 +39,12 @@ class Context:
                 yield path, entry, self.resolved.objects[first : first + entry.number]
                 first += entry.number
 
+    def entry(self, path: Path) -> Entry:
+        """The entry at a path: ("robot", 0) or ("robot",)."""
+        section: Any = getattr(self.scenario, str(path[0]))
+        entry: Entry = section[path[1]] if len(path) > 1 else section
+        return entry
+
     def entry_path(self, record: ObjectRecord, key: str) -> Path:
         """Where an object's value of ``key`` is written: the key, or the element of its list that is the object's."""
         value: Any = self.data

@@ -77,8 +77,7 @@ def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
 
 def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
     """The vector as the file has it for this object."""
-    entry = next(item for path, item in context.scenario.entries(record.role) if path == record.path)
-    value: Any = getattr(entry, key)
+    value: Any = getattr(context.entry(record.path), key)
     if isinstance(value, list) and any(isinstance(item, list) or item is None for item in value):
         value = value[min(record.index, len(value) - 1)]
     return value if value is None else list(value)

@@ -35,14 +35,14 @@ def _ranges(context: Context, path: Path) -> Iterator[Finding]:
     for i, axis in enumerate(("x", "y", "theta")):
         low, high = placement.range_low[i], placement.range_high[i]
         if low > high:
-            entry: Any = next(item for where, item in context.scenario.entries(path[0]) if where == path)  # type: ignore[arg-type]
-            key = "range_low" if entry.distribution.range_low is not None else "range_high"
-            given = getattr(entry.distribution, key) is not None
+            options: Any = context.entry(path).distribution
+            key = "range_low" if options.range_low is not None else "range_high"
+            given = getattr(options, key) is not None
             yield error(
                 "range-order",
                 (*path, "distribution", key) if given else (*path, "distribution"),
                 f"{axis}: the lower bound {low:g} is above the upper bound {high:g}",
-                given=getattr(entry.distribution, key),
+                given=getattr(options, key),
                 fix="range_low must not be greater than range_high; the defaults end half a metre inside the world",
             )
             return
