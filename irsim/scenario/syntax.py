@@ -32,6 +32,8 @@ def syntax_problem(error: yaml.YAMLError, text: str, path: Path) -> Diagnostic:
     fix = None
     if "cannot start any token" in message and _character(text, line, column) == "\t":
         message, fix = "a tab is used for indentation", "indent with spaces"
+    elif "cannot start any token" in message and _character(text, line, column) == "`":
+        message, fix = "a Markdown fence is not part of the YAML", "leave out the lines with ```"
     return Diagnostic("yaml-syntax", "error", path, message, line=line, column=column, fix=fix)
 
 

@@ -76,6 +76,7 @@ class Workspace:
             for count, path in enumerate(self.root.glob(pattern)):
                 if count >= _LOOKED_AT:
                     break
-                if path.suffix.lower() in _SUFFIXES and path.is_file():
-                    found.append(path.relative_to(self.root).as_posix())
+                name = path.relative_to(self.root).as_posix()
+                if path.suffix.lower() in _SUFFIXES and path.is_file() and why_outside(name, self.root) is None:
+                    found.append(name)
         return sorted(found, key=lambda name: (name.count("/"), name))

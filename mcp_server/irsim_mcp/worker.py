@@ -153,10 +153,11 @@ def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None) -> 
 
 def _command() -> list[str]:
     """Isolated: neither the workspace nor the user's environment decides what is imported."""
-    flags = ["-I", "-X", "utf8"]
-    if str(Path(__file__)).startswith(_user_site() + os.sep):  # installed with pip --user, which -I leaves out
-        flags = ["-E", "-X", "utf8"]
-    return [sys.executable, *flags, "-m", "irsim_mcp.job"]
+    isolated = [sys.executable, "-I", "-X", "utf8"]
+    site = _user_site()
+    if str(Path(__file__)).startswith(site + os.sep):  # installed with pip --user, which -I leaves out
+        return [*isolated, "-c", f"import site; site.addsitedir({site!r}); import irsim_mcp.job as job; job.main()"]
+    return [*isolated, "-m", "irsim_mcp.job"]
 
 
 def _user_site() -> str:

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
 
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
@@ -175,3 +176,18 @@ async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, m
         assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
         result = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "size_px": 200})
     assert not result.is_error
+
+
+async def test_files_outside_are_not_even_named(trap: Path) -> None:
+    async with connected(trap) as client:
+        told = error_of(await client.call_tool("run_episode", {"scenario_path": "secret.yml"}))
+    assert "secret.yaml" not in told
+
+
+async def test_a_server_installed_for_one_user_only_works(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Isolated mode leaves out the user's own packages, so their folder is added by name."""
+    folder = Path(worker.__file__).parents[1]
+    monkeypatch.setattr(worker, "_user_site", lambda: str(folder))
+    assert "addsitedir" in worker._command()[-1]
+    async with connected(empty) as client:
+        assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]

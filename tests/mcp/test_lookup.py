@@ -68,6 +68,7 @@ async def test_parameters_are_filled_in(empty: Path) -> None:
     text = await looked_up(empty, "circle-swap", parameters={"robots": 5, "kinematics": "omni"})
     assert "number: 5" in text
     assert "kinematics: {name: omni}" in text
+    assert "scenario.yaml with robots=5, kinematics=omni:" in text
     as_text = await looked_up(empty, "circle-swap", parameters='{"robots": 5}')  # some hosts send objects as text
     assert "number: 5" in as_text
 

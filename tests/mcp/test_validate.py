@@ -109,3 +109,9 @@ async def test_a_result_stays_within_8k_tokens(empty: Path) -> None:
     assert 20 < len(data["issues"]) < 100
     assert data["truncated"]
     assert f"{data['error_count'] - len(data['issues'])} more issues" in data["next"]
+
+
+async def test_a_fence_around_the_yaml_is_explained(empty: Path) -> None:
+    async with connected(empty) as client:
+        data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": f"```yaml\n{ROOM}```\n"}))
+    assert data["issues"][0]["fix"] == "leave out the lines with ```"

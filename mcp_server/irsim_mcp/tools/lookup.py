@@ -35,7 +35,7 @@ def tool(services: Services) -> StrictTool:
     def lookup(
         topic: Annotated[str, Field(max_length=200, description="Empty for the index.")] = "",
         parameters: Annotated[
-            dict[str, str | float | bool] | None,
+            dict[str, str | bool | int | float] | None,
             Field(description='Of a template, such as {"width": 1.4}; its answer lists them.'),
         ] = None,
     ) -> list[TextContent]:
