@@ -116,7 +116,7 @@ def lowest(session: nox.Session) -> None:
     """Quick tests with the lower bound of every dependency, on the oldest Python."""
     project = nox.project.load_toml("pyproject.toml")["project"]
     required = [*project["dependencies"], *project["optional-dependencies"]["test"]]
-    constraints = Path(session.create_tmp(), "lowest.txt")
+    constraints = Path(session.virtualenv.location, "lowest.txt")
     bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
     install(session, "-e", ".[test]", "-c", str(constraints))
