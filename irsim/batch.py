@@ -19,6 +19,8 @@ from irsim.streams import check_seed, fresh_seed
 __all__ = ["Batch", "batch"]
 
 Floats = NDArray[np.float64]
+_MAX_ROWS = 10_000_000
+"""Objects of a batch; each takes about a kilobyte."""
 
 
 class Batch:
@@ -99,6 +101,8 @@ class Batch:
             raise ValueError(f"actions have {actions.shape[2]} numbers each; these drives take another number")
         acting, width = actions.shape[1], actions.shape[2]
         given = ~np.isnan(actions[:, :, 0])
+        if not np.isfinite(actions[given]).all():
+            raise ValueError("an action is not finite; only NaN in its first component (no action) has a meaning")
         self._command[:, :acting, :width] = np.where(given[:, :, None], actions, 0.0)
         self._given[:, :acting] = given
 
@@ -154,6 +158,10 @@ def batch(
         resolved = scenario
     else:
         resolved, _ = open_scenario(scenario, strict=strict)
+    if n * len(resolved.objects) > _MAX_ROWS:
+        raise ValueError(
+            f"{n:,} worlds of {len(resolved.objects):,} objects are more than {_MAX_ROWS:,} objects in all"
+        )
     if seeds is None:
         first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()
         seeds = [first + i for i in range(n)]

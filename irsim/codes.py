@@ -268,6 +268,10 @@ TOOL_CODES: dict[str, Code] = {
     "import-failed": Code(
         "module cannot be imported", "A module named by --import raised an error; the message has it."
     ),
+    "behavior-failed": Code(
+        "behavior of your own failed",
+        "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
+    ),
     "invalid-input": Code("input not usable", "The message says what is wrong with it."),
     "file-access": Code(
         "file cannot be read or written", "The system refuses: check the path, the permissions and the space left."

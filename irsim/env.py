@@ -327,6 +327,9 @@ class Env(EnvDrawing):
                     state = [round(float(v), 3) for v in view.state[:, 0]]
                     self.logger.warning(f"{name} collided with {other} at state {state}")
 
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        raise TypeError("an environment cannot be copied or pickled: make another from the same file and seed")
+
     def __str__(self) -> str:
         return f"Environment: {self.scenario.name} (id {self.id})"
 

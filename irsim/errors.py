@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
 
 __all__ = [
+    "BehaviorError",
     "IrsimError",
     "NotSimulatedError",
     "OverLimitError",
@@ -51,6 +52,16 @@ class OverLimitError(IrsimError, ValueError):
     def __init__(self, message: str, fix: str) -> None:
         self.message, self.fix = message, fix
         super().__init__(f"{self.code}: {message}. Fix: {fix}.")
+
+
+class BehaviorError(IrsimError, ValueError):
+    """A behavior written in Python raised an error or returned something that is no control.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+    """
+
+    code = "behavior-failed"
 
 
 class NotSimulatedError(ScenarioError):

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from irsim.diagnostics import Diagnostic
+from irsim.errors import BehaviorError, ScenarioError
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
+    from irsim.views import ObjectView
 
 __all__ = ["attach_python_behaviors"]
-
-
-class UnknownBehaviorError(ValueError):
-    """A behavior that nothing has registered by the time it is needed."""
 
 
 class _Decision:
@@ -40,21 +40,45 @@ class _Decision:
                 name = str(getattr(options, "name", ""))
                 function = CUSTOM_BEHAVIORS.find(view.kinematics, name)
                 if function is None:
-                    known = ", ".join(CUSTOM_BEHAVIORS.names(view.kinematics)) or "none"
-                    raise UnknownBehaviorError(
-                        f"behavior {name!r} of {view.name!r} is not registered for {view.kinematics!r} "
-                        f"(built-in: {', '.join(BEHAVIORS.names())}; custom: {known})"
-                    )
+                    raise _unknown(simulation, view, name)
                 roles = record.target_roles
                 others = [o for o in objects if o.id != index and roles in ("all", o.role)]
                 control = function(ego_object=view, external_objects=others, **options.model_dump(exclude_unset=True))
-                values = np.asarray(control, dtype=np.float64).reshape(-1)
-                if values.size != view.vel_dim:
-                    raise ValueError(
-                        f"behavior {name!r} returned {values.size} numbers, {view.name!r} takes {view.vel_dim}"
-                    )
+                values = _checked(control, name, view)
                 simulation.command[row, : values.size] = values
                 simulation.given[row] = 1
+
+
+def _unknown(simulation: Simulation, view: ObjectView, name: str) -> ScenarioError:
+    """Nothing has registered the behavior by the time it is needed."""
+    known = [*BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(view.kinematics)]
+    finding = Diagnostic(
+        code="unknown-behavior",
+        severity="error",
+        path=(*view.record.path, "behavior", "name"),
+        message=f"behavior {name!r} of {view.name!r} is not registered for {view.kinematics!r}",
+        given=name,
+        allowed=known,
+        fix="register it before the first step: irsim run --import MODULE, or register_behavior in Python",
+        file=simulation.scenario.source,
+    )
+    return ScenarioError([finding], simulation.scenario.text)
+
+
+def _checked(control: object, name: str, view: ObjectView) -> NDArray[np.float64]:
+    """What a behavior returned, as finite control components."""
+    problem = f"behavior-failed: behavior {name!r} of {view.name!r} returned"
+    if control is None:
+        raise BehaviorError(f"{problem} None; return {view.vel_dim} numbers")
+    try:
+        values = np.asarray(control, dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        raise BehaviorError(f"{problem} {control!r}; return {view.vel_dim} numbers") from None
+    if values.size != view.vel_dim:
+        raise BehaviorError(f"{problem} {values.size} numbers; {view.kinematics!r} takes {view.vel_dim}")
+    if not np.isfinite(values).all():
+        raise BehaviorError(f"{problem} {values.tolist()}, which is not finite")
+    return values
 
 
 def attach_python_behaviors(simulation: Simulation) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from irsim.observers.events import Event, first_events
+from irsim.observers.events import Event, collision_of, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
 from irsim.text import clean
@@ -62,6 +62,7 @@ def run_result(
 
     events = env.events
     robots = _robots(env, events)
+    hits = _robot_collisions(env, events)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -73,8 +74,8 @@ def run_result(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
         outcome=outcome,
-        summary=_summary(robots, events, env.sim_time),
-        reason=None if outcome == "success" else _reason(env, robots, events, source),
+        summary=_summary(robots, hits, env.sim_time),
+        reason=None if outcome == "success" else _reason(env, robots, hits, source),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,
@@ -113,6 +114,7 @@ def command(
 def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
     outcomes = robot_outcomes(env.simulation)
     arrivals = first_events(events, "arrival")
+    passable = passable_names(env.simulation)
     robots = []
     for view in env.robot_list:
         ended = outcomes[view.name]
@@ -123,13 +125,20 @@ def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
                 name=view.name,
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
-                collision_count=sum(e.kind == "collision" and view.name in (e.object, e.partner) for e in events),
+                collision_count=sum(collision_of(e, view.name, passable) for e in events),
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
             )
         )
     return robots
+
+
+def _robot_collisions(env: Env, events: list[Event]) -> list[Event]:
+    """The collisions of robots; passing through something ``unobstructed`` is none."""
+    passable = passable_names(env.simulation)
+    names = [view.name for view in env.robot_list]
+    return [event for event in events if any(collision_of(event, name, passable) for name in names)]
 
 
 def _path_length(env: Env, row: int) -> float:

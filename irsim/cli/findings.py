@@ -11,10 +11,10 @@ from irsim.errors import IrsimError
 
 if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
-    from irsim.results import Finding
+    from irsim.results import Finding, ValidationReport
     from irsim.scenario.limits import Limits
 
-__all__ = ["UserImportError", "import_user_modules", "limits_for", "print_diagnostics", "print_findings"]
+__all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
 
 
 class UserImportError(IrsimError, ImportError):
@@ -98,7 +98,19 @@ def limits_for(max_objects: int | None) -> Limits | None:
         return None
     from irsim.scenario.limits import Limits
 
-    return Limits(objects=max_objects)
+    return Limits(objects=max_objects, robots=max_objects)
+
+
+def not_found(file: str, message: str) -> ValidationReport:
+    """The report on a file that does not exist."""
+    from irsim.results import Finding, ValidationReport
+
+    finding = Finding(
+        code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message
+    )
+    return ValidationReport(
+        file=file, valid=False, summary="1 error, 0 warnings", errors=1, warnings=0, hints=0, findings=[finding]
+    )
 
 
 def _text_of(file: str) -> str | None:

@@ -11,7 +11,9 @@ __all__ = ["File", "Imports", "Json", "MaxObjects", "Seed", "Steps", "Strict"]
 File = Annotated[str, typer.Argument(help="Scenario file (YAML).", show_default=False)]
 Seed = Annotated[
     int | None,
-    typer.Option(min=0, help="Seed of all randomness; default: the scenario's, else a fresh one that is reported."),
+    typer.Option(
+        min=0, max=2**64 - 1, help="Seed of all randomness; default: the scenario's, else a fresh one that is reported."
+    ),
 ]
 Steps = Annotated[
     int | None,

@@ -9,6 +9,7 @@ import typer
 
 from irsim.cli.guard import INVALID
 from irsim.cli.options import Imports, MaxObjects
+from irsim.errors import ScenarioNotFoundError
 
 if TYPE_CHECKING:
     from irsim.results import ValidationReport
@@ -28,7 +29,7 @@ def validate(
     max_objects: MaxObjects = None,
 ) -> None:
     """Check scenario files without running them. Exits with 2 if any is invalid."""
-    from irsim.cli.findings import import_user_modules, limits_for
+    from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
 
     import_user_modules(imports)
@@ -38,9 +39,12 @@ def validate(
         with progress(f"checking {file}"):
             from irsim import api
 
-            report = api.validate(
-                None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
-            )
+            try:
+                report = api.validate(
+                    None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
+                )
+            except ScenarioNotFoundError as error:  # the other files are checked all the same
+                report, text = not_found(file, str(error)), ""
         valid &= report.valid
         if json_output:
             print_json(report, indent=None)

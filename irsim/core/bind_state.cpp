@@ -176,10 +176,15 @@ State& BoundState::of(const World& named) {
   if (&named != world) throw nb::value_error("this state belongs to another world");
   return state;
 }
+void BoundState::check_idle() const {
+  if (busy) throw std::runtime_error("this simulation is in use by another thread: give each thread its own");
+}
 void BoundState::check_row(int row) const {
+  check_idle();
   if (row < 0 || row >= state.rows) throw nb::index_error("no such row");
 }
 void BoundState::check_world(int w) const {
+  check_idle();
   if (w < 0 || w >= state.worlds) throw nb::index_error("no such world");
 }
 void BoundState::check_mask(const Mask& mask) const {
@@ -221,6 +226,7 @@ void bind_state(nb::module_& m) {
           "reset",
           [](S& self, const Mask& mask, bool next_scene) {
             self.check_mask(mask);
+            const Claim claim(self);
             nb::gil_scoped_release free;
             reset(*self.world, self.state, mask.data(), next_scene);
           },
@@ -229,11 +235,16 @@ void bind_state(nb::module_& m) {
           "reseed",
           [](S& self, const Seeds& seeds, const Mask& mask) {
             self.check_mask(mask);
+            self.check_idle();
             if (static_cast<int>(seeds.shape(0)) != self.state.worlds) throw nb::value_error("one seed per world");
             reseed(self.state, seeds.data(), mask.data());
           },
           nb::arg("seeds"), nb::arg("mask"))
-      .def("refresh", [](S& self) { refresh(*self.world, self.state); })
+      .def("refresh",
+           [](S& self) {
+             const Claim claim(self);
+             refresh(*self.world, self.state);
+           })
       .def(
           "done",
           [](const S& self, int w) {

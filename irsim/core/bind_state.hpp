@@ -1,6 +1,8 @@
 // The state as Python holds it: the C++ state, its world, and the arrays that look into it.
 #pragma once
 
+#include <atomic>
+
 #include "bind.hpp"
 #include "state.hpp"
 
@@ -14,6 +16,7 @@ struct BoundState {
 
   World* world;
   State state;
+  std::atomic<bool> busy{false};  // a thread is inside, without the GIL
   nb::object pose, extra, control, twist, command, given, arrived, collided, stopped, radius, goal, ranges, hits, valid,
       beam_angles, count, scene, noise, seed, failed_placement;
 
@@ -22,6 +25,22 @@ struct BoundState {
   void check_row(int row) const;
   void check_world(int w) const;
   void check_mask(const Mask& mask) const;
+  void check_idle() const;
+};
+
+/// Claims the state for a call that releases the GIL; a second thread gets an error instead of torn memory.
+class Claim {
+ public:
+  explicit Claim(BoundState& state) : state_(state) {
+    state_.check_idle();
+    state_.busy = true;
+  }
+  ~Claim() { state_.busy = false; }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  BoundState& state_;
 };
 
 }  // namespace irsim

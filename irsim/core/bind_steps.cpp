@@ -28,12 +28,14 @@ nb::object joined(const std::vector<Recording>& all, std::vector<Element> Record
 
 long long advance(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool external) {
   State& state = bound.of(world);
+  const Claim claim(bound);
   nb::gil_scoped_release free;
   return run_worlds(world, state, {steps, threads, until_done, external}, nullptr, false);
 }
 
 Trace rollout(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool ranges) {
   State& state = bound.of(world);
+  const Claim claim(bound);
   std::vector<Recording> recordings(state.worlds);
   long long most = 0;
   {
@@ -60,6 +62,7 @@ template <class Phase>
 auto all_worlds(Phase phase) {
   return [phase](World& world, BoundState& bound) {
     State& state = bound.of(world);
+    const Claim claim(bound);
     nb::gil_scoped_release free;
     for (int w = 0; w < state.worlds; ++w) phase(world, state, w, state.workspaces.front());
   };

@@ -54,7 +54,10 @@ void log_contacts(const World& world, State& state, int w) {
     while (old != scene.previous_pairs.end() && *old < pair) ++old;
     if (old != scene.previous_pairs.end() && *old == pair) continue;
     const auto [i, j] = pair;
-    if (world.unobstructed[i] && world.unobstructed[j]) continue;
+    // somebody who moves must have run into something that stands in the way
+    const bool first = !world.unobstructed[j] && !world.is_static[i];
+    const bool second = !world.unobstructed[i] && !world.is_static[j];
+    if (!first && !second) continue;
     Vec2 where;
     touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
     state.log(w, EventKind::collision, i, j, where);

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
 
-__all__ = ["Event", "first_events", "read_events"]
+__all__ = ["Event", "collision_of", "first_collisions", "first_events", "passable_names", "read_events"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,4 +58,26 @@ def first_events(events: list[Event], kind: str) -> dict[str, Event]:
             first.setdefault(event.object, event)
             if event.partner is not None:
                 first.setdefault(event.partner, event)
+    return first
+
+
+def collision_of(event: Event, name: str, passable: set[str]) -> bool:
+    """Whether ``event`` is a collision of the object ``name``: it touched something that is not in ``passable``."""
+    other = event.partner if name == event.object else event.object
+    return event.kind == "collision" and name in (event.object, event.partner) and other not in passable
+
+
+def passable_names(simulation: Simulation) -> set[str]:
+    """Names of the objects that are ``unobstructed``: others pass through them."""
+    return {record.name for record in simulation.scenario.objects if record.unobstructed}
+
+
+def first_collisions(simulation: Simulation, events: list[Event]) -> dict[str, Event]:
+    """The first collision of every object that had one."""
+    passable = passable_names(simulation)
+    first: dict[str, Event] = {}
+    for event in events:
+        for name in (event.object, event.partner):
+            if name is not None and collision_of(event, name, passable):
+                first.setdefault(name, event)
     return first

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from irsim.observers.events import first_events, read_events
+from irsim.observers.events import first_collisions, first_events, read_events
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -20,7 +20,7 @@ def robot_outcomes(simulation: Simulation, world: int = 0) -> dict[str, Outcome]
     ``collision``: it touched something before it first arrived; ``success``: it arrived without; otherwise ``running``.
     """
     events = read_events(simulation, world)
-    arrivals, collisions = first_events(events, "arrival"), first_events(events, "collision")
+    arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
     outcomes: dict[str, Outcome] = {}
     for record in simulation.scenario.objects:
         if record.role != "robot":

@@ -31,6 +31,22 @@ if TYPE_CHECKING:
 __all__ = ["EnvPlot"]
 
 _PAD_INCHES = 0.1
+_SAVE_OPTIONS = frozenset(
+    [
+        "dpi",
+        "bbox_inches",
+        "pad_inches",
+        "transparent",
+        "facecolor",
+        "edgecolor",
+        "metadata",
+        "bbox_extra_artists",
+        "pil_kwargs",
+        "orientation",
+        "papertype",
+        "backend",
+    ]
+)
 _QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
 
 
@@ -228,6 +244,7 @@ class EnvPlot:
             ValueError: A format nothing writes.
         """
         wanted = options.pop("format", None)
+        _check_save_options(options)
         self.saved_figure_kwargs.update(options)
         count = int(self.env.simulation.count[0])
         paths = self.env.path_param
@@ -257,6 +274,7 @@ class EnvPlot:
         Args:
             **options: Of ``savefig``; they hold for later frames too.
         """
+        _check_save_options(options)
         self.saved_figure_kwargs.update(options)
         kwargs, crop = self.saved_figure_kwargs, self._recording.crop
         if crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self.fig.dpi):
@@ -346,6 +364,15 @@ class EnvPlot:
 def _saved_figure(options: Any) -> dict[str, Any]:
     values: dict[str, Any] = options.saved_figure.model_dump(exclude_unset=True)
     return {key: value for key, value in values.items() if value is not None or key == "bbox_inches"}
+
+
+def _check_save_options(options: Mapping[str, Any]) -> None:
+    """Refuse a misspelt option before it is kept for later saves."""
+    for name in options:
+        if name not in _SAVE_OPTIONS:
+            near = nearest(name, _SAVE_OPTIONS)
+            hint = f"did you mean {near!r}?" if near else f"known are {', '.join(sorted(_SAVE_OPTIONS))}"
+            raise TypeError(f"unknown option {name!r} of a saved figure; {hint}")
 
 
 def _is_quick(options: Mapping[str, Any], dpi: float) -> bool:

@@ -232,15 +232,20 @@ class Explainer:
         plain_float = reading.is_number and written is not None and written[:1] not in "'\""
         code = "yaml-number-text" if plain_float else "wrong-type"
         why = "text, by the rules of YAML 1.1" if plain_float else f"text, not {expected}"
-        fix = None if reading.value is None else f"write {reading.value!r}{reading.note}"
+        value: float | int | None = reading.value
+        if expected == "a whole number" and value is not None:
+            value = int(value) if float(value).is_integer() and abs(value) < _LARGE else None
+        # a plain 1e+308 would be text again
+        text = repr(value) if value is None or "e" not in repr(value) else number(value)
+        fix = None if value is None else f"write {text}{reading.note}"
         return error(
             code,
             self.path,
-            f"{self.value if plain_float else shown(self.value)} is {why}",
+            f"{str(self.value)[:60] if plain_float else shown(self.value)} is {why}",
             given=self.value,
             allowed=expected + self._unit(),
             fix=fix or reading.note or None,
-            edit=Edit("replace", self.path, reading.value) if reading.value is not None else None,
+            edit=Edit("replace", self.path, value) if value is not None else None,
         )
 
     def _list_for_number(self, expected: str) -> Finding:

@@ -221,6 +221,7 @@ def _diagnostics(findings: list[Finding], document: Document, strict: bool) -> l
     most = document.limits.problems
     if len(ordered) > most:
         rest = len(ordered) - most
-        last = Diagnostic("too-many-problems", "error", (), f"and {rest} more problems", file=document.name)
+        severity = ordered[most].severity  # the worst of those left out
+        last = Diagnostic("too-many-problems", severity, (), f"and {rest} more like these", file=document.name)
         ordered = [*ordered[:most], last]
     return ordered

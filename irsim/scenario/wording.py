@@ -32,7 +32,7 @@ def number(value: float) -> str:
         return str(value)
     if not math.isfinite(value):
         return ".nan" if math.isnan(value) else "-.inf" if value < 0 else ".inf"
-    if value == int(value) and abs(value) < 1e15:
+    if abs(value) < 1e15 and value == int(value):
         return str(int(value))
     text = f"{value:.10g}"
     return text if "e" not in text or "." in text else text.replace("e", ".0e")

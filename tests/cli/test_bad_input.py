@@ -76,7 +76,7 @@ def test_a_missing_file_names_near_matches(irsim: Run, room: Path) -> None:
     for verb in (["run"], ["validate"], ["render", "-o", "x.png"]):
         result = irsim(verb[0], "romm.yaml", *verb[1:])
         assert result.exit_code == 2
-        assert "room.yaml" in result.stderr
+        assert "room.yaml" in result.output
 
 
 def test_errors_are_json_too(irsim: Run, room: Path) -> None:

@@ -271,3 +271,57 @@ def test_new_initial_values_are_kept_apart(make: Make) -> None:
     env.reset()
     assert env.robot.state[:, 0].tolist() == [2, 2, 1]
     assert env.robot.velocity[:, 0].tolist() == [0.3, 0.2]
+
+
+def test_a_second_thread_is_turned_away(tmp_path: Any) -> None:
+    import threading
+
+    path = tmp_path / "crowd.yaml"
+    path.write_text(
+        "world: {width: 60, height: 60}\n"
+        "robot: {number: 300, kinematics: {name: diff}, shape: {name: circle, radius: 0.1},"
+        " distribution: {name: random, min_distance: 0.3}, behavior: {name: dash, wander: true}}\n"
+    )
+    env = irsim.make(str(path), headless=True, seed=1, log_level="CRITICAL")
+    refused: list[str] = []
+
+    def work() -> None:
+        for _ in range(100):
+            try:
+                env.step()
+            except RuntimeError as error:
+                refused.append(str(error))
+
+    threads = [threading.Thread(target=work) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert int(env.simulation.count[0]) + len(refused) == 300
+    assert all("another thread" in message for message in refused)
+
+
+def test_a_behavior_of_ones_own_must_return_controls(make: Make) -> None:
+    from irsim.lib import register_behavior
+
+    @register_behavior("diff", "test_nan")
+    def nan(ego_object: Any, external_objects: list[Any], **kwargs: Any) -> Any:
+        return [[math.nan], [0.0]]
+
+    env = make(ONE.replace("{name: dash}", "{name: test_nan}"))
+    with pytest.raises(ValueError, match="not finite"):
+        env.step()
+
+
+def test_passing_through_something_unobstructed_is_no_collision(make: Make) -> None:
+    env = make(WALL.replace("state: [4, 1, 0]}", "state: [4, 1, 0], unobstructed: true}"))
+    while not env.done():
+        env.step()
+    assert env.outcome == "success"
+
+
+def test_environments_are_not_copied_in_secret(make: Make) -> None:
+    import copy
+
+    with pytest.raises(TypeError, match="seed"):
+        copy.copy(make(ONE))
