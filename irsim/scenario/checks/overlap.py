@@ -15,6 +15,8 @@ from irsim.scenario.objects import ObjectRecord
 from irsim.vectors import is_vector
 
 _MOST_REPORTED = 20
+_MOST_PAIRS = 300_000
+"""Pairs that are looked at; thousands of objects in one place have more, and are told of as stacked."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -90,9 +92,13 @@ def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
     """Pairs whose bounding circles meet and of which one moves; a sweep along x."""
     ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
     active: list[_Body] = []
+    looked_at = 0
     for body in ordered:
         x, y = body.record.state[:2]
         active = [other for other in active if other.record.state[0] + other.reach >= x - body.reach]
+        looked_at += len(active)
+        if looked_at > _MOST_PAIRS:
+            return
         for other in active:
             if body.record.static and other.record.static:
                 continue
