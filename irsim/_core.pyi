@@ -295,6 +295,23 @@ def finish(world: World, state: State) -> None:
 def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
     """Controls with which the drive of a row realises a world-frame velocity [m/s] (zero without a native drive)."""
 
+def neighbors(
+    world: World, state: State, index: int, centre: tuple[float, float], reach: float
+) -> list[tuple[int, float, float, float, float, float]]:
+    """What behaviors of world `index` see near a point, now: id, centre x, y, velocity x, y, radius; ascending ids.
+
+    Every moving object but linestrings and every static circle whose bounding circle has its centre within `reach`.
+    """
+
+def walls(
+    world: World, state: State, index: int, centre: tuple[float, float], reach: float, lines: bool
+) -> list[tuple[float, float, float, float, int, int, int]]:
+    """Wall segments within `reach` of a point: x, y of both ends, object, next, previous (-1: a free end).
+
+    Those of static linestrings with `lines`, else the counter-clockwise outlines of other static objects that are
+    neither circles nor `unobstructed`.
+    """
+
 def intersects(
     parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
 ) -> bool: ...

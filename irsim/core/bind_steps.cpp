@@ -68,6 +68,36 @@ auto all_worlds(Phase phase) {
   };
 }
 
+using Point = std::pair<double, double>;
+
+std::vector<std::tuple<int, double, double, double, double, double>> near_objects(World& world, BoundState& bound,
+                                                                                  int w, Point centre, double reach) {
+  State& state = bound.of(world);
+  bound.check_world(w);
+  Workspace& work = state.workspaces.front();
+  work.neighbors.known = false;
+  std::vector<std::tuple<int, double, double, double, double, double>> out;
+  for_neighbors(world, state, work, w, {centre.first, centre.second}, reach, [&](int id) {
+    const Disc disc = disc_of(world, state, work, w, id);
+    out.emplace_back(id, disc.centre.x, disc.centre.y, disc.velocity.x, disc.velocity.y, disc.radius);
+  });
+  return out;
+}
+
+std::vector<std::tuple<double, double, double, double, int, int, int>> near_walls(World& world, BoundState& bound,
+                                                                                  int w, Point centre, double reach,
+                                                                                  bool lines) {
+  State& state = bound.of(world);
+  bound.check_world(w);
+  const Fixed& fixed = *state.scenes[w].fixed;
+  std::vector<int> found;
+  std::vector<std::tuple<double, double, double, double, int, int, int>> out;
+  for_walls(lines ? fixed.lines : fixed.walls, found, {centre.first, centre.second}, reach, [&](const Wall& wall) {
+    out.emplace_back(wall.a.x, wall.a.y, wall.b.x, wall.b.y, wall.object, wall.next, wall.previous);
+  });
+  return out;
+}
+
 }  // namespace
 
 void bind_steps(nb::module_& m) {
@@ -103,6 +133,10 @@ void bind_steps(nb::module_& m) {
         return std::make_tuple(u[0], u[1], u[2]);
       },
       nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("velocity"));
+  m.def("neighbors", &near_objects, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"),
+        nb::arg("reach"));
+  m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"), nb::arg("reach"),
+        nb::arg("lines"));
 }
 
 }  // namespace irsim

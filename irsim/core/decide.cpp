@@ -37,6 +37,7 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
 
 void decide(const World& world, State& state, int w, Workspace& work) {
   const int first = w * world.objects;
+  work.neighbors.known = false;
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
@@ -51,7 +52,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     if (work.objects.empty()) continue;
     const int count = static_cast<int>(work.objects.size());
     if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
-    const Decision decision{world, state, first, work.objects.data(), count};
+    const Decision decision{world, state, first, work.objects.data(), count, work};
     Intent* intents = work.intents.data();
     with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
     for (int k = 0; k < count; ++k) {

@@ -15,6 +15,7 @@ struct Decision {
   int first_row;       // row of object 0 of this world
   const int* objects;  // (K,) ids within the world
   int count;           // K
+  Workspace& work;     // scratch memory
 
   int row(int k) const { return first_row + objects[k]; }
 };

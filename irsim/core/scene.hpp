@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "collision/grid.hpp"
+#include "collision/points.hpp"
 #include "collision/sweep.hpp"
 #include "shapes.hpp"
+#include "walls.hpp"
 
 namespace irsim {
 
@@ -19,7 +21,10 @@ struct Fixed {
   std::vector<Pose> poses;  // of the static objects, in order
   Outlines outlines;
   Grid grid;
-  std::vector<Pair> pairs;  // static objects that meet each other
+  std::vector<Pair> pairs;    // static objects that meet each other
+  Walls walls, lines;         // outlines that are in the way; linestrings
+  std::vector<int> disc_ids;  // of the circles
+  Points disc_points;         // centres of their bounding circles
 };
 
 enum class EventKind { arrival, waypoint, collision };

@@ -11,6 +11,20 @@ double twice_area(const std::vector<Vec2>& ring) {
   return sum;
 }
 
+/// Of the area of a single part; `otherwise` for compounds, lines and what has no area.
+Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
+  if (outlines.size() != 1 || outlines[0].kind != Kind::polygon) return otherwise;
+  const std::vector<Vec2>& ring = outlines[0].vertices;
+  double area = 0.0;
+  Vec2 sum;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const Vec2 b = ring[i] - ring[0], c = ring[i + 1] - ring[0];
+    area += cross(b, c);
+    sum = sum + (b + c) * cross(b, c);
+  }
+  return area != 0.0 ? ring[0] + sum * (1.0 / (3.0 * area)) : otherwise;
+}
+
 }  // namespace
 
 void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
@@ -32,6 +46,7 @@ void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
   }
   const Disc around = enclosing_circle(discs);
   centre.push_back(around.centre);
+  centroid.push_back(centroid_of(outlines, around.centre));
   radius.push_back(around.radius);
   Slot& used = size[fixed ? 1 : 0];
   placed.push_back(used);

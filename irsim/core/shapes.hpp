@@ -44,6 +44,7 @@ struct Shapes {
   std::vector<Part> parts;
   std::vector<Vec2> vertices;
   std::vector<Vec2> centre;    // (N,) of the minimum bounding circle
+  std::vector<Vec2> centroid;  // (N,) of the area of a circle or polygon; of other shapes the same as `centre`
   std::vector<double> radius;  // (N,)
   std::vector<Slot> placed;    // (N,) in the `Outlines` of the moving or of the static objects
   Slot size[2];                // of those

@@ -189,12 +189,18 @@ void moved(const World& world, State& state, int row) {
 }
 
 Vec2 velocity_world(const World& world, const State& state, int row) {
-  Pose pose = state.pose[row];
-  const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
-  std::vector<double> extra(&state.extra[e], &state.extra[e] + state.extra_rows);
-  Vec3 twist;
-  with(world.drive[row % world.objects], [&](const auto& drive) {
-    run(drive, Motion{pose, extra.data(), twist, state.heading(row), state.control[row], 0.0});
+  std::vector<double> scratch;
+  return velocity_world(world, state, row, scratch);
+}
+
+Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch) {
+  const int object = row % world.objects;
+  Vec3 twist = state.twist[row];
+  with(world.drive[object], [&](const auto& drive) {
+    Pose pose = state.pose[row];
+    const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
+    scratch.assign(extra, extra + state.extra_rows);
+    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), state.control[row], 0.0});
   });
   return {twist[0], twist[1]};
 }

@@ -101,6 +101,8 @@ void refresh(const World& world, State& state);
 void moved(const World& world, State& state, int row);
 /// World-frame velocity [m/s] that the present control of a row gives at its present pose.
 Vec2 velocity_world(const World& world, const State& state, int row);
+/// The same, with scratch memory; the last true velocity for drives that are not native.
+Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch);
 
 /// Draw a goal for a wanderer.
 void draw_wander_goal(const World& world, State& state, int w, int object);

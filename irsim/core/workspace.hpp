@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "neighbors.hpp"
+
 namespace irsim {
 
 struct Intent;
@@ -28,6 +30,8 @@ struct Workspace {
   std::vector<int> objects;
   std::vector<Intent> intents;
   BeamBuffers beams;
+  Neighbors neighbors;
+  std::vector<int> walls;  // those near
 };
 
 }  // namespace irsim

@@ -9,6 +9,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kDiscCell = 2.0;  // of the grid of static circles [m]
+
 Vec3 padded(const std::vector<double>& values) {
   Vec3 out;
   for (std::size_t c = 0; c < 3 && c < values.size(); ++c) out[static_cast<int>(c)] = values[c];
@@ -155,6 +157,16 @@ std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes
     fixed->grid.add(i, fixed->outlines.boxes[shapes.placed[i].object]);
   }
   fixed->grid.build();
+  std::vector<Vec2> centres;
+  for (const int i : world.fixed_objects) {
+    const Footprint body = fixed->outlines.footprint(shapes, i);
+    if (body.count != 1 || body.parts[0].kind != Kind::circle) continue;
+    fixed->disc_ids.push_back(i);
+    centres.push_back(body.centre);
+  }
+  fixed->disc_points.build(centres, kDiscCell);
+  fixed->walls = make_walls(world, shapes, *fixed);
+  fixed->lines = make_lines(world, shapes, *fixed);
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed->outlines.footprint(shapes, i);
     fixed->grid.query(body.box, [&](int j) {

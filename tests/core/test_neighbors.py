@@ -1,0 +1,139 @@
+"""Who is near, and which walls: against looking at everything."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core.oracle import rotation
+from tests.core.worlds import DRIVES, circle, line, obstacle, polygon, rectangle, robot, scene
+
+
+def crowd(seed: int, count: int, size: float) -> tuple[core.World, core.State]:
+    rng = np.random.default_rng(seed)
+    objects = []
+    for _ in range(count):
+        pose = [*rng.uniform(0, size, 2), rng.uniform(-3, 3)]
+        kind = rng.integers(5)
+        if kind == 0:
+            objects.append(obstacle(pose=pose, parts=[circle(0.3, (0.2, 0.1))]))
+        elif kind == 1:
+            objects.append(obstacle(pose=pose, parts=[rectangle(1.0, 0.5)]))
+        elif kind == 2:
+            objects.append(robot(pose=pose, parts=[polygon((0, 0), (1, 0), (0, 0.5))], drive=DRIVES["omni"]))
+        elif kind == 3:
+            objects.append(robot(pose=pose, parts=[line((0, 0), (1, 0))]))
+        else:
+            objects.append(robot(pose=pose, drive=list(DRIVES.values())[rng.integers(5)], control=[0.4, 0.3, 0.2]))
+    return scene(*objects, mode=1)
+
+
+@pytest.mark.parametrize("count", [1, 12, 60, 300])
+@pytest.mark.parametrize("reach", [0.7, 3.0, 11.0, math.inf])
+def test_neighbors_are_those_within_reach(count: int, reach: float) -> None:
+    world, state = crowd(count, count, 20.0)
+    everyone = core.neighbors(world, state, 0, (10.0, 10.0), 1e9)
+    seen = {row[0]: np.array(row[1:3]) for row in everyone}
+    walls = {row[4] for lines in (False, True) for row in core.walls(world, state, 0, (10.0, 10.0), 1e9, lines)}
+    lines = {row for row in range(count) if state.parts(row)[0] == "linestring"}
+    assert set(seen) == set(range(count)) - walls - lines
+    rng = np.random.default_rng(1)
+    # the centre of the bounding circle of a right triangle is the middle of its long side, not its centroid
+    bounds = {}
+    for row, centroid in seen.items():
+        if state.parts(row)[0] == "polygon":
+            pose = state.pose[row]
+            bounds[row] = pose[:2] + rotation(pose[2]) @ (0.5, 0.25)
+            np.testing.assert_allclose(centroid, pose[:2] + rotation(pose[2]) @ (1 / 3, 0.5 / 3), atol=1e-12)
+        else:
+            x, y, _ = state.circle(row, 0, True)
+            bounds[row] = np.array([x, y])
+            np.testing.assert_allclose(centroid, (x, y), atol=1e-12)
+    for _ in range(20):
+        centre = rng.uniform(-3, 23, 2)
+        found = [row[0] for row in core.neighbors(world, state, 0, tuple(centre), reach)]
+        assert found == sorted(r for r, at in bounds.items() if math.dist(at, centre) <= reach)
+
+
+def test_velocities_are_of_the_present_command_and_pose() -> None:
+    world, state = scene(
+        *(
+            robot(drive=drive, pose=[3.0 * k, 0.0, 0.5 * k], control=[0.4, 0.3, 0.2])
+            for k, drive in enumerate(DRIVES.values())
+        )
+    )
+    for row, _, _, *velocity, radius in core.neighbors(world, state, 0, (0.0, 0.0), 100.0):
+        np.testing.assert_allclose(velocity, state.velocity_world(row), atol=1e-15)
+        assert radius == 0.2
+
+
+def test_far_away_and_broken_positions_do_no_harm() -> None:
+    world, state = scene(*(robot(pose=[0.1 * k, 0.0, 0.0]) for k in range(80)), mode=1)
+    state.pose[3, 0] = 1e300
+    state.pose[4, 0] = math.nan
+    state.pose[5, 1] = -math.inf
+    found = [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 1.0)]
+    assert found == [0, 1, 2, *range(6, 11)]
+
+
+def test_outlines_run_counter_clockwise_whatever_way_they_are_written() -> None:
+    corners = [(0, 0), (2, 0), (2, 1), (1, 2)]
+    for vertices in (corners, corners[::-1]):
+        world, state = scene(obstacle(pose=[1.0, 2.0, 0.6], parts=[polygon(*vertices)]))
+        rows = core.walls(world, state, 0, (0.0, 0.0), 100.0, False)
+        assert len(rows) == 4
+        a, b = np.array([row[:2] for row in rows]), np.array([row[2:4] for row in rows])
+        area = 0.5 * np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+        assert area == pytest.approx(2.5)
+        for k, row in enumerate(rows):
+            assert rows[row[5]][:2] == row[2:4]
+            assert rows[row[6]][2:4] == row[:2]
+            assert row[4] == 0
+            assert rows[rows[k][5]][6] == k
+
+
+def test_what_is_a_wall_and_what_is_not() -> None:
+    world, state = scene(
+        obstacle(parts=[rectangle(1, 1)]),
+        obstacle(parts=[rectangle(1, 1)], unobstructed=True),
+        obstacle(parts=[circle()]),
+        obstacle(parts=[line((0, 0), (1, 0), (1, 1))], unobstructed=True),
+        obstacle(parts=[rectangle(1, 1), circle(0.5, (1.0, 0.0))]),
+        robot(parts=[rectangle(1, 1)]),
+        mode=1,
+    )
+    walls = core.walls(world, state, 0, (0.0, 0.0), 100.0, False)
+    assert [row[4] for row in walls] == [0] * 4 + [4] * 20
+    middle = np.array([np.add(row[:2], row[2:4]) / 2 for row in walls[8:]])
+    np.testing.assert_allclose(np.hypot(middle[:, 0] - 1.0, middle[:, 1]), 0.5, atol=1e-12)
+    lines = core.walls(world, state, 0, (0.0, 0.0), 100.0, True)
+    assert lines == [(0.0, 0.0, 1.0, 0.0, 3, 1, -1), (1.0, 0.0, 1.0, 1.0, 3, -1, 0)]
+    assert [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 100.0)] == [2, 5]
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 10**6), reach=st.floats(0.1, 8.0))
+def test_walls_within_reach(seed: int, reach: float) -> None:
+    rng = np.random.default_rng(seed)
+    world, state = scene(
+        *(
+            obstacle(pose=[*rng.uniform(0, 30, 2), rng.uniform(-3, 3)], parts=[rectangle(rng.uniform(0.2, 9), 0.4)])
+            for _ in range(40)
+        ),
+        mode=1,
+    )
+    everything = core.walls(world, state, 0, (0.0, 0.0), math.inf, False)
+    assert len(everything) == 160
+    centre = rng.uniform(0, 30, 2)
+    near = []
+    for row in everything:
+        a, b = np.array(row[:2]), np.array(row[2:4])
+        t = np.clip((centre - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+        if np.hypot(*(a + t * (b - a) - centre)) <= reach:
+            near.append(row)
+    assert core.walls(world, state, 0, tuple(centre), reach, False) == near
