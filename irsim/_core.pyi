@@ -106,6 +106,7 @@ class ObjectSpec:
         range_low, range_high: Box of wander goals (3 each).
         target_roles: 0 all, 1 robots, 2 obstacles.
         behavior: Options of a native behavior, or None.
+        grouped: The behavior is that of the group: it decides for all members at once.
         sensors: Options of the native sensors, in order.
     """
 
@@ -134,6 +135,7 @@ class ObjectSpec:
         range_high: Sequence[float],
         target_roles: int,
         behavior: _Options | None,
+        grouped: bool,
         sensors: Sequence[_Options],
     ) -> None: ...
 

@@ -83,10 +83,14 @@ def _checked(control: object, name: str, view: ObjectView) -> NDArray[np.float64
 
 def attach_python_behaviors(simulation: Simulation) -> None:
     """Let the Python behaviors that the scenario names take part in every step."""
+    from irsim.world.build import group_behaviors
+
+    grouped = group_behaviors(simulation.scenario.objects)
     ids = [
         record.id
         for record in simulation.scenario.objects
         if record.behavior is not None
+        and record.group not in grouped
         and record.kinematics is not None
         and BEHAVIORS.get(str(getattr(record.behavior, "name", ""))) is None
     ]

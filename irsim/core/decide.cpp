@@ -52,7 +52,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     if (work.objects.empty()) continue;
     const int count = static_cast<int>(work.objects.size());
     if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
-    const Decision decision{world, state, first, work.objects.data(), count, work};
+    const Decision decision{world, state, first, work.objects.data(), count, group.members, group.grouped, work};
     Intent* intents = work.intents.data();
     with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
     for (int k = 0; k < count; ++k) {

@@ -12,11 +12,14 @@ namespace irsim {
 struct Decision {
   const World& world;
   const State& state;
-  int first_row;       // row of object 0 of this world
-  const int* objects;  // (K,) ids within the world
-  int count;           // K
-  Workspace& work;     // scratch memory
+  int first_row;                    // row of object 0 of this world
+  const int* objects;               // (K,) ids within the world
+  int count;                        // K
+  const std::vector<int>& members;  // ids of all that share the behavior, or of the group; some may not decide now
+  bool grouped;                     // named under `group_behavior`: members know of each other
+  Workspace& work;                  // scratch memory
 
+  int w() const { return first_row / world.objects; }
   int row(int k) const { return first_row + objects[k]; }
 };
 

@@ -8,11 +8,13 @@
 
 namespace irsim {
 
-/// Objects of the template with equal behavior, options and group.
+/// Objects of the template with equal behavior, options and group. Of a group behavior, `members` are all objects of
+/// the group, those that cannot move too; else they are `objects`.
 struct BehaviorGroup {
   Behavior behavior;
   int group;
-  std::vector<int> objects;
+  bool grouped;
+  std::vector<int> objects, members;
 };
 
 /// One sensor of the template.

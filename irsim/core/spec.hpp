@@ -34,6 +34,7 @@ struct ObjectSpec {
   std::vector<double> range_low, range_high;
   int target_roles;  // 0 all, 1 robots, 2 obstacles
   Behavior behavior;
+  bool grouped;  // the behavior is that of the group and decides for all its members at once
   std::vector<Sensor> sensors;
 
   static constexpr auto fields() {
@@ -45,7 +46,8 @@ struct ObjectSpec {
         field("vel_min", &S::vel_min), field("vel_max", &S::vel_max), field("acce", &S::acce),
         field("angle_range", &S::angle_range), field("goals", &S::goals), field("goal_threshold", &S::goal_threshold),
         field("arrive_mode", &S::arrive_mode), field("range_low", &S::range_low), field("range_high", &S::range_high),
-        field("target_roles", &S::target_roles), field("behavior", &S::behavior), field("sensors", &S::sensors));
+        field("target_roles", &S::target_roles), field("behavior", &S::behavior), field("grouped", &S::grouped),
+        field("sensors", &S::sensors));
   }
 };
 

@@ -41,12 +41,23 @@ bool same_behavior(const Behavior& a, const Behavior& b) {
 void add_to_group(World& world, int object, const ObjectSpec& spec) {
   if (std::holds_alternative<std::monostate>(spec.behavior)) return;
   for (BehaviorGroup& group : world.behaviors) {
-    if (group.group == spec.group && same_behavior(group.behavior, spec.behavior)) {
+    if (group.group == spec.group && group.grouped == spec.grouped && same_behavior(group.behavior, spec.behavior)) {
       group.objects.push_back(object);
       return;
     }
   }
-  world.behaviors.push_back({spec.behavior, spec.group, {object}});
+  world.behaviors.push_back({spec.behavior, spec.group, spec.grouped, {object}, {}});
+}
+
+void find_members(World& world) {
+  for (BehaviorGroup& group : world.behaviors) {
+    group.members = group.objects;
+    if (!group.grouped) continue;
+    group.members.clear();
+    for (int i = 0; i < world.objects; ++i) {
+      if (world.group[i] == group.group) group.members.push_back(i);
+    }
+  }
 }
 
 void add_scans(World& world, int object, const ObjectSpec& spec) {
@@ -118,6 +129,7 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     add_to_group(*this, i, s);
     add_scans(*this, i, s);
   }
+  find_members(*this);
   if (random_shapes) return;
   shapes = make_shapes(*this, {});
   if (random_statics) return;

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
+from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
 
 if TYPE_CHECKING:
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 
-__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "padded"]
+__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
 
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2}
 PLACEMENT_ATTEMPTS = 1000
@@ -47,8 +48,32 @@ def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> A
     return kernel(**{name: resolved[name] if name in resolved else getattr(options, name) for name in kernel.fields})
 
 
-def build_object(record: ObjectRecord) -> core.ObjectSpec:
-    """One object of the core's template world."""
+def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOptions]:
+    """Options of the native behavior that drives each group as a whole: the `group_behavior` of its first member.
+
+    Groups without one, or with one of user code, are left out; their members follow their own `behavior`.
+    """
+    leaders: dict[int, ObjectRecord] = {}
+    for record in records:
+        leaders.setdefault(record.group, record)
+    found: dict[int, BehaviorOptions] = {}
+    for group, leader in leaders.items():
+        options = leader.group_behavior
+        if not isinstance(options, BehaviorOptions) or not options.in_group:
+            continue
+        feature = BEHAVIORS.get(options.name)
+        if feature is not None and feature.kernel is not None:
+            found[group] = options
+    return found
+
+
+def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = None) -> core.ObjectSpec:
+    """One object of the core's template world.
+
+    Args:
+        record: The object.
+        group_behavior: What drives its group (:func:`group_behaviors`); wins over its own behavior.
+    """
     shape = feature_of(SHAPES, record.shape)
     if shape.function is None:
         raise LookupError(f"shape {shape.name!r} has no geometry")
@@ -62,8 +87,9 @@ def build_object(record: ObjectRecord) -> core.ObjectSpec:
             psi_max=float("inf") if psi_max is None else psi_max,
         )
     behavior = None
-    if record.behavior is not None and BEHAVIORS.get(str(getattr(record.behavior, "name", ""))) is not None:
-        behavior = kernel_options(BEHAVIORS, record.behavior)
+    options = record.behavior if group_behavior is None else group_behavior
+    if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
+        behavior = kernel_options(BEHAVIORS, options)
     return core.ObjectSpec(
         role=_ROLES[record.role],
         group=record.group,
@@ -85,18 +111,20 @@ def build_object(record: ObjectRecord) -> core.ObjectSpec:
         arrive_mode=_ARRIVE[record.arrive_mode],
         range_low=padded(record.range_low),
         range_high=padded(record.range_high),
-        target_roles=_TARGETS[record.target_roles],
+        target_roles=_TARGETS[record.target_roles if group_behavior is None else group_behavior.target_roles],
         behavior=behavior,
+        grouped=group_behavior is not None,
         sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
     )
 
 
 def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
     """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
+    groups = group_behaviors(scenario.objects)
     return core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
-        objects=[build_object(record) for record in scenario.objects],
+        objects=[build_object(record, groups.get(record.group)) for record in scenario.objects],
         placements=[
             core.RandomPlacement(
                 objects=placement.objects,

@@ -79,6 +79,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "range_high": [10.0, 10.0, PI],
         "target_roles": 0,
         "behavior": DASH,
+        "grouped": False,
         "sensors": [],
     }
     return core.ObjectSpec(**{**options, **overrides})
