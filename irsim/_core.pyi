@@ -90,6 +90,8 @@ class ObjectSpec:
     """One object of the template world. All keyword arguments are required.
 
     Args:
+        number: Names it in random draws and events, so that neither changes when other objects come and go; -1: its
+            place in the list.
         role: 0 robot, 1 obstacle.
         group: Group id.
         drive: Kinematics options, or None for an object that never moves.
@@ -113,6 +115,7 @@ class ObjectSpec:
     def __init__(
         self,
         *,
+        number: int,
         role: int,
         group: int,
         drive: _Options | None,
@@ -198,7 +201,7 @@ class State:
     radius: Floats  # (R,) minimum bounding circle radius of the body
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
-    hits: NDArray[np.int32]  # same length: object hit by each beam within its world, -1 none
+    hits: NDArray[np.int32]  # same length: object (its row within the world) hit by each beam, -1 none
     valid: Flags  # same length: 1 where the beam hit something and its (noisy) range lies in [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
     count: NDArray[np.int64]  # (W,) executed steps of the episode
@@ -220,7 +223,7 @@ class State:
     def done(self, world: int) -> bool:
         """Whether every robot of the world has arrived or stopped; False without robots."""
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
-        """(kind, step, object, partner or -1, x, y), kind "arrival", "waypoint", "collision".
+        """(kind, step, number of the object, of its partner or -1, x, y), kind "arrival", "waypoint", "collision".
 
         Those since the last reset, the first `start` left out.
         """

@@ -25,13 +25,15 @@ def _find(objects: Sequence[ObjectView], key: Any) -> ObjectView:
     if isinstance(key, (int, np.integer)) and not isinstance(key, bool):
         index = int(key)
         if 0 <= index < len(objects) and objects[index].id == index:
-            return objects[index]
+            return objects[index]  # nobody was taken out before it
         found = [view for view in objects if view.id == index]
     else:
         found = [view for view in objects if view.name == key]
     if not found:
         names = ", ".join(view.name for view in objects[:8])
-        raise ValueError(f"no object with id or name {key!r}; ids are 0 to {len(objects) - 1}, names {names}")
+        ids = [view.id for view in objects]
+        known = f"0 to {len(ids) - 1}" if ids == list(range(len(ids))) else ", ".join(map(str, ids[:20]))
+        raise ValueError(f"no object with id or name {key!r}; ids are {known}, names {names}")
     return found[0]
 
 
@@ -54,7 +56,7 @@ def assign_actions(
     """Which object gets which control.
 
     Args:
-        objects: In id order; positions count from the first robot.
+        objects: In the order of their rows; positions count from the first one.
         action: One control vector (list, tuple, 1-D array or column), a list of them (None inside leaves that object to
             its behavior), or a mapping from id or name to vectors.
         action_id: Id or name of the target, or a list of them. A list of actions given with one id goes to that object

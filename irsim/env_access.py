@@ -33,7 +33,7 @@ class EnvAccess:
 
     @property
     def objects(self) -> list[ObjectView]:
-        """All objects in id order: robots first."""
+        """All objects: robots, then obstacles, then those added later."""
         return list(self._objects)
 
     @property
@@ -53,9 +53,10 @@ class EnvAccess:
         Raises:
             IndexError: There is none.
         """
-        if not self._objects or self._objects[0].role != "robot":
+        first = next((view for view in self._objects if view.role == "robot"), None)
+        if first is None:
             raise IndexError("this scenario has no robot: add a `robot:` section")
-        return self._objects[0]
+        return first
 
     @property
     def robot_number(self) -> int:
@@ -134,7 +135,7 @@ class EnvAccess:
         return self._robot(id).get_lidar_offset()
 
     def _robot(self, index: int) -> ObjectView:
-        # robots come first in id order, so this is the place among the robots
-        if not 0 <= index < len(self._objects) or self._objects[index].role != "robot":
-            raise IndexError(f"no robot {index}: this scenario has {self.robot_number}")
-        return self._objects[index]
+        robots = self.robot_list
+        if not 0 <= index < len(robots):
+            raise IndexError(f"no robot {index}: this scenario has {len(robots)}")
+        return robots[index]

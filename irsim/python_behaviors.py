@@ -19,17 +19,17 @@ __all__ = ["attach_python_behaviors"]
 
 
 class _Decision:
-    """Asks the registered function for the control of each object in ``ids``, in every world."""
+    """Asks the registered function for the control of each object in ``indices``, in every world."""
 
-    def __init__(self, ids: list[int]) -> None:
-        self.ids = ids
+    def __init__(self, indices: list[int]) -> None:
+        self.indices = indices
 
     def __call__(self, simulation: Simulation) -> None:
         from irsim.views import views
 
         for world in range(simulation.copies):
             objects = views(simulation, world)
-            for index in self.ids:
+            for index in self.indices:
                 view = objects[index]
                 row = view.row
                 if simulation.given[row] or view.static or simulation.stopped[row]:
@@ -42,7 +42,7 @@ class _Decision:
                 if function is None:
                     raise _unknown(simulation, view, name)
                 roles = record.target_roles
-                others = [o for o in objects if o.id != index and roles in ("all", o.role)]
+                others = [o for o in objects if o is not view and roles in ("all", o.role)]
                 control = function(ego_object=view, external_objects=others, **options.model_dump(exclude_unset=True))
                 values = _checked(control, name, view)
                 simulation.command[row, : values.size] = values
@@ -86,13 +86,13 @@ def attach_python_behaviors(simulation: Simulation) -> None:
     from irsim.world.build import group_behaviors
 
     grouped = group_behaviors(simulation.scenario.objects)
-    ids = [
-        record.id
-        for record in simulation.scenario.objects
+    indices = [
+        index
+        for index, record in enumerate(simulation.scenario.objects)
         if record.behavior is not None
         and record.group not in grouped
         and record.kinematics is not None
         and BEHAVIORS.get(str(getattr(record.behavior, "name", ""))) is None
     ]
-    if ids:
-        simulation.decisions.append(_Decision(ids))
+    if indices:
+        simulation.decisions.append(_Decision(indices))

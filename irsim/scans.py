@@ -35,7 +35,6 @@ class Lidar:
     """
 
     def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
-        self._simulation = simulation
         self.parent = parent
         self.obj_id = parent.id
         self.options = options
@@ -47,12 +46,7 @@ class Lidar:
         self.noise, self.std, self.angle_std = options.noise, options.std, options.angle_std
         self.has_velocity = bool(options.has_velocity)
         self.offset = [float(v) for v in options.offset]
-        _, first, self.number = simulation.world.scans()[index]
-        first += parent.world * simulation.world.beams_per_world
-        self._beams = slice(first, first + self.number)
-        self._ranges = simulation.ranges[self._beams]
-        self._hits = simulation.hits[self._beams]
-        self._valid = simulation.valid[self._beams]
+        self.attach(simulation, index)
         self.angle_list: Floats = simulation.state.beam_angles[self._beams].copy()
         self.angle_min, self.angle_max = float(self.angle_list[0]), float(self.angle_list[-1])
         self.angle_inc = self.angle_range / (self.number - 1) if self.number > 1 else 0.0
@@ -70,6 +64,16 @@ class Lidar:
             "intensities": None,
         }
 
+    def attach(self, simulation: Simulation, index: int) -> None:
+        """Read the ``index``-th sensor of this simulation from now on."""
+        self._simulation = simulation
+        _, first, self.number = simulation.world.scans()[index]
+        first += self.parent.world * simulation.world.beams_per_world
+        self._beams = slice(first, first + self.number)
+        self._ranges = simulation.ranges[self._beams]
+        self._hits = simulation.hits[self._beams]
+        self._valid = simulation.valid[self._beams]
+
     @property
     def range_data(self) -> Floats:
         """(number,) measured ranges [m]; a miss reads ``range_max``. A copy."""
@@ -83,7 +87,7 @@ class Lidar:
     @property
     def hits(self) -> NDArray[np.int32]:
         """(number,) id of the object each beam hit, -1 where it hit nothing. A copy."""
-        return self._hits.copy()
+        return self._simulation.ids[self._hits]
 
     @property
     def velocity(self) -> Floats:

@@ -40,6 +40,9 @@ class Simulation:
         command, given: (R, 3), (R,) control wanted for the next step, and which rows it is imposed on.
         arrived, collided, stopped: (R,) flags, uint8.
         goal: (R, 3) current goals; NaN where there is none.
+        ids: (N + 1,) id of each object of a world; the last entry, -1, stands for none.
+        names: Name of every object that ever was in it, by id.
+        passable: Ids of those that are ``unobstructed``.
         decisions: Python behaviors, called in every step; empty in worlds that have none.
 
     Raises:
@@ -57,11 +60,17 @@ class Simulation:
         self.scenario = scenario
         self.threads = threads
         self.copies = len(seeds)
-        self.world = build_world(scenario, self.copies)
-        self.state = core.State(self.world, np.asarray(seeds, dtype=np.uint64), history)
-        self.objects = self.world.objects
         self.decisions: list[PythonDecision] = []
-        state = self.state
+        self.names: dict[int, str] = {}
+        self.passable: set[int] = set()
+        world = build_world(scenario, self.copies)
+        self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
+        self._check_placement()
+
+    def _bind(self, world: core.World, state: core.State) -> None:
+        """Look at this part of the core from now on."""
+        self.world, self.state = world, state
+        self.objects = world.objects
         self.pose, self.extra, self.control, self.twist = state.pose, state.extra, state.control, state.twist
         self.command, self.given = state.command, state.given
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
@@ -69,8 +78,11 @@ class Simulation:
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.count = state.count
         self._all = np.ones(self.copies, dtype=np.uint8)
-        self.robots = np.array([record.role == "robot" for record in scenario.objects], dtype=bool)
-        self._check_placement()
+        records = self.scenario.objects
+        self.robots = np.array([record.role == "robot" for record in records], dtype=bool)
+        self.ids = np.array([*(record.id for record in records), -1], dtype=np.int32)
+        self.names.update((record.id, record.name) for record in records)
+        self.passable |= {record.id for record in records if record.unobstructed}
 
     def step(self) -> None:
         """Advance every world by one period."""
@@ -153,7 +165,7 @@ class Simulation:
 
     def _crowded(self, index: int, seed: int) -> Diagnostic:
         record = self.scenario.objects[index]
-        placement: Any = next(p for p in self.scenario.placements if index in p.objects)
+        placement: Any = next(p for p in self.scenario.placements if record.id in p.objects)
         low, high = placement.range_low, placement.range_high
         area = abs((high[0] - low[0]) * (high[1] - low[1]))
         return Diagnostic(

@@ -29,19 +29,18 @@ class ObjectView(ObjectBody):
     ``set_velocity`` and ``set_goal``.
 
     Attributes:
-        id: Number in its environment; robots first.
+        id: Number in its environment, its own for ever.
         record: Its resolved scenario entry.
-        world, row: World index in a batch and row in the simulation's arrays.
+        world: World index in a batch.
+        index: Place among the objects of its world, which changes when earlier ones are taken out.
+        row: Row in the simulation's arrays.
         plot_kwargs: Drawing options, may be changed at any time.
     """
 
-    def __init__(self, simulation: Simulation, object_id: int, world: int = 0) -> None:
-        self._simulation = simulation
-        self.id = object_id
-        self.world = world
-        self.row = world * simulation.objects + object_id
-        record = simulation.scenario.objects[object_id]
+    def __init__(self, simulation: Simulation, index: int, world: int = 0) -> None:
+        record = simulation.scenario.objects[index]
         self.record: ObjectRecord = record
+        self.id = record.id
         self.name, self.role, self.group, self.group_name = record.name, record.role, record.group, record.group_name
         self.color, self.description = record.color, record.description
         self.static, self.unobstructed = record.static, record.unobstructed
@@ -53,11 +52,17 @@ class ObjectView(ObjectBody):
         self.wheelbase, self.tags = record.wheelbase, record.tags
         self.text: str | None = None
         self.goal_text: str | None = None
-        self._pose = simulation.pose[self.row]
-        self._state = simulation.pose[self.row, :, None]
         self._plain = record.state_dim == 3
+        self.attach(simulation, index, world)
         self.sensors: list[Lidar] = _sensors(simulation, self)
         self.lidar: Lidar | None = self.sensors[0] if self.sensors else None
+
+    def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
+        """Look at another place from now on: rows move when objects come and go."""
+        self._simulation, self.index, self.world = simulation, index, world
+        self.row = world * simulation.objects + index
+        self._pose = simulation.pose[self.row]
+        self._state = simulation.pose[self.row, :, None]
 
     # state -----------------------------------------------------------------------------------------------------------
     @property
@@ -207,9 +212,9 @@ class ObjectView(ObjectBody):
     def collision_obj(self) -> list[ObjectView]:
         """The objects it touches, ``unobstructed`` ones left out."""
         pairs = self._simulation.state.collision_pairs(self.world)
-        others = [int(b if a == self.id else a) for a, b in pairs if self.id in (a, b)]
-        records = self._simulation.scenario.objects
-        return [self.environment_objects[i] for i in others if not records[i].unobstructed]
+        others = [int(b if a == self.index else a) for a, b in pairs if self.index in (a, b)]
+        objects = self.environment_objects
+        return [objects[i] for i in others if not objects[i].unobstructed]
 
     def done(self) -> bool:
         """Whether the object has arrived or stopped."""
@@ -218,13 +223,13 @@ class ObjectView(ObjectBody):
     # others ----------------------------------------------------------------------------------------------------------
     @property
     def environment_objects(self) -> list[ObjectView]:
-        """All objects of its world, in id order."""
+        """All objects of its world, in the order of their rows."""
         return views(self._simulation, self.world)
 
     @property
     def external_objects(self) -> list[ObjectView]:
         """All objects of its world but itself."""
-        return [other for other in self.environment_objects if other.id != self.id]
+        return [other for other in self.environment_objects if other is not self]
 
     @property
     def ego_object(self) -> ObjectView:
@@ -331,7 +336,7 @@ def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
 
 
 def _sensors(simulation: Simulation, view: ObjectView) -> list[Lidar]:
-    mine = [index for index, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.id]
+    mine = [index for index, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.index]
     return [Lidar(simulation, view, options, index) for index, options in zip(mine, view.record.sensors, strict=True)]
 
 

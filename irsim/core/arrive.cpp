@@ -31,9 +31,9 @@ void arrive(const World& world, State& state, int w) {
       ++queue.head;
       state.sync_goal(row);
       state.arrived[row] = 0;
-      state.log(w, EventKind::waypoint, i, -1, pose.position());
+      state.log(world, w, EventKind::waypoint, i, -1, pose.position());
     } else {
-      if (!state.arrived[row]) state.log(w, EventKind::arrival, i, -1, pose.position());
+      if (!state.arrived[row]) state.log(world, w, EventKind::arrival, i, -1, pose.position());
       state.arrived[row] = 1;
     }
   }

@@ -60,7 +60,7 @@ void log_contacts(const World& world, State& state, int w) {
     if (!first && !second) continue;
     Vec2 where;
     touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
-    state.log(w, EventKind::collision, i, j, where);
+    state.log(world, w, EventKind::collision, i, j, where);
   }
 }
 

@@ -125,7 +125,7 @@ void place_randomly(const World& world, State& state, int w) {
     Spread spread(entry.min_distance);
     for (const int i : entry.objects) {
       Pose& pose = state.initial_pose[first + i];
-      if (!draw_pose(entry, Draws(key, Stream::placement, i), 0, i, spread, states, pose)) failed(i);
+      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), 0, i, spread, states, pose)) failed(i);
       spread.add(pose.position());
       states.add(i, pose);
     }
@@ -139,7 +139,7 @@ void place_randomly(const World& world, State& state, int w) {
     for (const int i : entry.objects) {
       if (world.is_static[i] || world.wander[i]) continue;  // no goal to reach; drawn at every reset
       Goal goal;
-      if (!draw_pose(entry, Draws(key, Stream::placement, i), kGoalDraws, i, spread, goals, goal)) failed(i);
+      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread, goals, goal)) failed(i);
       spread.add(goal.position());
       goals.add(i, goal);
       state.goals[first + i].initial = {goal};

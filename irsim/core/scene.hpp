@@ -33,7 +33,7 @@ constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision"};
 struct Event {
   EventKind kind;
   long long step;
-  int object, partner;  // partner -1 unless a collision
+  int object, partner;  // their numbers; partner -1 unless a collision
   double x, y;
 };
 

@@ -22,7 +22,7 @@ struct Sensing {
   BeamBuffers& buffers;
 
   int row() const { return w * world.objects + mount.object; }
-  Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), mount.object); }
+  Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object]); }
 };
 
 }  // namespace irsim

@@ -22,7 +22,8 @@ inline std::vector<Outline> draw_outlines(const std::vector<PartSpec>& parts, co
 }
 
 struct ObjectSpec {
-  int role;  // 0 robot, 1 obstacle
+  int number;  // names it in draws and events, whoever comes and goes; -1: its place in the list
+  int role;    // 0 robot, 1 obstacle
   int group;
   Drive drive;
   std::vector<PartSpec> parts;
@@ -40,7 +41,7 @@ struct ObjectSpec {
   static constexpr auto fields() {
     using S = ObjectSpec;
     return std::make_tuple(
-        field("role", &S::role), field("group", &S::group), field("drive", &S::drive), field("parts", &S::parts),
+        field("number", &S::number), field("role", &S::role), field("group", &S::group), field("drive", &S::drive), field("parts", &S::parts),
         field("static", &S::is_static), field("unobstructed", &S::unobstructed), field("wander", &S::wander),
         field("loop", &S::loop), field("pose", &S::pose), field("extra", &S::extra), field("control", &S::control),
         field("vel_min", &S::vel_min), field("vel_max", &S::vel_max), field("acce", &S::acce),

@@ -176,7 +176,7 @@ void refresh(const World& world, State& state) {
 
 void draw_wander_goal(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
-  const Draws draws(state.key(w), Stream::goal, object);
+  const Draws draws(state.key(w), Stream::goal, world.number[object]);
   const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
   const Pose &low = world.range_low[object], &high = world.range_high[object];
   state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),

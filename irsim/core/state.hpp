@@ -75,8 +75,9 @@ struct State {
     const Outlines& outlines = world.is_static[object] ? scene.fixed->outlines : scene.moving;
     return {outlines.centres[scene.shapes->placed[object].object], scene.shapes->radius[object]};
   }
-  void log(int w, EventKind kind, int object, int partner, Vec2 where) {
-    scenes[w].events.push_back({kind, count[w], object, partner, where.x, where.y});
+  void log(const World& world, int w, EventKind kind, int object, int partner, Vec2 where) {
+    const int second = partner < 0 ? -1 : world.number[partner];
+    scenes[w].events.push_back({kind, count[w], world.number[object], second, where.x, where.y});
     ++event_count[w];
   }
   void sync_goal(int row) {

@@ -113,6 +113,7 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     state_arrival.push_back(s.arrive_mode == 1);
     target_roles.push_back(static_cast<std::uint8_t>(s.target_roles));
     group.push_back(s.group);
+    number.push_back(s.number < 0 ? i : s.number);
     drive.push_back(s.drive);
     vel_min.push_back(padded(s.vel_min));
     vel_max.push_back(padded(s.vel_max));
@@ -152,7 +153,7 @@ double World::cell(const Shapes& of, const std::vector<int>& ids) const {
 std::shared_ptr<const Shapes> make_shapes(const World& world, Key key) {
   auto shapes = std::make_shared<Shapes>();
   for (int i = 0; i < world.objects; ++i) {
-    const Draws draws(key, Stream::shape, i);
+    const Draws draws(key, Stream::shape, world.number[i]);
     shapes->add(draw_outlines(world.specs[i].parts, draws), world.is_static[i] != 0);
   }
   return shapes;

@@ -45,6 +45,7 @@ struct World {
   // (N,) each
   std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles, behaves;
   std::vector<int> group;
+  std::vector<int> number;  // what draws and events call the object; equal to its id until others are taken out
   std::vector<Drive> drive;
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;

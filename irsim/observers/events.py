@@ -42,10 +42,10 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
         world: Index of the world.
         start: Leave out this many of the earliest.
     """
-    records = simulation.scenario.objects
+    name = simulation.names
     step_time = simulation.scenario.world.step_time
     return [
-        Event(kind, step * step_time, step, records[a].name, records[b].name if b >= 0 else None, x, y)  # type: ignore[arg-type]
+        Event(kind, step * step_time, step, name[a], name[b] if b >= 0 else None, x, y)  # type: ignore[arg-type]
         for kind, step, a, b, x, y in simulation.state.events(world, start)
     ]
 
@@ -69,7 +69,7 @@ def collision_of(event: Event, name: str, passable: set[str]) -> bool:
 
 def passable_names(simulation: Simulation) -> set[str]:
     """Names of the objects that are ``unobstructed``: others pass through them."""
-    return {record.name for record in simulation.scenario.objects if record.unobstructed}
+    return {simulation.names[number] for number in simulation.passable}
 
 
 def first_collisions(simulation: Simulation, events: list[Event]) -> dict[str, Event]:

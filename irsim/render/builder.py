@@ -231,7 +231,7 @@ class SceneBuilder:
             ends = np.stack([x + ranges * np.cos(angles), y + ranges * np.sin(angles)], axis=1)
             scene.beams.append(
                 Beams(
-                    object=owner,
+                    object=view.id,
                     sensor=sensor,
                     origin=(x, y),
                     ends=ends,

@@ -71,7 +71,7 @@ class ObjectRecord:
 class Placement:
     """The objects of one entry with ``distribution: random``."""
 
-    objects: list[int]
+    objects: list[int]  # ids
     range_low: list[float]
     range_high: list[float]
     min_distance: float
@@ -80,7 +80,11 @@ class Placement:
 
 @dataclass(slots=True)
 class ResolvedScenario:
-    """A whole scenario, resolved."""
+    """A whole scenario, resolved.
+
+    ``objects`` stand in the order of the rows of a simulation. An object keeps its ``id`` when others are taken out, so
+    an id is a row only as long as that has not happened.
+    """
 
     name: str
     world: WorldModel

@@ -91,6 +91,7 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
     if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
         behavior = kernel_options(BEHAVIORS, options)
     return core.ObjectSpec(
+        number=record.id,
         role=_ROLES[record.role],
         group=record.group,
         drive=drive,
@@ -121,13 +122,14 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
 def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
     """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
     groups = group_behaviors(scenario.objects)
+    row = {record.id: index for index, record in enumerate(scenario.objects)}
     return core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
         objects=[build_object(record, groups.get(record.group)) for record in scenario.objects],
         placements=[
             core.RandomPlacement(
-                objects=placement.objects,
+                objects=[row[number] for number in placement.objects if number in row],
                 range_low=placement.range_low,
                 range_high=placement.range_high,
                 min_distance=placement.min_distance,

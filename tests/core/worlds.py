@@ -57,6 +57,7 @@ def lidar(number: int = 60, **overrides: Any) -> core.Lidar2dOptions:
 
 def robot(**overrides: Any) -> core.ObjectSpec:
     options: dict[str, Any] = {
+        "number": -1,
         "role": 0,
         "group": 0,
         "drive": DRIVES["diff"],
