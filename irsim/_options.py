@@ -63,6 +63,8 @@ class Options(BaseModel):
 
     schema_extra: ClassVar[dict[str, Any]] = {}
     """What the schema says about the mapping besides its keys: examples."""
+    also_called: ClassVar[dict[str, str]] = {}
+    """Words that people write for keys of this mapping, and the keys they mean."""
     any_case: ClassVar[bool] = False
     """Whether upper case is accepted in ``name``."""
 

@@ -24,6 +24,11 @@ CODES: dict[str, Code] = {
     "not-a-file": Code(
         "not a regular file", "The path names a directory, a device or a pipe. Name the YAML file itself."
     ),
+    "image-not-found": Code(
+        "image of a description not found",
+        "`description` names an image that is drawn instead of the shape: a file beside the scenario or the script, or "
+        "a bundled one. Without it the shape is drawn. Addresses such as http: are not fetched.",
+    ),
     "unreadable": Code("file cannot be read", "The system refuses to read the file: check permissions and the path."),
     "not-text": Code("not a text file", "The file holds bytes that are not UTF-8 text. Save the scenario as UTF-8."),
     "file-too-large": Code(
@@ -58,7 +63,8 @@ CODES: dict[str, Code] = {
     "bad-key": Code("not usable as a key", "Keys are words. Lists and mappings cannot be keys; '<<' merges mappings."),
     "unsupported-tag": Code(
         "YAML tag not supported",
-        "Tags such as !!python/object construct program objects. A scenario is plain data: remove the tag.",
+        "Tags such as !!python/object construct program objects; other programs would run them. Here a scenario is "
+        "plain data: tags are never executed, only reported. Remove the tag, and its value if it makes no sense alone.",
     ),
     "recursive-alias": Code(
         "alias inside its own anchor", "The value would contain itself without end. Write it out instead."
@@ -241,6 +247,26 @@ CODES: dict[str, Code] = {
     "not-yet-simulated": Code(
         "valid, but not simulated yet",
         "The language knows the feature; this version's engine does not run it, and says so instead of leaving it out.",
+    ),
+    "placement-impossible": Code(
+        "more objects than fit",
+        "The objects of this entry keep a distance (twice the radius, or 'min_distance'), and no arrangement of "
+        "so many points fits into the range. No seed and no other order can help: fewer, smaller, or more room.",
+    ),
+    "placement-tight": Code(
+        "random placement is likely to fail",
+        "Objects that are dropped one after another jam when they cover about half of the ground. Some seeds may "
+        "succeed, most end with 'placement-crowded'.",
+    ),
+    "heading-not-reached": Code(
+        "the goal's heading is not steered for",
+        "With 'arrive_mode: state' an arrival needs position and heading. The built-in behaviors turn to the goal's "
+        "heading on 'omni_angular' only; other drives stop with the heading they came with and never arrive.",
+    ),
+    "steering-limit": Code(
+        "steering angle beyond a quarter turn",
+        "The second control of 'acker' is the steering angle in radians, in mode 'steer'. Wheels turned by more than "
+        "1.5708 drive backwards; 30 degrees are 0.5236.",
     ),
     "placement-crowded": Code(
         "random placement found no room",

@@ -121,6 +121,8 @@ class RunResult(Result):
     """The file."""
     seed: int
     """Seed that was used."""
+    random: list[str]
+    """What the seed decides; empty if every seed gives the same run."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
@@ -193,6 +195,8 @@ class SnapshotResult(Result):
     """The file, or ``(text)``."""
     seed: int
     """Seed that was used."""
+    random: list[str]
+    """What the seed decides; empty if every seed gives the same run."""
     steps: int
     """Executed steps."""
     sim_time: float

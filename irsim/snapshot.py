@@ -12,6 +12,7 @@ from irsim.observers.outcome import robot_outcomes
 from irsim.results import Finding, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.randomness import random_parts
 from irsim.verdict import command
 
 __all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of"]
@@ -106,6 +107,7 @@ def snapshot_of(
     result = SnapshotResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
+        random=random_parts(scenario),
         steps=count,
         sim_time=env.sim_time,
         extent=(x, right, y, top),

@@ -12,6 +12,7 @@ import numpy as np
 from irsim.observers.events import Event, collision_of, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
+from irsim.scenario.randomness import random_parts
 from irsim.text import clean
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ def run_result(
     return RunResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
+        random=random_parts(env.scenario),
         outcome=outcome,
         summary=_summary(robots, hits, env.sim_time),
         reason=None if outcome == "success" else _reason(env, robots, hits, source),

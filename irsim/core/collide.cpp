@@ -54,9 +54,9 @@ void log_contacts(const World& world, State& state, int w) {
     while (old != scene.previous_pairs.end() && *old < pair) ++old;
     if (old != scene.previous_pairs.end() && *old == pair) continue;
     const auto [i, j] = pair;
-    // somebody who moves must have run into something that stands in the way
-    const bool first = !world.unobstructed[j] && !world.is_static[i];
-    const bool second = !world.unobstructed[i] && !world.is_static[j];
+    // somebody who moves, or a robot, must have met something that stands in the way
+    const bool first = !world.unobstructed[j] && (!world.is_static[i] || world.is_robot[i]);
+    const bool second = !world.unobstructed[i] && (!world.is_static[j] || world.is_robot[j]);
     if (!first && !second) continue;
     Vec2 where;
     touch(state.footprint(world, w, i), state.footprint(world, w, j), where);

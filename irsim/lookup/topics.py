@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import Counter
 
 from irsim import templates
 from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
+from irsim.lookup.guides import GUIDES
 from irsim.lookup.walk import (
     Node,
+    alternatives,
     component_name,
     components,
     definitions_of,
@@ -37,6 +40,8 @@ _PLACES = {
 }
 """Where components of a kind stand in a scenario."""
 _MOST_HITS = 20
+_MOST_CHOICES = 12
+"""Longer lists of allowed words (colours) are no topics."""
 
 
 def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
@@ -52,7 +57,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     """
     words = _words(topic)
     name = " ".join(words)
-    if not words:
+    if not topic.strip():
         return _index()
     if name in ("codes", "templates"):
         return _codes() if name == "codes" else _templates()
@@ -61,8 +66,13 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     if name in templates.names():
         return _template(templates.load(name))
     schema = json_schema() if schema is None else schema
-    found = _find(schema, words)
-    return _part(schema, *found) if found else _search(schema, topic.strip(), words)
+    found = _find(schema, words) if words else None
+    if found:
+        return _part(schema, *found)
+    guide = next((known for known, guide in GUIDES.items() if topic.strip().lower() in (known, *guide.words)), None)
+    if guide is not None:
+        return _guide(guide)
+    return _search(schema, topic.strip(), words or topic.split())
 
 
 def schema_part(topic: str) -> Node:
@@ -204,29 +214,62 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
 
 
 def _search(schema: Node, topic: str, words: list[str]) -> Answer:
-    """Everything that the words occur in; several keys of one name, too."""
+    """Everything that the words occur in; several keys of one name, too. Without any: whatever some occur in."""
     wanted = " ".join(words).lower()
     everywhere = [
-        _hit(path, node) for path, node in paths(schema) if path[0] != "obstacle"
+        (_hit(path, node), " ".join(map(str, _choices(schema, node))))
+        for path, node in paths(schema)
+        if path[0] != "obstacle"
     ]  # robots have the same keys
-    everywhere.sort(key=lambda hit: len(hit.name))
-    hits = [hit for hit in everywhere if _last(hit) == wanted]
+    everywhere.sort(key=lambda hit: len(hit[0].name))
+    hits = [hit for hit, _ in everywhere if _last(hit) == wanted]
     if not hits:
-        hits += [Key(name=template.name, text=template.purpose) for template in templates.find(words, every=True)]
-        titles = [Key(name=name, text=code.title) for name, code in _all_codes().items()]
-        hits += [hit for hit in titles if wanted in f"{hit.name} {hit.text}".lower()]
-        hits += [hit for hit in everywhere if wanted in f"{_last(hit)} {hit.text}".lower()]
-        hits = list({(_last(hit), hit.text): hit for hit in reversed(hits)}.values())[::-1]
+        hits = _matches(everywhere, wanted, [template.name for template in templates.find(words, every=True)])
+    ignored: list[str] = []
+    if not hits and len(words) > 1:
+        found = {word: _matches(everywhere, word.lower(), _templates_about(word)) for word in words if len(word) > 2}
+        ignored = [word for word in words if not found.get(word)]
+        counted = Counter(hit.name for some in found.values() for hit in some)
+        by_name = {hit.name: hit for some in found.values() for hit in some}
+        hits = [by_name[name] for name, _ in counted.most_common()]
     if not hits:
         raise TopicError(topic, _near(schema, words))
     more = len(hits) - _MOST_HITS
+    notes = [f"Nothing about {', '.join(map(repr, ignored))}."] if ignored else []
+    notes += [f"The first {_MOST_HITS}; a more special word finds fewer."] if more > 0 else []
     return Answer(
         topic=wanted,
         kind="search",
         title=f"{len(hits)} topics about '{wanted}'" if len(hits) != 1 else f"1 topic about '{wanted}'",
-        text=f"The first {_MOST_HITS}; a more special word finds fewer." if more > 0 else "",
+        text=" ".join(notes),
         groups={"topics": hits[:_MOST_HITS]},
     )
+
+
+def _matches(everywhere: list[tuple[Key, str]], wanted: str, named: list[str]) -> list[Key]:
+    """Templates, guides, codes and keys in which a word begins with what is wanted."""
+    about = re.compile(rf"(?<![a-z0-9]){re.escape(wanted)}").search
+    hits = [Key(name=name, text=templates.load(name).purpose) for name in named]
+    hits += [
+        Key(name=name, text=guide.title)
+        for name, guide in GUIDES.items()
+        if about(f"{name} {guide.title} {guide.text} {' '.join(guide.words)}".lower())
+    ]
+    hits += [
+        Key(name=name, text=code.title) for name, code in _all_codes().items() if about(f"{name} {code.title}".lower())
+    ]
+    hits += [hit for hit, values in everywhere if about(f"{_last(hit)} {hit.text} {values}".lower())]
+    return list({(_last(hit), hit.text): hit for hit in reversed(hits)}.values())[::-1]
+
+
+def _templates_about(word: str) -> list[str]:
+    return [template.name for template in templates.find([word], every=True)]
+
+
+def _choices(schema: Node, node: Node) -> list[object]:
+    """Words a key takes, where there are few."""
+    values = [value for option in alternatives(schema, node) for value in option.get("enum", [])]
+    return values if len(values) <= _MOST_CHOICES else []
 
 
 def _hit(path: tuple[str, ...], node: Node) -> Key:
@@ -244,14 +287,15 @@ def _near(schema: Node, words: list[str]) -> list[str]:
     everything |= {
         *_all_codes(),
         *templates.names(),
+        *GUIDES,
         *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
     }
-    near = difflib.get_close_matches(asked, everything, 3, 0.75)
+    near = difflib.get_close_matches(asked, everything, 3, 0.8)
     if not near:
         by_last: dict[str, str] = {}
         for topic in sorted(everything, key=len):
             by_last.setdefault(topic.rpartition(".")[2], topic)
-        near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.6)]
+        near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.75)]
     return near
 
 
@@ -268,6 +312,7 @@ def _index() -> Answer:
             "sections of a scenario": [Key(name=section.name, text=section.text) for section in sections],
             "components": kinds,
             "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
+            "guides": [Key(name=name, text=guide.title) for name, guide in GUIDES.items()],
             "codes": [Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings")],
         },
         example="irsim describe robot.sensors.lidar2d",
@@ -281,6 +326,11 @@ def _overview(registry: Registry) -> str:
     names = [", ".join(feature.name for feature in features if feature.simulated)]
     names += [f"not simulated yet: {', '.join(later)}"] if later else []
     return "; ".join(part for part in names if part)
+
+
+def _guide(name: str) -> Answer:
+    guide = GUIDES[name]
+    return Answer(topic=name, kind="guide", title=f"{name}: {guide.title}", text=guide.text, example=guide.example)
 
 
 def _code(name: str) -> Answer:

@@ -9,7 +9,18 @@ from typing import Any
 
 from irsim.lookup.answer import Key
 
-__all__ = ["Node", "component_name", "components", "definitions_of", "key", "mappings", "paths", "step", "yaml_text"]
+__all__ = [
+    "Node",
+    "alternatives",
+    "component_name",
+    "components",
+    "definitions_of",
+    "key",
+    "mappings",
+    "paths",
+    "step",
+    "yaml_text",
+]
 
 Node = dict[str, Any]
 """A schema node with references and siblings merged in."""

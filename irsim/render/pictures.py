@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,14 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from irsim.scenario.images import BUNDLED, image_places
+
 __all__ = ["BUNDLED", "Pictures"]
 
-_FOLDER = Path(__file__).parent / "images"
 _LONGEST = 512
 """Side that larger images are reduced to [px]."""
-
-BUNDLED = ("car_green.png", "car_blue.png", "car_red.png", "diff_robot0.png", "diff_robot1.png")
-"""Names that need no file; seen from above, facing right."""
 
 
 class Pictures:
@@ -44,10 +41,8 @@ class Pictures:
         return self.get(name) is not None
 
     def _read(self, name: str) -> NDArray[np.uint8] | None:
-        """Looks at the path as given, beside the script, beside the scenario, and among the bundled ones."""
-        places = [Path(), Path(sys.path[0] or "."), *([Path(self._folder)] if self._folder else []), _FOLDER]
         problem = "not found"
-        for path in (place / name for place in places):
+        for path in image_places(name, self._folder):
             try:
                 with Image.open(path) as image:
                     image.thumbnail((_LONGEST, _LONGEST))

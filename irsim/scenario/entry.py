@@ -49,6 +49,28 @@ SensorField = Annotated[Any, Select(SENSORS, default="lidar2d", alias="type")]
 class Entry(Options):
     """One or several objects (`number`) that share these keys."""
 
+    also_called: ClassVar[dict[str, str]] = {
+        "pose": "state",
+        "start": "state",
+        "position": "state",
+        "initial_state": "state",
+        "target": "goal",
+        "destination": "goal",
+        "path": "waypoints",
+        "route": "waypoints",
+        "drive": "kinematics",
+        "model": "kinematics",
+        "footprint": "shape",
+        "controller": "behavior",
+        "policy": "behavior",
+        "sensor": "sensors",
+        "lidar": "sensors",
+        "count": "number",
+        "max_speed": "vel_max",
+        "max_velocity": "vel_max",
+        "acceleration": "acce",
+        "tolerance": "goal_threshold",
+    }
     schema_extra: ClassVar[dict[str, Any]] = {
         "not": {
             "required": ["goal", "waypoints"],
@@ -94,9 +116,12 @@ class Entry(Options):
     static: Annotated[Bool, OrNull(False)] = False
     """Never moves although it has kinematics."""
     vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
-    """Lower limits of the control components; null is -1 each."""
+    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. Beginning with 0: no reverse."""
     vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
-    """Upper limits of the control components; null is 1 each."""
+    """Upper limits of the controls; null is 1 each.
+
+    diff: [m/s, rad/s]; omni: [forward, sideways] m/s; omni_angular: [m/s, m/s, rad/s]; acker: [m/s, steering rad].
+    """
     acce: Annotated[Any, PerObject(Rates | None, "vector")] = None
     """Largest change of each control component per second; null is unlimited."""
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None

@@ -115,7 +115,8 @@ class Explainer:
             self.path = (*parent, key)
         model = model_at(Scenario, parent, self.data)
         allowed = list(model.model_fields) if model is not None else []
-        near = nearest(key, allowed)
+        meant = getattr(model, "also_called", {}).get(str(key).lower())
+        near = meant or nearest(key, allowed)
         where = f"'{format_path(parent)}'" if parent else "a scenario"
         return error(
             "unknown-key",

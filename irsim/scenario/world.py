@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
 
@@ -96,6 +96,21 @@ class _MapSelect(Select):
 
 class WorldModel(Options):
     """Extent, time, modes and map of the world."""
+
+    also_called: ClassVar[dict[str, str]] = {
+        "dt": "step_time",
+        "timestep": "step_time",
+        "origin": "offset",
+        "map": "obstacle_map",
+        "grid_map": "obstacle_map",
+        "walls": "boundary",
+        "border": "boundary",
+        "max_time": "time_limit",
+        "duration": "time_limit",
+        "horizon": "time_limit",
+        "timeout": "time_limit",
+        "random_seed": "seed",
+    }
 
     name: Text | None = None
     """Name of the world; null is the name of the file."""

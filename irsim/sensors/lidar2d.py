@@ -30,6 +30,25 @@ class Lidar2d(SensorOptions):
 
     is_lidar: ClassVar[bool] = True
 
+    also_called: ClassVar[dict[str, str]] = {
+        "range": "range_max",
+        "max_range": "range_max",
+        "reach": "range_max",
+        "min_range": "range_min",
+        "beams": "number",
+        "num_beams": "number",
+        "n_beams": "number",
+        "rays": "number",
+        "samples": "number",
+        "resolution": "number",
+        "angle": "angle_range",
+        "fov": "angle_range",
+        "opening": "angle_range",
+        "pose": "offset",
+        "position": "offset",
+        "noise_std": "std",
+        "sigma": "std",
+    }
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "lidar2d", "number": 180, "range_max": 8.0, "angle_range": 6.28318}]
     }

@@ -27,7 +27,8 @@ __all__ = ["IrsimServer", "build_server"]
 _INSTRUCTIONS = """\
 irsim simulates robots that drive in a flat world: walls and obstacles, several robots, lidars, collisions. A scenario \
 is one YAML document with the keys world, robot and obstacle; lengths are m, times s, angles rad, x points right, y up.
-Work in this order: lookup (index, then the nearest template) -> edit its YAML -> validate_scenario until valid -> \
+Work in this order: lookup (index, then the nearest template; for a file of the user only what you change) -> edit \
+the YAML -> validate_scenario until valid -> \
 render_snapshot and look -> run_episode -> if it failed, look at that moment, edit, and again. Do not guess keys: \
 lookup explains them, and misspelt ones are errors. What this version cannot simulate is an error too \
 (not-yet-simulated): say so instead of leaving it out.

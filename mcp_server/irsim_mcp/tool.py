@@ -10,6 +10,7 @@ from typing import Any
 from mcp.server.mcpserver import Context
 from mcp.server.mcpserver.exceptions import ToolError, UnexpectedToolError
 from mcp.server.mcpserver.tools import Tool
+from mcp.server.mcpserver.utilities.func_metadata import FuncMetadata
 from mcp.types import ToolAnnotations
 from pydantic import ValidationError
 
@@ -33,8 +34,10 @@ class StrictTool(Tool):
                 near = nearest(name, known)
                 fix = f"did you mean {near}?" if near else f"{self.name} takes {', '.join(known)}"
                 raise failure("unknown-argument", f"there is no argument {clean(name)!r}", where=self.name, fix=fix)
+        given = {name: _unpacked(value, self.parameters["properties"][name]) for name, value in arguments.items()}
+        self._check(given)
         try:
-            return await super().run(arguments, context, convert_result)
+            return await super().run(given, context, convert_result)
         except UnexpectedToolError as error:
             what = f"{self.name} failed unexpectedly; the server's log says why"
             crash = failure("internal-error", what, fix="please report it with the arguments of this call")
@@ -44,17 +47,56 @@ class StrictTool(Tool):
                 raise self._refused(error.__cause__, arguments) from None
             raise ToolError(str(error).removeprefix(f"Error executing tool {self.name}: ")) from None
 
+    def _check(self, arguments: Mapping[str, Any]) -> None:
+        """All arguments against the schema, as strictly as JSON is: true is no 1, "10" no 10."""
+        from jsonschema import Draft202012Validator
+
+        given = {name: value for name, value in arguments.items() if value is not None}
+        wrong = {
+            str(error.absolute_path[0]): None for error in Draft202012Validator(self.parameters).iter_errors(given)
+        }
+        if not wrong:
+            return
+        names = list(wrong)
+        properties = self.parameters["properties"]
+        told = [f"{name} cannot be {clean(_as_json(given[name]), _SHOWN)}" for name in names]
+        fixes = [f"{name}: {_accepted(properties[name])}" for name in names]
+        raise failure(
+            "bad-argument", "; ".join(told), where=names[0] if len(names) == 1 else self.name, fix="; ".join(fixes)
+        )
+
     def _refused(self, error: ValidationError, arguments: Mapping[str, Any]) -> ToolError:
         first = error.errors()[0]
         path = [str(part) for part in first["loc"]]
         name = path[0] if path else self.name
-        text = json.dumps(arguments.get(name), ensure_ascii=False, default=str)
         return failure(
             "bad-argument",
-            f"{clean(text, _SHOWN)} is not accepted: {first['msg'].lower()}",
+            f"{clean(_as_json(arguments.get(name)), _SHOWN)} is not accepted: {first['msg'].lower()}",
             where=".".join(path) or self.name,
             fix=_accepted(self.parameters["properties"].get(name, {})),
         )
+
+
+class _AsGiven(FuncMetadata):
+    """Arguments as they came: the SDK would read a scenario that is written as JSON text."""
+
+    def pre_parse_json(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Leave everything as it is."""
+        return data
+
+
+def _unpacked(value: Any, schema: Mapping[str, Any]) -> Any:
+    """Some hosts pack lists and objects into text."""
+    if isinstance(value, str) and schema.get("type") in ("array", "object"):
+        try:
+            return json.loads(value)
+        except (ValueError, RecursionError):
+            return value
+    return value
+
+
+def _as_json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, default=str)
 
 
 def strict(
@@ -87,6 +129,8 @@ def strict(
     tool = StrictTool.from_function(
         function, title=title, description=" ".join(inspect.cleandoc(description).split()), annotations=hints
     )
+    meta = tool.fn_metadata
+    tool.fn_metadata = _AsGiven(**{name: getattr(meta, name) for name in type(meta).model_fields})
     tool.parameters = {**_slim(tool.parameters), "additionalProperties": False}
     if tool.fn_metadata.output_schema is not None:
         tool.fn_metadata.output_schema = _slim(tool.fn_metadata.output_schema)

@@ -251,5 +251,52 @@ def test_invalid_polygons_are_repaired_when_lenient() -> None:
 
 
 def test_one_finding_per_entry_however_many_objects() -> None:
-    data = robot(number=500, distribution={"name": "random"}, vel_max=[1, 1, 1])
+    data = robot(number=50, distribution={"name": "random"}, vel_max=[1, 1, 1])
     assert findings(data) == [("error", "wrong-length", ("robot", 0, "vel_max"))]
+
+
+DISCS = {"distribution": {"name": "random"}, "shape": {"name": "circle", "radius": 0.8}}
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(5, None), (27, "placement-tight"), (48, "placement-tight"), (60, "placement-impossible")]
+)
+def test_random_placement_by_arithmetic(number: int, code: str | None) -> None:
+    """1.6 m apart in 9 m x 9 m: at most 48 by Groemer's bound; discs dropped at random jam at half the ground."""
+    codes = [c for _, c, _ in findings(robot(number=number, **DISCS)) if c.startswith("placement")]
+    assert codes == ([code] if code else [])
+
+
+def test_random_placement_counts_the_minimal_distance() -> None:
+    tight = {"name": "random", "min_distance": 3.0}
+    assert "placement-impossible" in [c for _, c, _ in findings(robot(number=40, distribution=tight))]
+    assert not findings(robot(number=1, distribution={"name": "random", "min_distance": 30.0}))
+
+
+@pytest.mark.parametrize(
+    ("drive", "goal", "expected"),
+    [("diff", [9, 9, 1], True), ("omni", [9, 9, 1], True), ("diff", [9, 9], False), ("omni_angular", [9, 9, 1], False)],
+)
+def test_headings_that_nobody_steers_for(drive: str, goal: list[float], expected: bool) -> None:
+    data = robot(kinematics={"name": drive}, goal=goal, arrive_mode="state")
+    assert ("heading-not-reached" in [c for _, c, _ in findings(data)]) == expected
+
+
+def test_steering_angles_in_degrees() -> None:
+    car = {"kinematics": {"name": "acker", "wheelbase": 1}, "vel_min": [-1, -0.5]}
+    assert "steering-limit" in [c for _, c, _ in findings(robot(**car, vel_max=[1, 30]))]
+    assert "steering-limit" not in [c for _, c, _ in findings(robot(**car, vel_max=[1, 0.5]))]
+
+
+@pytest.mark.parametrize(
+    ("data", "key"),
+    [
+        ({"world": {"dt": 0.1}}, "step_time"),
+        (robot(sensors=[{"range": 5}]), "range_max"),
+        (robot(sensors=[{"name": "fmcw_lidar2d", "beams": 5}]), "number"),
+        (robot(max_speed=[1, 1]), "vel_max"),
+    ],
+)
+def test_words_that_people_write_for_keys(data: Any, key: str) -> None:
+    found = next(d for d in read(data, strict=True).diagnostics if d.code == "unknown-key")
+    assert found.fix == f"rename it to '{key}'"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from irsim.scenario.checks import (
     behaviors,
+    crowding,
     files,
     goals,
     groups,
     kinematics,
+    magnitude,
     names,
     overlap,
     placement,
@@ -24,7 +26,22 @@ __all__ = ["KEY_CODES", "Context", "run_checks"]
 KEY_CODES = frozenset({"unknown-key", "duplicate-key"})
 """Codes whose findings point at a key rather than at its value."""
 
-_FAMILIES = (world, names, kinematics, shapes, goals, placement, overlap, behaviors, groups, sensors, files, simulated)
+_FAMILIES = (
+    world,
+    magnitude,
+    names,
+    kinematics,
+    shapes,
+    goals,
+    placement,
+    crowding,
+    overlap,
+    behaviors,
+    groups,
+    sensors,
+    files,
+    simulated,
+)
 
 
 def run_checks(context: Context) -> list[Finding]:

@@ -8,6 +8,8 @@ __all__ = ["crosses_itself", "repaired"]
 
 Corner = tuple[float, float]
 _SMALL_AREA = 1e-12
+_LONG = 200
+"""Corners from which loading the geometry library pays."""
 
 
 def crosses_itself(corners: Sequence[Corner]) -> bool:
@@ -17,6 +19,10 @@ def crosses_itself(corners: Sequence[Corner]) -> bool:
         corners: At least 3, without the closing repetition.
     """
     n = len(corners)
+    if n > _LONG:
+        from shapely import Polygon
+
+        return not Polygon(corners).is_valid
     area = sum(corners[i - 1][0] * corners[i][1] - corners[i][0] * corners[i - 1][1] for i in range(n)) / 2
     if abs(area) < _SMALL_AREA:
         return True

@@ -6,19 +6,21 @@ from collections.abc import Iterator
 from pathlib import Path as FilePath
 from typing import Any
 
-from irsim.diagnostics import Path
+from irsim.diagnostics import Edit, Path, nearest
 from irsim.scenario.checks._context import Context
 from irsim.scenario.confine import why_outside
-from irsim.scenario.findings import Finding, error
+from irsim.scenario.findings import Finding, error, warning
+from irsim.scenario.images import BUNDLED, image_places
 from irsim.scenario.wording import shown
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Nothing for a scenario that may use any file."""
+    """Files outside the workspace, if there is one; images that are missing."""
+    source = context.document.path
+    yield from _missing_images(context, FilePath(source).resolve().parent if source is not None else None)
     root = context.document.limits.root
     if root is None:
         return
-    source = context.document.path
     bases = [FilePath(source).resolve().parent] if source is not None else []
     seen: set[Path] = set()
     for path, name in named_files(context):
@@ -33,6 +35,33 @@ def check(context: Context) -> Iterator[Finding]:
                 allowed="files inside the workspace",
                 fix="put the file into the workspace and give its path relative to it or to the scenario",
             )
+
+
+def _missing_images(context: Context, folder: FilePath | None) -> Iterator[Finding]:
+    seen: set[Path] = set()
+    for path, name in named_files(context):
+        if path[0] == "world" or path in seen:
+            continue
+        seen.add(path)
+        if any(_is_file(place) for place in image_places(name, folder)):
+            continue
+        near = nearest(name, BUNDLED)
+        yield warning(
+            "image-not-found",
+            path,
+            f"there is no image {shown(name)}: the shape is drawn instead",
+            given=name,
+            allowed=f"an image file beside the scenario, or one of {', '.join(BUNDLED)}",
+            fix=f"description: {near}" if near else "text belongs into 'world.description' or a comment",
+            edit=Edit("replace", path, near) if near else None,
+        )
+
+
+def _is_file(path: FilePath) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def named_files(context: Context) -> Iterator[tuple[Path, str]]:

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit, Path
+from irsim.registry import KINEMATICS
 from irsim.scenario.checks._context import Context
 from irsim.scenario.expand import DEFAULT_GOAL
 from irsim.scenario.findings import Finding, error, hint, warning
@@ -37,6 +39,26 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _outside(context, records)
             yield from _default_goal(path, entry, records)
             yield from _degrees(context, records)
+        yield from _heading(context, path, records)
+
+
+def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
+    """Arrival that needs a heading nobody steers for."""
+    for record in records:
+        drive = getattr(record.kinematics, "name", None)
+        behavior = record.behavior or record.group_behavior
+        steers = drive is None or drive not in KINEMATICS.names() or drive == "omni_angular"
+        if record.arrive_mode != "state" or steers or record.static or isinstance(behavior, CustomOptions | None):
+            continue
+        if any(len(goal) > 2 for goal in record.goals[-1:]):
+            yield warning(
+                "heading-not-reached",
+                (*path, "arrive_mode"),
+                f"'{record.name}' never turns to the heading of its goal: only 'omni_angular' does",
+                given="state",
+                fix="kinematics: {name: omni_angular}, a goal of two numbers, or arrive_mode: position",
+            )
+            return
 
 
 def _levels(path: Path, entry: Entry) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.diagnostics import Edit
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint
+from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.wording import flow
 
@@ -44,6 +44,16 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             (*context.entry_path(record, "kinematics"), "name"),
             "no wheelbase is given: it counts as 1 m",
             fix="add 'wheelbase' to the shape or to the kinematics",
+        )
+    steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
+    if not wrong and options.name == "acker" and options.mode == "steer" and steering >= math.pi / 2:
+        key = "vel_max" if context.given(record, "vel_max") else "vel_min"
+        yield warning(
+            "steering-limit",
+            context.entry_path(record, key),
+            f"a steering angle of up to {steering:g} rad is a quarter turn or more",
+            given=getattr(record, key),
+            fix=f"angles are in radians: {steering:g} degrees are {math.radians(steering):.4g}",
         )
     if options.name in ("omni", "omni_angular") and options.noise:
         yield hint(
@@ -100,12 +110,16 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     if any(high > 1 for high in record.vel_max):
         lower = [-value for value in record.vel_max]
+        rows: tuple[str, ...] = getattr(record.kinematics, "control_rows", ())
+        sideways = len(rows) > 1 and "lateral" in rows[1]
+        turning = any("yaw" in row or "angular" in row or "steer" in row for row in rows)
+        ways = ["backwards", *(["sideways"] if sideways else []), *(["turning right"] if turning else [])]
         yield hint(
             "vel-min-default",
             context.entry_path(record, "vel_max"),
             "only the upper limits are raised: vel_min stays at -1 for each component",
             given=record.vel_max,
-            fix=f"add 'vel_min: {flow(lower)}' if it should be as fast backwards and turning right",
+            fix=f"add 'vel_min: {flow(lower)}' if it should be as fast {' and '.join(ways)}",
             edit=Edit("add", (*record.path, "vel_min"), lower),
         )
 

@@ -20,28 +20,30 @@ _MOST_PAIRS = 300_000
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Pairs with at least one member that moves, unless one is placed at random or not to be collided with."""
+    """Pairs with a member that moves or is a robot, unless one is placed at random or not to be collided with."""
     random = {index for placement in context.resolved.placements for index in placement.objects}
     bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
     told = {path for path, entry, _ in context.entries() if _is_told(entry)}
-    reported: set[tuple[Any, ...]] = set()
+    found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
     for a, b in _near_pairs(bodies):
-        mover, other = (a.record, b.record) if not a.record.static else (b.record, a.record)
+        mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
         if other.unobstructed or (mover.path == other.path and mover.path in told):
             continue
         key = (mover.path, other.path)
-        if key in reported or not core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
+        if len(found) >= _MOST_REPORTED and key not in found:
             continue
-        reported.add(key)
+        if core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
+            first = found.setdefault(key, (mover, other, 0))
+            found[key] = (*first[:2], first[2] + 1)
+    for mover, other, count in found.values():
         where = context.entry_path(mover, "state") if context.given(mover, "state") else mover.path
         yield warning(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts in collision with '{other.name}'",
+            f"'{mover.name}' starts in collision with '{other.name}'"
+            + (f", and {count - 1} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller",
         )
-        if len(reported) >= _MOST_REPORTED:
-            return
 
 
 def _is_told(entry: Entry) -> bool:
@@ -60,7 +62,7 @@ class _Body:
 
     def __init__(self, record: ObjectRecord) -> None:
         self.record = record
-        self.reach = _reach(record.shape)
+        self.reach = reach_of(record.shape)
         self._parts: list[Any] | None = None
 
     @property
@@ -74,7 +76,12 @@ class _Body:
         return self._parts
 
 
-def _reach(shape: Any) -> float:
+def _matters(record: ObjectRecord) -> bool:
+    """Whether its overlaps are a mistake: obstacles that stand still may form one wall."""
+    return not record.static or record.role == "robot"
+
+
+def reach_of(shape: Any) -> float:
     """No point of the shape is farther from the origin than this [m]."""
     wheelbase = (getattr(shape, "wheelbase", None) or 0.0) / 2
     if shape.name == "circle":
@@ -82,14 +89,14 @@ def _reach(shape: Any) -> float:
     if shape.name == "rectangle":
         return wheelbase + math.hypot(shape.length, shape.width) / 2
     if shape.name == "compound":
-        return max(_reach(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
+        return max(reach_of(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
     if shape.name in ("polygon", "linestring"):
         return max((math.hypot(x, y) for x, y in shape.vertices or [(1.0, 1.0)]), default=0.0)
     return math.inf
 
 
 def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
-    """Pairs whose bounding circles meet and of which one moves; a sweep along x."""
+    """Pairs whose bounding circles meet and of which one moves or is a robot; a sweep along x."""
     ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
     active: list[_Body] = []
     looked_at = 0
@@ -100,7 +107,7 @@ def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
         if looked_at > _MOST_PAIRS:
             return
         for other in active:
-            if body.record.static and other.record.static:
+            if not _matters(body.record) and not _matters(other.record):
                 continue
             gap = math.hypot(other.record.state[0] - x, other.record.state[1] - y)
             if gap <= body.reach + other.reach:

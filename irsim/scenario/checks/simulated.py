@@ -76,5 +76,5 @@ def _not_yet(path: Path, what: str) -> Finding:
         "not-yet-simulated",
         path,
         f"this version does not simulate {what} yet",
-        fix="leave it out for now; the scenario itself is fine",
+        fix="keep it and tell the user, or try a labelled copy without it",
     )

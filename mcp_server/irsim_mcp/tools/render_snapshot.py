@@ -17,11 +17,12 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Draw one moment of a scenario as a PNG and look at it: bodies, headings (yellow arrows), goals (pale), names, lidar
-    beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0 is the start: do things
-    overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first; -1 is the end of the
-    episode, with the path of every robot. Returns one line of text, which says what the labels r0, G-r0 (its goal)
-    stand for and where the robots are, and the image; writes no file. Next: edit and validate again, or run_episode.
+    Draw one moment of a scenario as a PNG and look at it: bodies, headings (yellow arrows, none for omni), goals
+    (pale), names, lidar beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0 is
+    the start: do things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first; -1
+    is the end of the episode, with the path of every robot. Returns one line of text, which says what the labels r0,
+    G-r0 (its goal) stand for and where the robots are, and the image; writes no file. Next: edit and validate again, or
+    run_episode.
 """
 _NAMED = 10
 
@@ -69,8 +70,9 @@ def tool(services: Services) -> StrictTool:
 def _line(scene: dict[str, Any]) -> str:
     left, right, low, top = scene["extent"]
     size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
+    chance = "" if scene["random"] else ", nothing is random"
     parts = [
-        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, seed {scene['seed']})",
+        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, seed {scene['seed']}{chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
     parts += [_robot(robot) for robot in scene["robots"][:_NAMED]]

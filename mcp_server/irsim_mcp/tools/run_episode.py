@@ -24,6 +24,7 @@ _DESCRIPTION = """
     give the same result. Next: after a failure draw that moment with render_snapshot (same seed), change the scenario,
     validate and run again; after a success try a few other seeds if anything is random.
 """
+_UNDRIVEN = "has no behavior"
 _CONCISE, _DETAILED, _DECIMALS = 10, 50, 3
 
 
@@ -64,6 +65,7 @@ class Episode(BaseModel):
     reason: str | None = None
     summary: str
     seed: int
+    random: list[str]
     steps: int
     sim_time: float
     time_limit: float
@@ -125,18 +127,29 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         reason=None if found["reason"] is None else clean(found["reason"], 500),
         summary=clean(found["summary"], 300),
         seed=found["seed"],
+        random=found["random"],
         steps=found["steps"],
         sim_time=_rounded(found["sim_time"]),
         time_limit=_rounded(found["time_limit"]),
         time_limit_from=found["time_limit_from"],
         robots=[_robot(robot, detailed) for robot in robots[:most]],
         robot_count=len(robots),
-        events=[_event(event) for event in found["events"] if detailed or event["kind"] != "waypoint"][:most],
+        events=[_event(event) for event in _chosen(found, detailed)[:most]],
         event_count=found["event_count"],
         warnings=[clean(line, 300) for line in told],
         reproduce=clean(found["reproduce"], 300),
         next=_advice(found),
     )
+
+
+def _chosen(found: dict[str, Any], detailed: bool) -> list[dict[str, Any]]:
+    """All events; in short what robots did and met first, as people who walk to and fro would crowd them out."""
+    events: list[dict[str, Any]] = found["events"]
+    if detailed:
+        return events
+    robots = {robot["name"] for robot in found["robots"]}
+    told = [event for event in events if event["kind"] != "waypoint"]
+    return sorted(told, key=lambda event: not robots & {event["object"], event["partner"]})
 
 
 def _rounded(value: Any) -> Any:
@@ -164,7 +177,10 @@ def _event(event: dict[str, Any]) -> Event:
 def _advice(found: dict[str, Any]) -> str:
     seed = found["seed"]
     if found["outcome"] == "success":
-        return f"See the paths with render_snapshot step=-1 seed={seed}; if anything is random, try other seeds."
+        more = "; try other seeds" if found["random"] else ""
+        return f"See the paths with render_snapshot step=-1 seed={seed}{more}."
+    if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
+        return "As it should be if a program gives the actions; to try the layout, run a copy with behavior dash."
     hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
     step = hits[0] if found["outcome"] == "collision" and hits else -1
     return f"Look with render_snapshot step={step} seed={seed}, change the scenario, validate and run again."
@@ -176,7 +192,8 @@ def _text(episode: Episode) -> str:
     lines = [f"{episode.outcome}: {episode.summary}"]
     if episode.reason is not None:
         lines.append(f"Reason: {episode.reason}")
-    lines.append(f"{episode.steps} steps, {episode.sim_time:g} s of at most {limit}, seed {episode.seed}")
+    chance = f"random: {', '.join(episode.random)}" if episode.random else "nothing is random"
+    lines.append(f"{episode.steps} steps, {episode.sim_time:g} s of at most {limit}, seed {episode.seed} ({chance})")
     lines.append(f"Robots ({len(episode.robots)} of {episode.robot_count}):")
     lines += [f"- {_robot_text(robot)}" for robot in episode.robots]
     if episode.events:

@@ -23,6 +23,8 @@ _DESCRIPTION = """
 """
 
 
+_GAPS = "Tell the user that this version cannot simulate this; to show the rest, run a labelled copy without it."
+_HINTS = 6
 _ALLOWED = 800
 """Characters of the values that would be accepted."""
 
@@ -84,13 +86,17 @@ def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Repo
     findings = [item for item in found["findings"] if detailed or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
     if found["hints"] and not detailed:
-        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)} with response_format=detailed"
+        kinds = dict.fromkeys(item["code"] for item in found["findings"] if item["severity"] == "hint")
+        named = ", ".join(list(kinds)[:_HINTS])
+        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)} ({named}) with response_format=detailed"
     issues = _fitting([_issue(item, detailed) for item in findings[:most]], room)
     cut = len(findings) - len(issues)
     if cut > 0:
         advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
     elif not found["valid"]:
-        advice = "Apply the fixes and validate again; lookup explains a code or a key."
+        codes = {item["code"] for item in found["findings"] if item["severity"] == "error"}
+        fixable = "Apply the fixes and validate again; lookup explains a code or a key."
+        advice = _GAPS if codes == {"not-yet-simulated"} else fixable
     elif found["warnings"]:
         advice = "See whether the warnings are meant, look at it with render_snapshot, then run_episode."
     else:

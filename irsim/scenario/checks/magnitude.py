@@ -1,0 +1,44 @@
+"""Numbers that no world is made for: they would only drown in rounding, or in the drawing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+from irsim.diagnostics import Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.findings import Finding, error
+
+LARGEST = 1e7
+"""Metres, or metres per second."""
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """The world's extent; places, bodies and speeds of its objects."""
+    world = context.scenario.world
+    for key, values in (("width", [world.width]), ("height", [world.height]), ("offset", world.offset)):
+        yield from _judge(("world", key), values)
+    seen: set[Path] = set()
+    for record in context.resolved.objects:
+        goals = [value for goal in record.goals for value in goal[:2]]
+        key = "waypoints" if context.given(record, "waypoints") else "goal"
+        limits = [value for value in (*record.vel_max, *record.vel_min) if math.isfinite(value)]
+        bodies = [reach_of(record.shape)]
+        for name, numbers in (("state", record.state[:2]), (key, goals), ("vel_max", limits), ("shape", bodies)):
+            for finding in _judge(context.entry_path(record, name), [v for v in numbers if math.isfinite(v)]):
+                if finding.diagnostic.path not in seen:
+                    seen.add(finding.diagnostic.path)
+                    yield finding
+
+
+def _judge(path: Path, values: Iterable[float]) -> Iterator[Finding]:
+    worst = max((abs(value) for value in values), default=0.0)
+    if worst > LARGEST:
+        yield error(
+            "out-of-range",
+            path,
+            f"{worst:.3g} is more than the {LARGEST:.0e} m (or m/s) that a world can hold",
+            allowed=f"at most {LARGEST:.0e}",
+            fix="lengths are in metres",
+        )
