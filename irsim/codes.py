@@ -248,6 +248,10 @@ CODES: dict[str, Code] = {
         "valid, but not simulated yet",
         "The language knows the feature; this version's engine does not run it, and says so instead of leaving it out.",
     ),
+    "too-large": Code(
+        "number beyond any world",
+        "Lengths and places of more than 1e7 m, and speeds beyond 1e7 m/s, drown in rounding. Lengths are in metres.",
+    ),
     "placement-impossible": Code(
         "more objects than fit",
         "The objects of this entry keep a distance (twice the radius, or 'min_distance'), and no arrangement of "

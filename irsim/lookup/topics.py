@@ -40,6 +40,8 @@ _PLACES = {
 }
 """Where components of a kind stand in a scenario."""
 _MOST_HITS = 20
+_NEAR = 0.8
+"""How similar a name must be to be suggested, or to end a search."""
 _MOST_CHOICES = 12
 """Longer lists of allowed words (colours) are no topics."""
 
@@ -226,7 +228,8 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     if not hits:
         hits = _matches(everywhere, wanted, [template.name for template in templates.find(words, every=True)])
     ignored: list[str] = []
-    if not hits and len(words) > 1:
+    close = difflib.get_close_matches(".".join(words), _topics(schema), 1, _NEAR) if not hits else []
+    if not hits and not close and len(words) > 1:
         found = {word: _matches(everywhere, word.lower(), _templates_about(word)) for word in words if len(word) > 2}
         ignored = [word for word in words if not found.get(word)]
         counted = Counter(hit.name for some in found.values() for hit in some)
@@ -282,21 +285,25 @@ def _last(hit: Key) -> str:
 
 def _near(schema: Node, words: list[str]) -> list[str]:
     """Topics with similar names: the wrong word of a path mended, or the nearest of all names."""
-    asked = ".".join(words)
-    everything = {".".join(path) for path, _ in paths(schema)}
-    everything |= {
-        *_all_codes(),
-        *templates.names(),
-        *GUIDES,
-        *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
-    }
-    near = difflib.get_close_matches(asked, everything, 3, 0.8)
+    everything = _topics(schema)
+    near = difflib.get_close_matches(".".join(words), everything, 3, _NEAR)
     if not near:
         by_last: dict[str, str] = {}
         for topic in sorted(everything, key=len):
             by_last.setdefault(topic.rpartition(".")[2], topic)
         near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.75)]
     return near
+
+
+def _topics(schema: Node) -> set[str]:
+    """The names of everything there is."""
+    return {
+        *(".".join(path) for path, _ in paths(schema)),
+        *_all_codes(),
+        *templates.names(),
+        *GUIDES,
+        *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
+    }
 
 
 def _index() -> Answer:

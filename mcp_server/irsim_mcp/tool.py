@@ -57,13 +57,14 @@ class StrictTool(Tool):
         }
         if not wrong:
             return
-        names = list(wrong)
-        properties = self.parameters["properties"]
-        told = [f"{name} cannot be {clean(_as_json(given[name]), _SHOWN)}" for name in names]
-        fixes = [f"{name}: {_accepted(properties[name])}" for name in names]
-        raise failure(
-            "bad-argument", "; ".join(told), where=names[0] if len(names) == 1 else self.name, fix="; ".join(fixes)
-        )
+        accepted = {name: _accepted(self.parameters["properties"][name]) for name in wrong}
+        if len(wrong) == 1:
+            (name,) = wrong
+            what, where, fix = f"{_shown(given[name])} is not accepted", name, accepted[name]
+        else:
+            what = "; ".join(f"{name} does not accept {_shown(given[name])}" for name in wrong)
+            where, fix = self.name, "; ".join(f"{name}: {text}" for name, text in accepted.items())
+        raise failure("bad-argument", what, where=where, fix=fix)
 
     def _refused(self, error: ValidationError, arguments: Mapping[str, Any]) -> ToolError:
         first = error.errors()[0]
@@ -71,7 +72,7 @@ class StrictTool(Tool):
         name = path[0] if path else self.name
         return failure(
             "bad-argument",
-            f"{clean(_as_json(arguments.get(name)), _SHOWN)} is not accepted: {first['msg'].lower()}",
+            f"{_shown(arguments.get(name))} is not accepted: {first['msg'].lower()}",
             where=".".join(path) or self.name,
             fix=_accepted(self.parameters["properties"].get(name, {})),
         )
@@ -95,8 +96,8 @@ def _unpacked(value: Any, schema: Mapping[str, Any]) -> Any:
     return value
 
 
-def _as_json(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False, default=str)
+def _shown(value: Any) -> str:
+    return clean(json.dumps(value, ensure_ascii=False, default=str), _SHOWN)
 
 
 def strict(

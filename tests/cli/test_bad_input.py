@@ -61,7 +61,7 @@ def test_a_process_answers_within_a_second_or_so(spawn: Spawn, bad: tuple[str, P
         ["run", "room.yaml", "--import", "no_such_module"],
         ["run", "room.yaml", "--save-gif", "x.doc"],
         ["render", "room.yaml", "-o", "room.yaml/x.png"],
-        ["describe", "no such thing at all"],
+        ["describe", "xyzzy"],
         ["demo", "-o", "x.doc"],
     ],
 )

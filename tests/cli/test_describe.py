@@ -105,3 +105,24 @@ def test_a_miss_names_what_is_near(irsim: Run, topic: str, near: str) -> None:
 
 def test_json(irsim: Run) -> None:
     assert parsed(irsim("describe", "dash", "--json")) == lookup("dash").model_dump(mode="json")
+
+
+@pytest.mark.parametrize(
+    ("words", "title"),
+    [
+        ("reset", "program: the Python loop"),
+        ("env.reset", "program: the Python loop"),
+        ("seeds", "seeds: what is random"),
+        ("pillar", "things: how everyday"),
+        ("obstacle avoidance", "avoidance: who avoids"),
+        ("radians", "units: metres"),
+    ],
+)
+def test_guides_about_what_is_no_key(irsim: Run, words: str, title: str) -> None:
+    assert irsim("describe", words).output.startswith(title)
+
+
+def test_words_are_found_whole_and_one_by_one(irsim: Run) -> None:
+    assert "step_mode" in irsim("describe", "external").output
+    assert "Nothing about 'quux'" in irsim("describe", "quux beams").output
+    assert "interaction" not in irsim("describe", "actio").output

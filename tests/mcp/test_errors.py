@@ -54,6 +54,13 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "Fix: give one of concise, detailed.",
         ),
         ("validate_scenario", {"scenario_yaml": {"world": {}}}, "(scenario_yaml). Fix: give text."),
+        ("run_episode", {"scenario_yaml": ROOM, "seed": True}, "bad-argument: true is not accepted (seed)."),
+        ("run_episode", {"scenario_yaml": ROOM, "max_steps": "10"}, 'bad-argument: "10" is not accepted (max_steps).'),
+        (
+            "render_snapshot",
+            {"scenario_yaml": ROOM, "return_image": "no", "step": -2},
+            'step does not accept -2; return_image does not accept "no"',
+        ),
         ("validate_scenario", {}, "bad-argument: no scenario is given. Fix: give scenario_yaml"),
         ("run_episode", {"scenario_path": "", "scenario_yaml": ""}, "bad-argument: no scenario is given."),
         (
@@ -96,8 +103,18 @@ async def test_an_invalid_scenario_names_its_first_problems(empty: Path, tool: s
     assert told.endswith("Fix: validate_scenario lists every problem with its fix.")
 
 
+async def test_a_scenario_may_be_written_as_json(empty: Path) -> None:
+    async with connected(empty) as client:
+        good = await client.call_tool("validate_scenario", {"scenario_yaml": '{"world": {"width": 10, "height": 6}}'})
+        lists = await client.call_tool("validate_scenario", {"scenario_yaml": "[1, 2]"})
+        packed = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": '["names"]'})
+    assert good.structured_content is not None and good.structured_content["valid"]
+    assert lists.structured_content is not None and lists.structured_content["issues"][0]["code"] == "not-a-scenario"
+    assert not packed.is_error
+
+
 async def test_no_room_for_random_objects(empty: Path) -> None:
-    crowd = ROOM + "  - {number: 99, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
+    crowd = ROOM + "  - {number: 45, kinematics: {name: diff}, distribution: {name: random}, shape: {name: circle}}\n"
     async with connected(empty) as client:
         told = error_of(await client.call_tool("run_episode", {"scenario_yaml": crowd, "seed": 1}))
     assert told.startswith("placement-crowded: no room for ")

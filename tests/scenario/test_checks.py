@@ -259,7 +259,7 @@ DISCS = {"distribution": {"name": "random"}, "shape": {"name": "circle", "radius
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(5, None), (27, "placement-tight"), (48, "placement-tight"), (60, "placement-impossible")]
+    ("number", "code"), [(5, None), (30, "placement-tight"), (48, "placement-tight"), (60, "placement-impossible")]
 )
 def test_random_placement_by_arithmetic(number: int, code: str | None) -> None:
     """1.6 m apart in 9 m x 9 m: at most 48 by Groemer's bound; discs dropped at random jam at half the ground."""
@@ -300,3 +300,25 @@ def test_steering_angles_in_degrees() -> None:
 def test_words_that_people_write_for_keys(data: Any, key: str) -> None:
     found = next(d for d in read(data, strict=True).diagnostics if d.code == "unknown-key")
     assert found.fix == f"rename it to '{key}'"
+
+
+def test_parked_robots_that_overlap() -> None:
+    parked = {"shape": {"name": "circle", "radius": 0.5}, "number": 3, "state": [[2, 2, 0], [2.5, 2, 0], [3.2, 2, 0]]}
+    found = [d for d in read({"robot": [parked]}).diagnostics if d.code == "initial-overlap"]
+    assert len(found) == 1
+    assert "1 more such pairs" in found[0].message
+    assert not findings({"obstacle": [parked]})
+
+
+@pytest.mark.parametrize(
+    "data", [{"world": {"width": 1e308}}, robot(shape={"name": "circle", "radius": 1e200}), robot(state=[1e9, 2, 0])]
+)
+def test_absurd_magnitudes(data: Any) -> None:
+    assert "too-large" in [c for _, c, _ in findings(data)]
+
+
+def test_missing_images(tmp_path: Path) -> None:
+    assert ("warning", "image-not-found", ("robot", 0, "description")) in findings(robot(description="file:///x.png"))
+    assert findings(robot(description="car_red.png")) == []
+    near = next(d for d in read(robot(description="car_rde.png")).diagnostics if d.code == "image-not-found")
+    assert near.fix == "description: car_red.png"

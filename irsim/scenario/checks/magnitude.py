@@ -36,7 +36,7 @@ def _judge(path: Path, values: Iterable[float]) -> Iterator[Finding]:
     worst = max((abs(value) for value in values), default=0.0)
     if worst > LARGEST:
         yield error(
-            "out-of-range",
+            "too-large",
             path,
             f"{worst:.3g} is more than the {LARGEST:.0e} m (or m/s) that a world can hold",
             allowed=f"at most {LARGEST:.0e}",
