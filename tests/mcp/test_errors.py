@@ -108,8 +108,10 @@ async def test_a_scenario_may_be_written_as_json(empty: Path) -> None:
         good = await client.call_tool("validate_scenario", {"scenario_yaml": '{"world": {"width": 10, "height": 6}}'})
         lists = await client.call_tool("validate_scenario", {"scenario_yaml": "[1, 2]"})
         packed = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "overlays": '["names"]'})
-    assert good.structured_content is not None and good.structured_content["valid"]
-    assert lists.structured_content is not None and lists.structured_content["issues"][0]["code"] == "not-a-scenario"
+    assert good.structured_content is not None
+    assert good.structured_content["valid"]
+    assert lists.structured_content is not None
+    assert lists.structured_content["issues"][0]["code"] == "not-a-scenario"
     assert not packed.is_error
 
 
