@@ -35,6 +35,18 @@ class AckerOptions(_Options):
 class DashOptions(_Options):
     def __init__(self, *, angle_tolerance: float) -> None: ...
 
+class OrcaOptions(_Options):
+    def __init__(
+        self,
+        *,
+        neighborDist: float,
+        maxNeighbors: int,
+        timeHorizon: float,
+        timeHorizonObst: float,
+        safe_radius: float,
+        maxSpeed: float | None,
+    ) -> None: ...
+
 # sensors (core/sensors/)
 class Lidar2dOptions(_Options):
     def __init__(
@@ -199,6 +211,9 @@ class State:
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) minimum bounding circle radius of the body
+    infeasible: NDArray[
+        np.int32
+    ]  # (R,) steps of the episode in which its behavior found no velocity free of collisions
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
     hits: NDArray[np.int32]  # same length: object (its row within the world) hit by each beam, -1 none

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS
 from irsim.units import Count, Meters, MetersPerSecond, Seconds
@@ -33,4 +34,4 @@ class Orca(BehaviorOptions):
     """Largest speed; null is the object's own."""
 
 
-BEHAVIORS.register(Orca)
+BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

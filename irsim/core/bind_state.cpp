@@ -160,6 +160,7 @@ BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
   collided = view<std::uint8_t>(state.collided.memory, {rows});
   stopped = view<std::uint8_t>(state.stopped.memory, {rows});
   radius = view<double>(state.radius.memory, {rows});
+  infeasible = view<std::int32_t>(state.infeasible.memory, {rows});
   goal = view<double>(state.goal.memory, {rows, 3});
   ranges = view<double>(state.ranges.memory, {beams});
   hits = view<std::int32_t>(state.hits.memory, {beams});
@@ -206,6 +207,7 @@ void bind_state(nb::module_& m) {
       .def_ro("collided", &S::collided)
       .def_ro("stopped", &S::stopped)
       .def_ro("radius", &S::radius)
+      .def_ro("infeasible", &S::infeasible)
       .def_ro("goal", &S::goal)
       .def_ro("ranges", &S::ranges)
       .def_ro("hits", &S::hits)

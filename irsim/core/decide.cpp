@@ -37,7 +37,7 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
 
 void decide(const World& world, State& state, int w, Workspace& work) {
   const int first = w * world.objects;
-  work.neighbors.known = false;
+  work.neighbors.known = work.orca.known = false;
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
@@ -58,6 +58,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     for (int k = 0; k < count; ++k) {
       const int object = work.objects[k];
       const Intent& intent = intents[k];
+      state.infeasible[first + object] += intent.infeasible;
       state.command[first + object] = intent.kind == Intent::control_body
                                           ? intent.control
                                           : control_for(world, state, w, object, intent.velocity, intent.turning);

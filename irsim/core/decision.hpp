@@ -29,9 +29,10 @@ struct Intent {
   Vec2 velocity;
   Turning turning;
   Vec3 control;
+  bool infeasible = false;  // no velocity avoided everything: this is the least bad
 
-  static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}}; }
-  static Intent of_control(Vec3 u) { return {control_body, {}, {}, u}; }
+  static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}, false}; }
+  static Intent of_control(Vec3 u) { return {control_body, {}, {}, u, false}; }
 };
 
 }  // namespace irsim

@@ -8,6 +8,7 @@
 #include "collision/grid.hpp"
 #include "collision/points.hpp"
 #include "collision/sweep.hpp"
+#include "orca/obstacles.hpp"
 #include "shapes.hpp"
 #include "walls.hpp"
 
@@ -25,6 +26,7 @@ struct Fixed {
   Walls walls, lines;         // outlines that are in the way; linestrings
   std::vector<int> disc_ids;  // of the circles
   Points disc_points;         // centres of their bounding circles
+  Obstacles obstacles;        // all of these as `orca` sees them
 };
 
 enum class EventKind { arrival, waypoint, collision };

@@ -72,6 +72,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_)
       collided(rows),
       stopped(rows),
       radius(rows),
+      infeasible(rows),
       goal(rows, {kNone, kNone, kNone}),
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
       beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
@@ -118,6 +119,7 @@ void restart(const World& world, State& state, int w) {
     state.twist[row] = state.command[row] = {};
     state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
     state.radius[row] = scene.shapes->radius[i];
+    state.infeasible[row] = 0;
     state.goal_draws[row] = 0;
     if (state.keep_history) state.history[row].clear();
     if (world.wander[i]) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "neighbors.hpp"
+#include "orca/crowd.hpp"
 
 namespace irsim {
 
@@ -32,6 +33,7 @@ struct Workspace {
   BeamBuffers beams;
   Neighbors neighbors;
   std::vector<int> walls;  // those near
+  OrcaCrowd orca;
 };
 
 }  // namespace irsim

@@ -167,7 +167,7 @@ LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
     (robot(behavior={"name": "rvo"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "sfm"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
-    (robot(group_behavior={"name": "orca"}), ("robot", 0, "group_behavior", "name")),
+    (robot(group_behavior={"name": "sfm"}), ("robot", 0, "group_behavior", "name")),
     (robot(sensors=[{"name": "fmcw_lidar2d", "velocity_linewidth": 2}]), ("robot", 0, "sensors", 0)),
     (robot(fov=1.0, fov_radius=2, fov_occlusion=True), ("robot", 0, "fov_occlusion")),
 ]

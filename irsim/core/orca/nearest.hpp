@@ -1,0 +1,99 @@
+// The few nearest of many points.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vec.hpp"
+
+namespace irsim {
+
+/// Points of the plane, on a grid where there are many. Points that are not finite are near nothing.
+class Nearest {
+ public:
+  struct Found {
+    double distance2;  // [m2]
+    int index;
+    bool operator<(const Found& b) const {
+      return distance2 < b.distance2 || (distance2 == b.distance2 && index < b.index);
+    }
+  };
+
+  /// Start over; `add` all points, then `build`.
+  void clear() { points_.clear(); }
+  void add(Vec2 point) { points_.push_back(point); }
+  void build();
+
+  /// The nearest points less than `reach` [m] away from `centre`, `most` at most, those for which `seen(index)` holds:
+  /// nearest first, of equally far ones the lower index first. Returns how many; `found` has room for `most`.
+  template <class Seen>
+  int find(Vec2 centre, double reach, int most, Seen&& seen, Found* found) const {
+    if (most <= 0) return 0;
+    Best best{found, most, 0, reach * reach};
+    if (start_.empty()) {
+      for (int i = 0; i < static_cast<int>(points_.size()); ++i) {
+        const double distance2 = squared(points_[i] - centre);
+        if (distance2 <= best.limit2 && seen(i)) best.offer({distance2, i});
+      }
+      return best.count;
+    }
+    const int cx = column(centre.x - x0_, columns_), cy = column(centre.y - y0_, rows_);
+    const int rings = std::max(std::max(cx, columns_ - 1 - cx), std::max(cy, rows_ - 1 - cy));
+    for (int ring = 0; ring <= rings; ++ring) {
+      const double gap = (ring - 1) * cell_;  // nothing in this ring is nearer
+      if (ring > 1 && gap * gap > best.limit2) break;
+      for (int y = std::max(cy - ring, 0); y <= std::min(cy + ring, rows_ - 1); ++y) {
+        const bool whole = y == cy - ring || y == cy + ring;
+        const int stride = whole || ring == 0 ? 1 : 2 * ring;
+        for (int x = cx - ring; x <= cx + ring; x += stride) {
+          if (x < 0 || x >= columns_) continue;
+          const std::size_t cell = static_cast<std::size_t>(y) * columns_ + x;
+          for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
+            const double distance2 = squared(entries_[k].point - centre);
+            if (distance2 <= best.limit2 && seen(entries_[k].index)) best.offer({distance2, entries_[k].index});
+          }
+        }
+      }
+    }
+    return best.count;
+  }
+
+ private:
+  static constexpr std::size_t kFew = 64;  // so few are looked at one by one
+
+  /// The best so far, sorted.
+  struct Best {
+    Found* found;
+    int most, count;
+    double limit2;  // nobody farther is wanted
+
+    void offer(Found next) {
+      if (count == most) {
+        if (!(next < found[count - 1])) return;
+      } else {
+        if (!(next.distance2 < limit2)) return;
+        ++count;
+      }
+      int k = count - 1;
+      for (; k > 0 && next < found[k - 1]; --k) found[k] = found[k - 1];
+      found[k] = next;
+      if (count == most) limit2 = found[count - 1].distance2;
+    }
+  };
+  struct Entry {
+    Vec2 point;
+    int index;
+  };
+
+  int column(double offset, int count) const {
+    return static_cast<int>(clip(std::floor(offset * inverse_), 0.0, count - 1.0));
+  }
+
+  std::vector<Vec2> points_;
+  double x0_ = 0, y0_ = 0, cell_ = 1, inverse_ = 1;
+  int columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> start_, cells_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace irsim

@@ -1,0 +1,72 @@
+#include "orca/obstacles.hpp"
+
+#include "scene.hpp"
+#include "world.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kCell = 4.0;  // of the grid [m]
+
+/// Unit vector of a wall; zero for one without length.
+Vec2 along(const Wall& wall) {
+  const Vec2 way = wall.b - wall.a;
+  const double length = norm(way);
+  return length > 0.0 ? way * (1.0 / length) : Vec2{};
+}
+
+/// Unit vector of the wall `link` leads to, walls without length passed over; zero at a free end.
+Vec2 beyond(const Walls& walls, int k, int Wall::* link) {
+  for (std::size_t tries = 0; tries < walls.list.size(); ++tries) {
+    k = walls.list[k].*link;
+    if (k < 0) break;
+    const Vec2 way = along(walls.list[k]);
+    if (squared(way) > 0.0) return way;
+  }
+  return {};
+}
+
+/// A zero vector marks the side on which the line ends.
+Corner corner(Vec2 point, Vec2 in, Vec2 out) {
+  if (squared(in) == 0.0) in = out * -1.0;
+  if (squared(out) == 0.0) out = in * -1.0;
+  return {point, in, out, cross(in, out) >= 0.0};
+}
+
+void add_edges(std::vector<Edge>& edges, const Walls& walls, const World& world, bool both_sides) {
+  for (int k = 0; k < static_cast<int>(walls.list.size()); ++k) {
+    const Wall& wall = walls.list[k];
+    const Vec2 way = along(wall);
+    if (squared(way) == 0.0 || (wall.object >= 0 && world.unobstructed[wall.object])) continue;
+    const Vec2 before = beyond(walls, k, &Wall::previous), after = beyond(walls, k, &Wall::next);
+    edges.push_back({corner(wall.a, before, way), corner(wall.b, way, after), wall.object});
+    if (!both_sides) continue;
+    const Vec2 back = way * -1.0;
+    edges.push_back({corner(wall.b, after * -1.0, back), corner(wall.a, back, before * -1.0), wall.object});
+  }
+}
+
+}  // namespace
+
+Obstacles make_obstacles(const World& world, const Shapes& shapes, const Fixed& fixed) {
+  Obstacles all;
+  add_edges(all.edges, fixed.walls, world, false);
+  add_edges(all.edges, fixed.lines, world, true);
+  for (const int i : fixed.disc_ids) {
+    if (world.unobstructed[i]) continue;
+    all.discs.push_back({fixed.outlines.footprint(shapes, i).centre, shapes.radius[i], i});
+  }
+  all.grid.clear(kCell);
+  int id = 0;
+  for (const Edge& edge : all.edges) {
+    Box box;
+    box.include(edge.left.point);
+    box.include(edge.right.point);
+    all.grid.add(id++, box);
+  }
+  for (const StandingDisc& disc : all.discs) all.grid.add(id++, box_around(disc.centre, disc.radius));
+  all.grid.build();
+  return all;
+}
+
+}  // namespace irsim

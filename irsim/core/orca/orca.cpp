@@ -1,0 +1,126 @@
+// The behavior `orca`: for each member the half-planes of what it avoids, and the best velocity within them.
+#include "behaviors/orca.hpp"
+
+#include <algorithm>
+
+#include "geometry/predicates.hpp"
+#include "orca/crowd.hpp"
+#include "orca/obstacles.hpp"
+#include "spec.hpp"
+
+namespace irsim {
+namespace {
+
+/// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
+double top_speed(const OrcaOptions& options, const World& world, int object) {
+  const Vec3& top = world.vel_max[object];
+  const Drive& drive = world.drive[object];
+  const bool sideways = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
+  const double own = sideways ? std::min(top[0], top[1]) : top[0];
+  return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed, own) : own);
+}
+
+/// Full speed to the goal; nothing without one, or within `goal_threshold` of it.
+Vec2 preferred_velocity(const World& world, const State& state, int row, int object, double speed) {
+  const Goal& goal = state.goal[row];
+  if (std::isnan(goal.x)) return {};
+  const Vec2 way = goal.position() - state.pose[row].position();
+  const double distance = norm(way);
+  return distance > 0.0 && distance >= world.goal_threshold[object] ? way * (speed / distance) : Vec2{};
+}
+
+/// Whether `viewer` is shown an object of another group.
+bool shown(const World& world, int viewer, int other) {
+  const int wanted = world.target_roles[viewer];
+  return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
+}
+
+/// Half-planes of walls and standing circles: nearest edges first, those that others cover left out.
+void avoid_obstacles(const OrcaOptions& options, const World& world, const Obstacles& obstacles, const OrcaAgent& agent,
+                     int object, double speed, OrcaCrowd& all) {
+  if (obstacles.empty()) return;
+  const double horizon = options.timeHorizonObst, reach = horizon * speed + agent.radius;
+  const int edges = static_cast<int>(obstacles.edges.size());
+  std::vector<HalfPlane>& planes = all.planes;
+  all.edges.clear();
+  all.neighbors.clear();  // the discs
+  obstacles.near(box_around(agent.position, reach), [&](int k) {
+    if (k >= edges) {
+      const StandingDisc& disc = obstacles.discs[k - edges];
+      const double gap = norm(disc.centre - agent.position) - disc.radius;
+      if (gap < reach && shown(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
+      return;
+    }
+    const Edge& edge = obstacles.edges[k];
+    if (!edge.faces(agent.position) || (edge.object >= 0 && !shown(world, object, edge.object))) return;
+    const Vec2 nearest = nearest_on_segment(edge.left.point, edge.right.point, agent.position);
+    const double distance2 = squared(nearest - agent.position);
+    if (distance2 < reach * reach) all.edges.push_back({distance2, k});
+  });
+  const auto covered = [&](Vec2 a, Vec2 b, double radius) {
+    return std::any_of(planes.begin(), planes.end(),
+                       [&](const HalfPlane& plane) { return covers(plane, agent, a, b, radius, horizon); });
+  };
+  std::sort(all.edges.begin(), all.edges.end());
+  for (const Nearest::Found& found : all.edges) {
+    const Edge& edge = obstacles.edges[found.index];
+    HalfPlane plane;
+    if (covered(edge.left.point, edge.right.point, agent.radius)) continue;
+    if (avoid_edge(agent, edge, horizon, plane)) planes.push_back(plane);
+  }
+  std::sort(all.neighbors.begin(), all.neighbors.end());
+  for (const Nearest::Found& found : all.neighbors) {
+    const StandingDisc& disc = obstacles.discs[found.index];
+    if (covered(disc.centre, disc.centre, agent.radius + disc.radius)) continue;
+    planes.push_back(avoid_disc(agent, disc.centre, disc.radius, horizon));
+  }
+}
+
+/// Half-planes of the nearest movers.
+void avoid_movers(const OrcaOptions& options, const World& world, int self, OrcaCrowd& all) {
+  const int object = world.moving[self], group = all.member_of[self];
+  const OrcaAgent& agent = all.movers[self];
+  const int most = std::min(options.maxNeighbors, static_cast<int>(all.movers.size()) - 1);
+  if (most <= 0) return;
+  if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
+  const auto seen = [&](int m) {
+    return m != self && (all.member_of[m] == group || shown(world, object, world.moving[m]));
+  };
+  const int count = all.nearest.find(agent.position, options.neighborDist, most, seen, all.neighbors.data());
+  for (int k = 0; k < count; ++k) {
+    const int m = all.neighbors[k].index;
+    // who follows orders, stands stopped or is not shown this one does not give way
+    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || shown(world, world.moving[m], object));
+    all.planes.push_back(
+        avoid_agent(agent, all.movers[m], mutual ? 0.5 : 1.0, options.timeHorizon, world.step_time, self < m));
+  }
+}
+
+}  // namespace
+
+void orca(const OrcaOptions& options, const Decision& decision, Intent* intents) {
+  const World& world = decision.world;
+  const State& state = decision.state;
+  const Scene& scene = state.scenes[decision.w()];
+  const Obstacles& obstacles = scene.fixed->obstacles;
+  OrcaCrowd& all = crowd(world, state, decision.work, decision.w());
+  for (int k = 0; k < decision.count; ++k) {
+    const int i = decision.objects[k], row = decision.row(k), self = scene.shapes->placed[i].object;
+    const OrcaAgent& agent = all.movers[self];
+    const double speed = top_speed(options, world, i);
+    all.planes.clear();
+    avoid_obstacles(options, world, obstacles, agent, i, speed, all);
+    const int hard = static_cast<int>(all.planes.size());
+    avoid_movers(options, world, self, all);
+    Vec2 velocity;
+    const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed,
+                                      preferred_velocity(world, state, row, i, speed), all.scratch, velocity);
+    Turning turning;
+    turning.guarantee_time = world.step_time;
+    turning.max_rate = world.vel_max[i][1];
+    intents[k] = Intent::of_velocity(velocity, turning);
+    intents[k].infeasible = !free;
+  }
+}
+
+}  // namespace irsim
