@@ -38,7 +38,7 @@ struct State {
   Array<std::uint8_t> given, arrived, collided, stopped;
   Array<double> radius;
   Array<std::int32_t> infeasible;  // steps of this episode without a velocity that avoids everything
-  Array<Goal> goal;  // head of the queue, x NaN without one
+  Array<Goal> goal;                // head of the queue, x NaN without one
   // (W * beams_per_world,)
   Array<double> ranges, beam_angles;
   Array<std::int32_t> hits;
