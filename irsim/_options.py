@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, create_model
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "problem", "shared_schema"]
+__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "open_options", "problem", "shared_schema"]
 
 
 @dataclass
@@ -98,6 +98,12 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
         **details: ``allowed``, ``fix``, ``replace`` (a better value) or ``tolerated`` of the diagnostic.
     """
     return PydanticCustomError(code, "{message}", {"message": message, **details})
+
+
+@cache
+def open_options(model: type[BaseModel]) -> type[BaseModel]:
+    """The same model with any other key, for code of users that takes the place of what is built in."""
+    return create_model(model.__name__, __base__=model, __module__=model.__module__, __cls_kwargs__={"extra": "allow"})
 
 
 @cache

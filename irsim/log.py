@@ -74,3 +74,9 @@ class Logger:
         self._once.add(key or message)
         write: Callable[[object], None] = self.debug if seen else self.warning
         write(message)
+
+    def error_once(self, message: str) -> None:
+        """Log at ERROR the first time this message is seen, at DEBUG after that."""
+        write: Callable[[object], None] = self.debug if message in self._once else self.error
+        self._once.add(message)
+        write(message)

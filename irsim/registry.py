@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -29,6 +29,10 @@ __all__ = [
     "Feature",
     "Registry",
 ]
+
+
+Pair = tuple[str, str]
+"""Kinematics and name."""
 
 
 @dataclass(frozen=True)
@@ -140,41 +144,73 @@ class Registry:
 
 
 class CustomBehaviors:
-    """Behaviors that user code registered the 2.12 way: one function or class per kinematics and name.
+    """Behaviors that user code registered the 2.12 way: functions and classes by kinematics and name.
+
+    A class (or any factory) is called once per object, or per group, and returns what is then called in every step.
+    Classes win over functions, and both over the built-in behavior of that name.
 
     Args:
         kind: Singular word for messages: ``behavior``.
-        built_in: The registry whose names are taken.
+        functions_taken: Pairs of kinematics and name that IR-SIM has as functions of its own.
+        classes_taken: Those that it has as classes.
     """
 
-    def __init__(self, kind: str, built_in: Registry) -> None:
-        self.kind, self.built_in = kind, built_in
-        self._functions: dict[tuple[str, str], Any] = {}
+    def __init__(self, kind: str, functions_taken: Iterable[Pair] = (), classes_taken: Iterable[Pair] = ()) -> None:
+        self.kind = kind
+        self.functions: dict[Pair, Callable[..., Any]] = {}
+        self.classes: dict[Pair, Callable[..., Any]] = {}
+        self._taken = frozenset(functions_taken), frozenset(classes_taken)
 
-    def register(self, kinematics: str, name: str, function: Any) -> None:
+    def register(self, kinematics: str, name: str, function: Callable[..., Any]) -> None:
         """Make ``function`` the behavior ``name`` of objects with these kinematics.
 
         Raises:
             ValueError: There is one of that name, built-in or registered before.
         """
-        key = (kinematics, name)
-        if self._functions.get(key, function) is not function:
-            raise ValueError(f"{self.kind} {name!r} is already registered for {kinematics!r}")
-        if name in self.built_in.names():
-            raise ValueError(f"{name!r} is a built-in {self.built_in.kind}; register yours under another name")
-        self._functions[key] = function
+        self._add(self.functions, self._taken[0], (kinematics, name), function)
 
-    def find(self, kinematics: str | None, name: str) -> Any | None:
-        """What is registered for this kinematics and name, or None."""
-        return self._functions.get((kinematics or "static", name))
+    def register_class(self, kinematics: str, name: str, maker: Callable[..., Any]) -> None:
+        """The same for a class or another factory.
+
+        Raises:
+            ValueError: There is one of that name.
+        """
+        self._add(self.classes, self._taken[1], (kinematics, name), maker)
+
+    def _add(self, table: dict[Pair, Callable[..., Any]], taken: frozenset[Pair], key: Pair, value: Any) -> None:
+        if table.get(key, value) is not value:
+            raise ValueError(f"{self.kind} {key[1]!r} is already registered for {key[0]!r}")
+        if key in taken:
+            raise ValueError(f"{key[1]!r} is a built-in {self.kind} of {key[0]!r}; register yours under another name")
+        table[key] = value
+
+    def function(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
+        """The function registered by user code, or None."""
+        key = (kinematics or "static", name)
+        found = self.functions.get(key)
+        if found is None or key in self._taken[1] or getattr(found, "__module__", "").startswith("irsim.lib."):
+            return None
+        return found
+
+    def maker(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
+        """The class or factory registered by user code, or None."""
+        found = self.classes.get((kinematics or "static", name))
+        return None if getattr(found, "__module__", "").startswith("irsim.lib.") else found
+
+    def has(self, kinematics: str | None, name: str) -> bool:
+        """Whether user code has registered anything for this kinematics and name."""
+        return self.maker(kinematics, name) is not None or self.function(kinematics, name) is not None
+
+    def _pairs(self) -> set[Pair]:
+        return {pair for pair in {*self.functions, *self.classes} if self.has(*pair)}
 
     def names(self, kinematics: str | None = None) -> list[str]:
         """Names registered for these kinematics, sorted; for any kinematics without an argument."""
-        return sorted({name for drive, name in self._functions if kinematics in (None, drive)})
+        return sorted({name for drive, name in self._pairs() if kinematics in (None, drive)})
 
     def drives(self, name: str) -> list[str]:
         """Kinematics that have a behavior of that name, sorted."""
-        return sorted(drive for drive, known in self._functions if known == name)
+        return sorted(drive for drive, known in self._pairs() if known == name)
 
 
 BEHAVIORS = Registry("behavior", "irsim.behaviors", "irsim.behaviors")
@@ -185,8 +221,17 @@ PLANNERS = Registry("planner", "irsim.planners", "irsim.planners")
 SENSORS = Registry("sensor", "irsim.sensors", "irsim.sensors")
 SHAPES = Registry("shape", "irsim.shapes", "irsim.shapes")
 
-CUSTOM_BEHAVIORS = CustomBehaviors("behavior", BEHAVIORS)
-CUSTOM_GROUP_BEHAVIORS = CustomBehaviors("group behavior", BEHAVIORS)
+CUSTOM_BEHAVIORS = CustomBehaviors(
+    "behavior",
+    functions_taken=[
+        *((drive, name) for drive in ("diff", "omni") for name in ("dash", "rvo", "sfm")),
+        ("omni_angular", "dash"),
+        ("acker", "dash"),
+    ],
+)
+CUSTOM_GROUP_BEHAVIORS = CustomBehaviors(
+    "group behavior", classes_taken=[(drive, name) for drive in ("diff", "omni") for name in ("orca", "sfm")]
+)
 
 REGISTRIES = {
     registry.kind: registry for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)

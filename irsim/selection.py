@@ -10,7 +10,7 @@ from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
 
-from irsim._options import SCHEMA_PARTS, problem, shared_schema
+from irsim._options import SCHEMA_PARTS, open_options, problem, shared_schema
 from irsim.diagnostics import nearest
 from irsim.registry import CustomBehaviors, Registry
 
@@ -57,7 +57,7 @@ class Select:
         default: Name of a mapping without one; None if the name is required.
         folded: Names are compared in lower case.
         alias: Another key that may hold the name.
-        custom: Names registered by user code; their mappings become ``fallback``.
+        custom: Names registered by user code; their mappings become ``fallback``, or take any key where it is built in.
         fallback: Model of custom and unknown names, which are accepted where it is given.
         exclude: Names of the registry that are not accepted here.
         null: null is accepted and stays None.
@@ -107,9 +107,9 @@ class Select:
         name = self.name_of(value)
         if not isinstance(name, str) or name in self.exclude:
             return None
-        if self.custom is not None and name in self.custom.names():
-            return self.fallback
         feature = self.registry.get(name)
+        if feature is not None and self.custom is not None and name in self.custom.names():
+            return open_options(feature.options)
         return feature.options if feature is not None else self.fallback
 
     def validate(self, value: Any) -> BaseModel | None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from irsim import _core as core
 from irsim.diagnostics import Diagnostic
 from irsim.errors import PlacementError
+from irsim.log import Logger
 from irsim.world.build import build_world
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class Simulation:
         names: Name of every object that ever was in it, by id.
         passable: Ids of those that are ``unobstructed``.
         decisions: Python behaviors, called in every step; empty in worlds that have none.
+        scene_drawn: Called with the indices of worlds that have begun their next scene.
+        report: Told once about what goes wrong in code of users and does not end the run.
 
     Raises:
         PlacementError: A random object found no room.
@@ -61,6 +64,8 @@ class Simulation:
         self.threads = threads
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
+        self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
+        self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
         self.passable: set[int] = set()
         world = build_world(scenario, self.copies)
@@ -139,8 +144,12 @@ class Simulation:
         Raises:
             PlacementError: A random object found no room in the next scene.
         """
-        self.state.reset(self._all if mask is None else np.asarray(mask, dtype=np.uint8), next_scene)
+        chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
+        self.state.reset(chosen, next_scene)
         self._check_placement()
+        if next_scene:
+            for told in self.scene_drawn:
+                told(np.flatnonzero(chosen).tolist())
 
     def reseed(self, seeds: Sequence[int] | NDArray[np.uint64], mask: NDArray[np.bool_] | None = None) -> None:
         """New seeds; the next reset of these worlds begins again at their first scene."""

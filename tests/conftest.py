@@ -12,7 +12,9 @@ from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
 @pytest.fixture(autouse=True)
 def registered_features() -> Iterator[None]:
     """Forget what a test has registered: the schema of the next one must not know it."""
-    tables = (CUSTOM_BEHAVIORS._functions, CUSTOM_GROUP_BEHAVIORS._functions)
+    tables = [
+        table for known in (CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS) for table in (known.functions, known.classes)
+    ]
     before = [dict(table) for table in tables]
     yield
     for table, known in zip(tables, before, strict=True):

@@ -11,6 +11,7 @@ import numpy as np
 
 from irsim.actions import assign_actions
 from irsim.diagnostics import Diagnostic, format_path
+from irsim.env_custom import EnvCustom
 from irsim.env_drawing import EnvDrawing
 from irsim.errors import NotSimulatedError
 from irsim.log import LEVELS, Logger
@@ -61,7 +62,7 @@ def make(
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvDrawing):
+class Env(EnvDrawing, EnvCustom):
     """One world, stepped from Python.
 
     Args:
@@ -110,6 +111,7 @@ class Env(EnvDrawing):
         self.ani_kwargs = dict(ani_kwargs or {})
         self.full = full
         self._simulation = Simulation(self.scenario, [self.seed], history=True)
+        self._simulation.report = self.logger.error_once
         attach_python_behaviors(self._simulation)
         self._objects = views(self._simulation)
         self._world = WorldView(self._simulation)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
-from irsim.registry import BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
+from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -62,7 +62,8 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
         if not isinstance(options, BehaviorOptions) or not options.in_group:
             continue
         feature = BEHAVIORS.get(options.name)
-        if feature is not None and feature.kernel is not None:
+        own = CUSTOM_GROUP_BEHAVIORS.has(getattr(leader.kinematics, "name", None), options.name)
+        if feature is not None and feature.kernel is not None and not own:
             found[group] = options
     return found
 

@@ -18,7 +18,10 @@ LAYERS = (
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",
-    "actions batch body env env_access env_drawing info observers parameters python_behaviors render scans views",
+    (
+        "actions batch body env env_access env_custom env_drawing hooks info observers parameters python_behaviors "
+        "python_drives render scans views"
+    ),
     "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
     "cli __main__",
     "irsim_mcp",

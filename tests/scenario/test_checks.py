@@ -210,7 +210,7 @@ def test_behaviors_of_user_code(monkeypatch: pytest.MonkeyPatch) -> None:
     assert getattr(lenient.objects[0].behavior, "width", None) == 2
 
     functions: dict[tuple[str, str], Any] = {("omni", "zigzag"): print}
-    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "_functions", functions)
+    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "functions", functions)
     assert findings(data) == [("error", "behavior-for-other-drive", path)]
     (item,) = read(data, strict=True).diagnostics
     assert "omni" in item.message
@@ -221,7 +221,7 @@ def test_behaviors_of_user_code(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_custom_behaviors_keep_their_names_apart() -> None:
-    table = registry.CustomBehaviors("behavior", registry.BEHAVIORS)
+    table = registry.CustomBehaviors("behavior", functions_taken=[("diff", "dash")])
     table.register("diff", "zigzag", print)
     table.register("diff", "zigzag", print)
     table.register("omni", "zigzag", len)
@@ -229,8 +229,8 @@ def test_custom_behaviors_keep_their_names_apart() -> None:
         table.register("diff", "zigzag", len)
     with pytest.raises(ValueError, match="built-in"):
         table.register("diff", "dash", len)
-    assert table.find("diff", "zigzag") is print
-    assert table.find("acker", "zigzag") is None
+    assert table.function("diff", "zigzag") is print
+    assert table.function("acker", "zigzag") is None
     assert table.names() == table.names("diff") == ["zigzag"]
     assert table.drives("zigzag") == ["diff", "omni"]
 

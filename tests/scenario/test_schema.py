@@ -129,7 +129,7 @@ def test_names_registered_by_user_code_are_part_of_it(monkeypatch: pytest.Monkey
 
     data = {"robot": {"kinematics": {"name": "diff"}, "behavior": {"name": "zigzag", "width": 2}}}
     assert not validator().is_valid(data)
-    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "_functions", {("diff", "zigzag"): print})
+    monkeypatch.setattr(registry.CUSTOM_BEHAVIORS, "functions", {("diff", "zigzag"): print})
     assert jsonschema.Draft202012Validator(json_schema()).is_valid(data)
     assert "zigzag" not in schema_text()
 

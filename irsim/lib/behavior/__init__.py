@@ -1,5 +1,15 @@
 """Names that IR-SIM scripts import from ``irsim.lib.behavior``; plain re-exports."""
 
-from irsim.lib.behavior.behavior_registry import register_behavior
+from irsim.lib.behavior.behavior_registry import (
+    register_behavior,
+    register_behavior_class,
+    register_group_behavior,
+    register_group_behavior_class,
+)
 
-__all__ = ["register_behavior"]
+__all__ = [
+    "register_behavior",
+    "register_behavior_class",
+    "register_group_behavior",
+    "register_group_behavior_class",
+]

@@ -54,7 +54,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehaviors) -> Iterator[Finding]:
     options: Any = getattr(record, key)
     drive = getattr(record.kinematics, "name", "static")
-    if table.find(drive, options.name) is not None or record.kinematics is None:
+    if table.has(drive, options.name) or record.kinematics is None:
         return
     known = sorted({*_built_in(key), *table.names(drive)})
     elsewhere = table.drives(options.name)

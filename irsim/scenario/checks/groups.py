@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit
-from irsim.registry import BEHAVIORS
+from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
@@ -33,6 +33,8 @@ def _not_for_groups(context: Context, members: list[ObjectRecord]) -> Iterator[F
     for record in members:
         options: Any = record.group_behavior
         if options is None or isinstance(options, CustomOptions) or options.in_group or record.path in seen:
+            continue
+        if CUSTOM_GROUP_BEHAVIORS.has(getattr(record.kinematics, "name", None), options.name):
             continue
         seen.add(record.path)
         path = context.entry_path(record, "group_behavior")

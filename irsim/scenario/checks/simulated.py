@@ -7,7 +7,15 @@ from typing import Any
 
 from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Path
-from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Registry
+from irsim.registry import (
+    BEHAVIORS,
+    CUSTOM_BEHAVIORS,
+    CUSTOM_GROUP_BEHAVIORS,
+    KINEMATICS,
+    SENSORS,
+    SHAPES,
+    Registry,
+)
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error
 
@@ -39,13 +47,10 @@ def _uses(context: Context) -> Iterator[tuple[Path, str]]:
             options: Any = getattr(record, key)
             if options is not None and not _computed(registry, options.name):
                 yield (*context.entry_path(record, key), "name"), f"the {registry.kind} '{options.name}'"
-        for key in ("behavior", "group_behavior"):
+        for key, own in (("behavior", CUSTOM_BEHAVIORS), ("group_behavior", CUSTOM_GROUP_BEHAVIORS)):
             options = getattr(record, key)
-            if options is None or record.kinematics is None:
-                continue
-            if isinstance(options, CustomOptions):
-                if key == "group_behavior" and CUSTOM_GROUP_BEHAVIORS.find(record.kinematics.name, options.name):  # type: ignore[attr-defined]
-                    yield (*context.entry_path(record, key), "name"), "group behaviors of user code"
+            drive = getattr(record.kinematics, "name", None)
+            if options is None or drive is None or isinstance(options, CustomOptions) or own.has(drive, options.name):
                 continue
             if not _computed(BEHAVIORS, options.name):
                 yield (*context.entry_path(record, key), "name"), f"the behavior '{options.name}'"
