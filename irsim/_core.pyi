@@ -63,6 +63,22 @@ class Lidar2dOptions(_Options):
         has_velocity: bool,
     ) -> None: ...
 
+class FmcwLidar2dOptions(_Options):
+    def __init__(
+        self,
+        *,
+        range_min: float,
+        range_max: float,
+        angle_range: float,
+        number: int,
+        noise: bool,
+        std: float,
+        angle_std: float,
+        offset: Sequence[float],
+        motion_compensate: bool,
+        velocity_noise_std: float,
+    ) -> None: ...
+
 # shapes (core/shapes/): body frame
 class Circle:
     def __init__(self, *, radius: float, center: Sequence[float]) -> None: ...
@@ -121,7 +137,7 @@ class ObjectSpec:
         target_roles: 0 all, 1 robots, 2 obstacles.
         behavior: Options of a native behavior, or None.
         grouped: The behavior is that of the group: it decides for all members at once.
-        sensors: Options of the native sensors, in order.
+        sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
     """
 
     def __init__(
@@ -151,7 +167,7 @@ class ObjectSpec:
         target_roles: int,
         behavior: _Options | None,
         grouped: bool,
-        sensors: Sequence[_Options],
+        sensors: Sequence[_Options | None],
     ) -> None: ...
 
 class RandomPlacement:
@@ -170,6 +186,30 @@ class RandomPlacement:
         attempts: int,
     ) -> None: ...
 
+class FogView:
+    """A robot without lidar that clears the fog in its field of view: a sector of `angle` [rad] and `reach` [m]."""
+
+    def __init__(self, *, object: int, angle: float, reach: float, occlusion: bool) -> None: ...
+
+class Fog:
+    """Cells over the world, explored or not; (columns, rows) of them over `size` from the lower left corner `origin`.
+
+    Args:
+        carriers: Objects whose first native sensor clears it along its beams.
+        views: Objects that clear it where they look.
+    """
+
+    def __init__(
+        self,
+        *,
+        origin: Sequence[float],
+        size: Sequence[float],
+        columns: int,
+        rows: int,
+        carriers: Sequence[int],
+        views: Sequence[FogView],
+    ) -> None: ...
+
 class World:
     """What never changes during an episode: shapes, drives, limits, options; `copies` worlds of one template."""
 
@@ -181,6 +221,7 @@ class World:
         objects: Sequence[ObjectSpec],
         placements: Sequence[RandomPlacement],
         copies: int,
+        fog: Fog | None = None,
     ) -> None: ...
     # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles
     copies: int
@@ -193,6 +234,9 @@ class World:
         Beams of world w follow at w * beams_per_world.
         """
     beams_per_world: int
+    def velocity_slices(self) -> list[tuple[int, int]]:
+        """(first, rows) of each native sensor: its velocities are rows x beams numbers from `first` of its world's."""
+    velocities_per_world: int
 
 class State:
     """What changes: poses, controls, goals, flags, scans, counters, random keys.
@@ -219,6 +263,8 @@ class State:
     hits: NDArray[np.int32]  # same length: object (its row within the world) hit by each beam, -1 none
     valid: Flags  # same length: 1 where the beam hit something and its (noisy) range lies in [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
+    velocities: Floats  # (W * velocities_per_world,) measured velocities [m/s], see World.velocity_slices
+    explored: Flags  # (W, columns, rows) 1 where no fog is left; no rows without fog
     count: NDArray[np.int64]  # (W,) executed steps of the episode
     scene: NDArray[np.uint32]  # (W,)
     noise: NDArray[np.uint32]  # (W,)
@@ -254,6 +300,15 @@ class State:
         """World-frame velocity that the present control gives at the present pose."""
     def moved(self, row: int) -> None:
         """The row's pose was written from outside: forget geometry cached for it (flags and scans wait for a step)."""
+    def in_view(self, row: int, angle: float, reach: float, occlusion: bool) -> list[int]:
+        """Ids, ascending, of the other objects of which some part lies in the view of a row, at the present poses.
+
+        Args:
+            row: Who looks.
+            angle: Opening about the heading [rad]; 2 pi or more: all round.
+            reach: From the origin of the object [m].
+            occlusion: Parts hidden behind what is not `unobstructed` do not count.
+        """
     def vertices(self, row: int, part: int, world_frame: bool) -> Floats:
         """(M, 2) vertices of a polygon or linestring part; (0, 2) for a circle."""
     def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:
@@ -305,6 +360,9 @@ def integrate(world: World, state: State) -> None:
 def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
+def scan(world: World, state: State, index: int, sensor: int, pose: Sequence[float]) -> None:
+    """Let a native sensor of world `index`, numbered as in `World.scans`, take its scan from a carrier at `pose`."""
+
 def finish(world: World, state: State) -> None:
     """Count the step, append the history, clear `given`.
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from irsim.python_behaviors import attach_python_behaviors
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
+from irsim.sensing import attach_python_sensors
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed
 
@@ -38,6 +39,7 @@ class Batch:
         goal: (n, N, 3) present goals; NaN where there is none (or no goal heading).
         arrived, collided, stopped: (n, N) uint8 flags.
         ranges: (n, B) ranges of all lidars of a world, one after another [m].
+        explored: (n, nx, ny) uint8, cells of the fog map that robots have seen; no cells without ``fog_map``.
         count: (n,) executed steps of each episode.
         seeds: The seeds.
         names: Names of the N objects.
@@ -49,6 +51,7 @@ class Batch:
         self.seeds = [check_seed(seed) for seed in seeds]
         self._simulation = Simulation(scenario, self.seeds, threads=threads)
         attach_python_behaviors(self._simulation)
+        attach_python_sensors(self._simulation)
         simulation, n, objects = self._simulation, len(self.seeds), self._simulation.objects
         self.n = n
         self.names = tuple(record.name for record in scenario.objects)
@@ -62,6 +65,7 @@ class Batch:
         self.collided = simulation.collided.reshape(n, objects)
         self.stopped = simulation.stopped.reshape(n, objects)
         self.ranges = simulation.ranges.reshape(n, simulation.world.beams_per_world)
+        self.explored = simulation.state.explored
         self.count = simulation.count
         self._command = simulation.command.reshape(n, objects, 3)
         self._given = simulation.given.reshape(n, objects)

@@ -122,7 +122,7 @@ class EnvAccess:
         return [view.get_obstacle_info() for view in self.obstacle_list]
 
     def get_lidar_scan(self, id: int = 0) -> dict[str, Any]:
-        """Scan of the first lidar of a robot; see :meth:`irsim.scans.Lidar.get_scan`.
+        """Scan of the first lidar of a robot; see :meth:`irsim.scans.Lidar2D.get_scan`.
 
         Raises:
             IndexError: No such robot.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.world.build import COLLISION_MODES
+from irsim.world.fog import DEFAULT_RESOLUTION, FogMap
 
 if TYPE_CHECKING:
     from irsim.log import Logger
@@ -86,6 +87,10 @@ class WorldView:
         self.sample_time: float = world.sample_time if world.sample_time is not None else world.step_time
         self.steps_per_sample = max(1, int(round(self.sample_time / self.step_time, 9)))
         self.plot_parse = world.plot
+        self._fog: FogMap | None = None
+        if world.fog_map:
+            resolution = world.fog_map_resolution or DEFAULT_RESOLUTION
+            self._fog = FogMap(world.width, world.height, resolution, self.offset)
 
     @property
     def x_range(self) -> list[float]:
@@ -111,6 +116,13 @@ class WorldView:
     def sampling(self) -> bool:
         """Whether this step is one that is drawn."""
         return self.count % self.steps_per_sample == 0
+
+    @property
+    def fog_map(self) -> FogMap | None:
+        """Cells that robots have seen; None without ``world.fog_map``."""
+        if self._fog is not None:
+            self._fog.cells = self._simulation.state.explored[0]
+        return self._fog
 
     @property
     def grid_map(self) -> NDArray[np.float64] | None:

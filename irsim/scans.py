@@ -8,30 +8,36 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim import _core as core
+from irsim.body import column
+
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["Lidar"]
+__all__ = ["FMCWLidar2D", "Lidar2D"]
 
 Floats = NDArray[np.float64]
 _MISS_MARGIN = 0.02
 """Beams whose range is within this of ``range_max`` [m] leave no point in the cloud."""
 
 
-class Lidar:
+class Lidar2D:
     """A 2-D lidar of one object.
 
     Args:
         parent: The object that carries it.
         options: Validated options of the sensor.
-        index: Number of the sensor among those of one world.
+        index: Number of the sensor among the native ones of one world.
 
     Attributes:
         number: Beams; beam 0 is the rightmost (clockwise) one.
         angle_list: (number,) nominal angles in the sensor frame [rad].
+        angle_min, angle_max, angle_inc: First and last of them, and their distance [rad].
         range_min, range_max: Limits of the ranges [m].
-        offset: (x, y, theta) of the sensor in the body frame.
+        offset: (3, 1) x, y [m], heading [rad] of the sensor in the body frame.
+        alpha, color: How the beams are drawn; may be changed.
+        colors: {beam: (colour, alpha)} of beams drawn differently, see :meth:`set_laser_color`.
     """
 
     def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
@@ -44,9 +50,10 @@ class Lidar:
         self.angle_range = float(options.angle_range)
         self.scan_time = float(options.scan_time)
         self.noise, self.std, self.angle_std = options.noise, options.std, options.angle_std
-        self.has_velocity = bool(options.has_velocity)
-        self.offset = [float(v) for v in options.offset]
+        self.offset = column(options.offset)
+        self.alpha, self.color = options.drawn_alpha, options.drawn_color
         self.attach(simulation, index)
+        self.has_velocity = bool(options.has_velocity) and len(self._velocities) == 2
         self.angle_list: Floats = simulation.state.beam_angles[self._beams].copy()
         self.angle_min, self.angle_max = float(self.angle_list[0]), float(self.angle_list[-1])
         self.angle_inc = self.angle_range / (self.number - 1) if self.number > 1 else 0.0
@@ -66,13 +73,16 @@ class Lidar:
 
     def attach(self, simulation: Simulation, index: int) -> None:
         """Read the ``index``-th sensor of this simulation from now on."""
-        self._simulation = simulation
+        self._simulation, self._index = simulation, index
         _, first, self.number = simulation.world.scans()[index]
         first += self.parent.world * simulation.world.beams_per_world
         self._beams = slice(first, first + self.number)
         self._ranges = simulation.ranges[self._beams]
         self._hits = simulation.hits[self._beams]
         self._valid = simulation.valid[self._beams]
+        first, rows = simulation.world.velocity_slices()[index]
+        first += self.parent.world * simulation.world.velocities_per_world
+        self._velocities = simulation.state.velocities[first : first + rows * self.number].reshape(rows, self.number)
 
     @property
     def range_data(self) -> Floats:
@@ -91,24 +101,27 @@ class Lidar:
 
     @property
     def velocity(self) -> Floats:
-        """(2, number) world velocity of what each beam hit [m/s]; zeros without ``has_velocity`` or hit."""
-        result = np.zeros((2, self.number))
-        if self.has_velocity:
-            first = self.parent.world * self._simulation.objects
-            for hit in np.unique(self._hits[self._hits >= 0]):
-                result[:, self._hits == hit] = np.array(self._simulation.state.velocity_world(first + int(hit)))[
-                    :, None
-                ]
-        return result
+        """(2, number) world velocity of what each beam hit [m/s]; zeros without ``has_velocity`` or hit. A copy."""
+        return self._velocities.copy() if self.has_velocity else np.zeros((2, self.number))
 
     @property
     def lidar_origin(self) -> Floats:
         """(3, 1) pose of the sensor in the world frame."""
         x, y, theta = self._simulation.pose[self.parent.row]
-        dx, dy, turn = self.offset
+        dx, dy, turn = self.offset[:, 0]
         heading = (theta + turn + math.pi) % (2 * math.pi) - math.pi
         c, s = math.cos(theta), math.sin(theta)
         return np.array([[x + c * dx - s * dy], [y + s * dx + c * dy], [heading]])
+
+    def step(self, state: Any = None) -> None:
+        """Take the scan anew.
+
+        Args:
+            state: x, y [m] and heading [rad] of the carrier, in any shape; by default where it stands.
+        """
+        pose = self._simulation.pose[self.parent.row] if state is None else np.asarray(state, dtype=np.float64)
+        x, y, theta = (float(v) for v in pose.reshape(-1)[:3])
+        core.scan(self._simulation.world, self._simulation.state, self.parent.world, self._index, (x, y, theta))
 
     def get_scan(self) -> dict[str, Any]:
         """The scan as a dictionary; arrays are copies of your own.
@@ -136,15 +149,48 @@ class Lidar:
 
     def get_offset(self) -> list[float]:
         """[x, y, theta] of the sensor in the body frame."""
-        return list(self.offset)
+        return [float(v) for v in self.offset[:, 0]]
 
-    def set_laser_color(self, laser_indices: Any, laser_color: str = "blue", alpha: float = 0.3) -> None:
+    def set_laser_color(self, laser_indices: Any, laser_color: str | None = None, alpha: float = 0.3) -> None:
         """Draw some beams in another colour from the next frame on.
 
         Args:
             laser_indices: Beam numbers.
-            laser_color: Any Matplotlib colour.
+            laser_color: Any Matplotlib colour; by default that of picked-out beams.
             alpha: Opacity, 0 to 1.
         """
         for index in np.atleast_1d(np.asarray(laser_indices, dtype=int)):
-            self.colors[int(index)] = (laser_color, alpha)
+            self.colors[int(index)] = (laser_color or _HIGHLIGHT, alpha)
+
+
+_HIGHLIGHT = "#56B4E9"
+
+
+class FMCWLidar2D(Lidar2D):
+    """A lidar that measures how fast each hit recedes, too.
+
+    Attributes:
+        motion_compensate: The carrier's own motion is left out of the radial velocities.
+        velocity_noise_std: Standard deviation of their noise [m/s].
+    """
+
+    def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
+        super().__init__(simulation, parent, options, index)
+        self.motion_compensate = bool(options.motion_compensate)
+        self.velocity_noise_std = float(options.velocity_noise_std)
+        for key, value in options.drawing().items():
+            setattr(self, key, value)  # velocity_color, velocity_color_max, … as in the scenario
+
+    @property
+    def radial_velocity(self) -> Floats:
+        """(number,) radial velocity of each valid hit [m/s], positive when it recedes; 0 for other beams. A copy."""
+        velocity: Floats = self._velocities[0].copy()
+        return velocity
+
+    def get_scan(self) -> dict[str, Any]:
+        """The scan of a lidar, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
+        scan: dict[str, Any] = dict(self._fixed)
+        scan["ranges"] = self._ranges.copy()
+        scan["radial_velocity"] = self._velocities[0].copy()
+        scan["valid"] = self._valid.astype(bool)
+        return scan

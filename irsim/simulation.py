@@ -17,10 +17,13 @@ from irsim.world.build import build_world
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["PythonDecision", "Simulation"]
+__all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
 
 PythonDecision = Callable[["Simulation"], None]
 """Fills ``command`` of the rows that are its own; called between the native decisions and the motion."""
+
+PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
+"""Reads the sensors that are its own, in the worlds of the mask (None: all); called after the native sensors."""
 
 
 class Simulation:
@@ -45,6 +48,7 @@ class Simulation:
         names: Name of every object that ever was in it, by id.
         passable: Ids of those that are ``unobstructed``.
         decisions: Python behaviors, called in every step; empty in worlds that have none.
+        measurements: Python sensors, called after every step, reset and refresh; empty in worlds that have none.
         scene_drawn: Called with the indices of worlds that have begun their next scene.
         report: Told once about what goes wrong in code of users and does not end the run.
 
@@ -64,6 +68,7 @@ class Simulation:
         self.threads = threads
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
+        self.measurements: list[PythonMeasurement] = []
         self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
         self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
@@ -93,6 +98,7 @@ class Simulation:
         """Advance every world by one period."""
         if not self.decisions:
             core.advance(self.world, self.state, 1, threads=self.threads)
+            self.measure()
             return
         world, state = self.world, self.state
         core.decide(world, state)
@@ -104,10 +110,27 @@ class Simulation:
         core.collide(world, state)
         core.arrive(world, state)
         core.sense(world, state)
+        self.measure()
 
     def step_external(self) -> None:
         """Count a period in which the caller moved the objects: collisions, arrivals and sensors are evaluated."""
         core.advance(self.world, self.state, 1, threads=self.threads, external=True)
+        self.measure()
+
+    def measure(self, mask: NDArray[np.bool_] | None = None) -> None:
+        """Let Python sensors measure, in the worlds of the mask."""
+        for measure in self.measurements:
+            measure(self, mask)
+
+    def refresh(self) -> None:
+        """Evaluate collisions and sensors anew after objects were moved; time does not advance."""
+        self.state.refresh()
+        self.measure()
+
+    @property
+    def in_python(self) -> bool:
+        """Whether Python code takes part in every step."""
+        return bool(self.decisions or self.measurements)
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Advance by up to ``steps`` periods without coming back to Python in between where no Python takes part.
@@ -119,7 +142,7 @@ class Simulation:
         Returns:
             Periods executed by the world that went on longest.
         """
-        if not self.decisions:
+        if not self.in_python:
             return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
         for done in range(steps):
             if until_done and self.copies == 1 and self.state.done(0):
@@ -150,6 +173,7 @@ class Simulation:
         if next_scene:
             for told in self.scene_drawn:
                 told(np.flatnonzero(chosen).tolist())
+        self.measure(mask)
 
     def reseed(self, seeds: Sequence[int] | NDArray[np.uint64], mask: NDArray[np.bool_] | None = None) -> None:
         """New seeds; the next reset of these worlds begins again at their first scene."""

@@ -35,7 +35,9 @@ def check_seed(seed: object) -> int:
     return value
 
 
-def generator(seed: int, scene: int, noise: int, stream: str, object_id: int = 0) -> np.random.Generator:
+def generator(
+    seed: int, scene: int, noise: int, stream: str, object_id: int = 0, *, index: int = 0, first: int = 0
+) -> np.random.Generator:
     """A NumPy generator on one stream, for code that lives outside the core.
 
     Args:
@@ -44,11 +46,13 @@ def generator(seed: int, scene: int, noise: int, stream: str, object_id: int = 0
         noise: Counter of ``reset()`` since then.
         stream: Name in ``irsim._core.STREAMS``.
         object_id: Whose draws.
+        index: Which of several streams of that name: the place of a sensor among those of its object.
+        first: Number of the first block of draws.
     """
     import numpy as np
 
     key = [seed, scene << 32 | noise]
-    counter = [0, object_id, core.STREAMS[stream], 0]
+    counter = [first, object_id, core.STREAMS[stream] + 16 * index, 0]
     return np.random.Generator(
         np.random.Philox(key=np.array(key, dtype=np.uint64), counter=np.array(counter, dtype=np.uint64))
     )

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from irsim.body import ObjectBody, column
 from irsim.info import ObjectInfo, ObstacleInfo
-from irsim.scans import Lidar
+from irsim.scans import Lidar2D
+from irsim.sensing import sensors_of
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
@@ -45,7 +46,7 @@ class ObjectView(ObjectBody):
         self.color, self.description = record.color, record.description
         self.static, self.unobstructed = record.static, record.unobstructed
         self.goal_threshold, self.arrive_mode = record.goal_threshold, record.arrive_mode
-        self.fov, self.fov_radius = record.fov, record.fov_radius
+        self.fov, self.fov_radius, self.fov_occlusion = record.fov, record.fov_radius, record.fov_occlusion
         self.wander, self.loop = record.wander, record.loop
         self.state_dim, self.vel_dim = record.state_dim, record.vel_dim
         self.state_shape, self.vel_shape = (record.state_dim, 1), (record.vel_dim, 1)
@@ -54,8 +55,8 @@ class ObjectView(ObjectBody):
         self.goal_text: str | None = None
         self._plain = record.state_dim == 3
         self.attach(simulation, index, world)
-        self.sensors: list[Lidar] = _sensors(simulation, self)
-        self.lidar: Lidar | None = self.sensors[0] if self.sensors else None
+        self.sensors: list[Any] = sensors_of(simulation, self)
+        self.lidar: Lidar2D | None = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
 
     def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
         """Look at another place from now on: rows move when objects come and go."""
@@ -293,7 +294,7 @@ class ObjectView(ObjectBody):
         return ObstacleInfo.of(self)
 
     def get_lidar_scan(self) -> dict[str, Any]:
-        """Scan of the first lidar; see :meth:`irsim.scans.Lidar.get_scan`."""
+        """Scan of the first lidar; see :meth:`irsim.scans.Lidar2D.get_scan`."""
         return self._first_lidar().get_scan()
 
     def get_lidar_points(self) -> Floats | None:
@@ -308,6 +309,21 @@ class ObjectView(ObjectBody):
         """Draw some beams of the first lidar in another colour."""
         self._first_lidar().set_laser_color(laser_indices, laser_color, alpha)
 
+    def get_fov_detected_objects(self) -> list[ObjectView]:
+        """The other objects of which some part lies in the field of view, in id order; empty without one.
+
+        The field of view is the sector of ``fov`` [rad] about the heading, ``fov_radius`` [m] from the object's origin.
+        With ``fov_occlusion`` parts hidden behind what is not ``unobstructed`` do not count.
+        """
+        if self.fov is None or self.fov_radius is None:
+            return []
+        seen = self._simulation.state.in_view(self.row, self.fov, self.fov_radius, self.fov_occlusion)
+        return [self.environment_objects[i] for i in seen]
+
+    def fov_detect_object(self, detected_object: ObjectView) -> bool:
+        """Whether some part of another object lies in the field of view."""
+        return any(other.id == detected_object.id for other in self.get_fov_detected_objects())
+
     def set_text(self, text: str | None) -> None:
         """Label to draw instead of ``abbr``; None restores it."""
         self.text = text
@@ -321,7 +337,7 @@ class ObjectView(ObjectBody):
         return f"<{self.role} {self.name!r} at ({x:.3f}, {y:.3f}, {theta:.3f})>"
 
     # -----------------------------------------------------------------------------------------------------------------
-    def _first_lidar(self) -> Lidar:
+    def _first_lidar(self) -> Lidar2D:
         if self.lidar is None:
             raise AttributeError(f"{self.name!r} has no lidar: add one under `sensors` in its scenario entry")
         return self.lidar
@@ -333,11 +349,6 @@ def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
     if world not in cache:
         cache[world] = [ObjectView(simulation, i, world) for i in range(simulation.objects)]
     return cache[world]
-
-
-def _sensors(simulation: Simulation, view: ObjectView) -> list[Lidar]:
-    mine = [index for index, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.index]
-    return [Lidar(simulation, view, options, index) for index, options in zip(mine, view.record.sensors, strict=True)]
 
 
 def _goal_list(goal: Any) -> list[list[float]]:

@@ -1,6 +1,7 @@
 #include "bind_state.hpp"
 
 #include "phases.hpp"
+#include "view.hpp"
 
 namespace irsim {
 namespace {
@@ -166,6 +167,10 @@ BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
   hits = view<std::int32_t>(state.hits.memory, {beams});
   valid = view<std::uint8_t>(state.valid.memory, {beams});
   beam_angles = view<double>(state.beam_angles.memory, {beams});
+  velocities = view<double>(state.velocities.memory, {state.velocities.size});
+  const bool foggy = world->fog.has_value();
+  const std::size_t columns = foggy ? world->fog->columns : 0, fog_rows = foggy ? world->fog->rows : 0;
+  explored = view<std::uint8_t>(state.explored.memory, {worlds, columns, fog_rows});
   count = view<std::int64_t>(state.count.memory, {worlds});
   scene = view<std::uint32_t>(state.scene_index.memory, {worlds});
   noise = view<std::uint32_t>(state.noise.memory, {worlds});
@@ -213,6 +218,8 @@ void bind_state(nb::module_& m) {
       .def_ro("hits", &S::hits)
       .def_ro("valid", &S::valid)
       .def_ro("beam_angles", &S::beam_angles)
+      .def_ro("velocities", &S::velocities)
+      .def_ro("explored", &S::explored)
       .def_ro("count", &S::count)
       .def_ro("scene", &S::scene)
       .def_ro("noise", &S::noise)
@@ -268,6 +275,15 @@ void bind_state(nb::module_& m) {
             moved(*self.world, self.state, row);
           },
           nb::arg("row"))
+      .def(
+          "in_view",
+          [](S& self, int row, double angle, double reach, bool occlusion) {
+            self.check_row(row);
+            const int n = self.world->objects;
+            return in_view(*self.world, self.state, row / n, row % n, {angle, reach, occlusion},
+                           self.state.workspaces.front());
+          },
+          nb::arg("row"), nb::arg("angle"), nb::arg("reach"), nb::arg("occlusion"))
       .def("vertices", &vertices, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("circle", &circle, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("parts", &parts, nb::arg("row"))

@@ -1,6 +1,9 @@
 // advance, rollout and the phases of a step.
 #include "batch.hpp"
 #include "bind_state.hpp"
+#include "features.hpp"
+#include "phases.hpp"
+#include "sensing.hpp"
 
 namespace irsim {
 namespace {
@@ -123,6 +126,18 @@ void bind_steps(nb::module_& m) {
   phase("collide", [](W world, State& s, int w, Workspace&) { collide(world, s, w); });
   phase("arrive", [](W world, State& s, int w, Workspace&) { arrive(world, s, w); });
   phase("sense", [](W world, State& s, int w, Workspace& work) { sense(world, s, w, work); });
+  m.def(
+      "scan",
+      [](World& world, BoundState& bound, int w, int sensor, std::array<double, 3> pose) {
+        State& state = bound.of(world);
+        bound.check_world(w);
+        if (sensor < 0 || sensor >= static_cast<int>(world.scans.size())) throw nb::index_error("no such sensor");
+        Workspace& work = state.workspaces.front();
+        place_moving(world, state, w);
+        note_velocities(world, state, w, work);
+        scan(world, state, w, world.scans[sensor], {pose[0], pose[1], pose[2]}, unit(pose[2]), work);
+      },
+      nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("sensor"), nb::arg("pose"));
   m.def(
       "follow",
       [](World& world, BoundState& bound, int row, std::pair<double, double> velocity) {

@@ -5,7 +5,6 @@
 #include "phases.hpp"
 
 namespace irsim {
-namespace {
 
 void place_moving(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
@@ -20,6 +19,8 @@ void place_moving(const World& world, State& state, int w) {
     scene.moving.place(*scene.shapes, i, pose, state.direction[row]);
   }
 }
+
+namespace {
 
 void find_pairs(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];

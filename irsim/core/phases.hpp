@@ -14,6 +14,8 @@ void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);
 void sense(const World& world, State& state, int w, Workspace& work);
 
+/// The geometry of the moving objects at their present poses.
+void place_moving(const World& world, State& state, int w);
 /// One period. `external`: the caller has moved the objects.
 void step(const World& world, State& state, int w, Workspace& work, bool external);
 /// Whether every robot of world w is stopped or has arrived; a world without robots never is done.

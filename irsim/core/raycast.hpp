@@ -32,6 +32,8 @@ class Fan {
 
   int hit(int i) const { return buffers_.hit[i]; }
   double range(int i) const { return buffers_.range[i]; }
+  /// World-frame unit direction of beam i.
+  Vec2 beam(int i) const { return {buffers_.dx[i], buffers_.dy[i]}; }
 
  private:
   struct Edge;

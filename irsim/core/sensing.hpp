@@ -1,7 +1,8 @@
 // What sensors read and write; each header in sensors/ defines, for one options struct,
 //
-//   void                 NAME(options, sensing)  one scan into sensing.ranges and sensing.hits
+//   void                 NAME(options, sensing)  one scan into sensing.ranges, hits, valid (and velocities)
 //   std::vector<double>  beams(options)          nominal beam angles, sensor frame
+//   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, else none
 #pragma once
 
 #include "state.hpp"
@@ -15,14 +16,28 @@ struct Sensing {
   const State& state;
   int w;
   const Mount& mount;
-  double* ranges;       // (mount.count,) [m]
-  std::int32_t* hits;   // (mount.count,) object id or -1
-  std::uint8_t* valid;  // (mount.count,) 1: a hit within [range_min, range_max]
-  double* angles;       // (mount.count,) nominal angle [rad], sensor frame
+  Pose pose;                      // of the carrier, world frame
+  Vec2 direction;                 // cosine and sine of its heading
+  double* ranges;                 // (mount.count,) [m]
+  std::int32_t* hits;             // (mount.count,) object id or -1
+  std::uint8_t* valid;            // (mount.count,) 1: a hit within [range_min, range_max]
+  double* velocities;             // (velocity_rows, mount.count) [m/s]
+  const Vec2* object_velocities;  // (N,) world frame [m/s]; null when no sensor of the world has velocity rows
   BeamBuffers& buffers;
 
-  int row() const { return w * world.objects + mount.object; }
   Draws draws() const { return Draws(state.key(w), sensor_stream(mount.index), world.number[mount.object]); }
+  std::uint64_t scan_number() const { return static_cast<std::uint64_t>(state.count[w]); }
 };
+
+template <class Options>
+int velocity_rows(const Options&) {
+  return 0;
+}
+
+/// One scan of one sensor of world w, its carrier at `pose`.
+void scan(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
+          Workspace& work);
+/// World-frame velocities of all objects of world w into `work.velocities`, where a sensor of the world needs them.
+void note_velocities(const World& world, const State& state, int w, Workspace& work);
 
 }  // namespace irsim

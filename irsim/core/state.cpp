@@ -78,6 +78,8 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_)
       beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
       hits(static_cast<std::size_t>(worlds) * world.beams_per_world, -1),
       valid(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      velocities(static_cast<std::size_t>(worlds) * world.velocities_per_world),
+      explored(world.fog ? static_cast<std::size_t>(worlds) * world.fog->cells() : 0),
       count(worlds),
       scene_index(worlds),
       noise(worlds),
@@ -110,6 +112,7 @@ void restart(const World& world, State& state, int w) {
   state.count[w] = 0;
   scene.events.clear();
   scene.pairs.clear();
+  if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
   for (int i = 0; i < world.objects; ++i) {
     const int row = w * world.objects + i;
     const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;

@@ -42,7 +42,9 @@ struct State {
   // (W * beams_per_world,)
   Array<double> ranges, beam_angles;
   Array<std::int32_t> hits;
-  Array<std::uint8_t> valid;  // the beam hit something within the band of ranges
+  Array<std::uint8_t> valid;     // the beam hit something within the band of ranges
+  Array<double> velocities;      // (W * velocities_per_world,) measured [m/s]
+  Array<std::uint8_t> explored;  // (W * cells of the fog,)
   // (W,)
   Array<std::int64_t> count;
   Array<std::uint32_t> scene_index, noise;

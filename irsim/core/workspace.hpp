@@ -30,7 +30,9 @@ struct Workspace {
 
   std::vector<int> objects;
   std::vector<Intent> intents;
-  BeamBuffers beams;
+  BeamBuffers beams, blockers;
+  std::vector<Vec2> velocities;  // of the objects of a world
+  std::vector<double> extra;     // a row of State::extra
   Neighbors neighbors;
   std::vector<int> walls;  // those near
   OrcaCrowd orca;

@@ -2,12 +2,15 @@
 
 #include <stdexcept>
 
+#include "beams.hpp"
 #include "collision/touch.hpp"
 #include "features.hpp"
 #include "spec.hpp"
 
 namespace irsim {
 namespace {
+
+constexpr double kMostFogBeams = 20000.0;
 
 constexpr double kDiscCell = 2.0;  // of the grid of static circles [m]
 
@@ -60,16 +63,44 @@ void find_members(World& world) {
   }
 }
 
+Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
+
+void set_beams(Mount& mount, std::vector<double> angles) {
+  mount.count = static_cast<int>(angles.size());
+  mount.angle = std::move(angles);
+  for (const double angle : mount.angle) {
+    mount.cosine.push_back(std::cos(angle));
+    mount.sine.push_back(std::sin(angle));
+  }
+}
+
+/// Beams so dense that none misses a cell of the fog within reach.
+void add_fog_beams(World& world) {
+  const Fog& fog = *world.fog;
+  if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
+  const double cell = std::min(fog.cell().x, fog.cell().y);
+  for (const FogView& view : fog.views) {
+    if (view.object < 0 || view.object >= world.objects) throw std::invalid_argument("fog is seen by nobody");
+    Mount mount = mount_of(view.object, 0);
+    if (view.occlusion) {
+      const double wanted = std::ceil(2.0 * view.angle * view.reach / cell);
+      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMostFogBeams))));
+    }
+    world.fog_beams.push_back(std::move(mount));
+  }
+}
+
 void add_scans(World& world, int object, const ObjectSpec& spec) {
   for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
-    Mount mount{object, static_cast<int>(k), world.beams_per_world, 0, {}, {}, {}};
-    with(spec.sensors[k], [&](const auto& options) { mount.angle = beams(options); });
-    for (const double angle : mount.angle) {
-      mount.cosine.push_back(std::cos(angle));
-      mount.sine.push_back(std::sin(angle));
-    }
-    mount.count = static_cast<int>(mount.angle.size());
+    if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // not the core's
+    Mount mount = mount_of(object, static_cast<int>(k));
+    mount.first = world.beams_per_world, mount.first_velocity = world.velocities_per_world;
+    with(spec.sensors[k], [&](const auto& options) {
+      set_beams(mount, beams(options));
+      mount.velocity_rows = velocity_rows(options), mount.offset = options.offset;
+    });
     world.beams_per_world += mount.count;
+    world.velocities_per_world += mount.count * mount.velocity_rows;
     world.scans.push_back({spec.sensors[k], mount});
   }
 }
@@ -84,14 +115,15 @@ void check(const ObjectSpec& spec) {
 }  // namespace
 
 World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> specs_,
-             std::vector<RandomPlacement> placements_, int copies_)
+             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_)
     : step_time(step_time_),
       collision_mode(collision_mode_),
       copies(copies_),
       objects(static_cast<int>(specs_.size())),
       extra_rows(1),
       specs(std::move(specs_)),
-      placements(std::move(placements_)) {
+      placements(std::move(placements_)),
+      fog(std::move(fog_)) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
@@ -131,6 +163,7 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     add_scans(*this, i, s);
   }
   find_members(*this);
+  if (fog) add_fog_beams(*this);
   if (random_shapes) return;
   shapes = make_shapes(*this, {});
   if (random_statics) return;

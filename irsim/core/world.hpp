@@ -1,10 +1,13 @@
 // What never changes during an episode. N objects per world, the same template for every copy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "fog.hpp"
 #include "kinematics.gen.hpp"
 #include "scene.hpp"
 #include "vec.hpp"
@@ -24,6 +27,8 @@ struct Mount {
   int object;
   int index;  // among the sensors of the object
   int first, count;
+  int first_velocity, velocity_rows;  // its slice of the velocities of a world: rows of `count` numbers
+  std::array<double, 3> offset;       // pose in the body frame [m, m, rad]
   std::vector<double> angle, cosine, sine;
 };
 
@@ -31,7 +36,7 @@ enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2 };
 
 struct World {
   World(double step_time, int collision_mode, std::vector<ObjectSpec> specs, std::vector<RandomPlacement> placements,
-        int copies);
+        int copies, std::optional<Fog> fog);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -56,7 +61,9 @@ struct World {
   std::vector<int> moving, fixed_objects, robots, visible;  // visible: not unobstructed
   std::vector<BehaviorGroup> behaviors;
   std::vector<Scan> scans;
-  int beams_per_world = 0;
+  int beams_per_world = 0, velocities_per_world = 0;
+  std::optional<Fog> fog;
+  std::vector<Mount> fog_beams;  // of each of its views; empty ones without occlusion
   std::vector<RandomPlacement> placements;
 
   std::shared_ptr<const Shapes> shapes;  // null when some are drawn per scene

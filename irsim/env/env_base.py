@@ -22,6 +22,7 @@ from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
 from irsim.python_behaviors import attach_python_behaviors
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
+from irsim.sensing import attach_python_sensors
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed, generator
 from irsim.views import views
@@ -113,6 +114,7 @@ class Env(EnvDrawing, EnvCustom):
         self._simulation = Simulation(self.scenario, [self.seed], history=True)
         self._simulation.report = self.logger.error_once
         attach_python_behaviors(self._simulation)
+        attach_python_sensors(self._simulation)
         self._objects = views(self._simulation)
         self._world = WorldView(self._simulation)
         self.world_param = WorldParam(self._simulation, self.step_mode)
@@ -238,7 +240,7 @@ class Env(EnvDrawing, EnvCustom):
 
     def refresh(self) -> None:
         """Evaluate collisions and sensors anew after objects were moved; time does not advance."""
-        self._simulation.state.refresh()
+        self._simulation.refresh()
 
     def end(self, ending_time: float = 3.0, **kwargs: Any) -> None:
         """Write the animation if there is one, close the figure and finish.

@@ -48,7 +48,7 @@ def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> R
     control: NDArray[np.float64]
     arrived: NDArray[np.uint8]
     collided: NDArray[np.uint8]
-    if simulation.decisions:
+    if simulation.in_python:
         rows = []
         for _ in range(steps):
             if until_done and simulation.state.done(0):

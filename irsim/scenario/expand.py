@@ -169,6 +169,7 @@ class _Maker:
             description=_picture(value["description"], role, kinematics),
             fov=fov,
             fov_radius=fov_radius,
+            fov_occlusion=entry.fov_occlusion,
             wheelbase=_wheelbase(kinematics, shape),
             mass=(1.0 if kinematics else math.inf) if mass is None else mass,
             friction=self.world.friction if value["friction"] is None else value["friction"],

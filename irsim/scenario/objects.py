@@ -59,6 +59,7 @@ class ObjectRecord:
     description: str | None
     fov: float | None  # effective: from the lidar when not given
     fov_radius: float | None
+    fov_occlusion: bool
     wheelbase: float | None  # effective: kinematics first, then shape
     mass: float
     friction: float

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim._options import Options
 from irsim.colors import Color
 from irsim.registry import SENSORS
@@ -85,4 +86,4 @@ class FmcwLidar2d(VelocityColors, Lidar2d):
         return chosen
 
 
-SENSORS.register(FmcwLidar2d)
+SENSORS.register(FmcwLidar2d, kernel=core.FmcwLidar2dOptions)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
+from irsim.world.fog import build_fog
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -139,4 +140,5 @@ def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
             for placement in scenario.placements
         ],
         copies=copies,
+        fog=build_fog(scenario),
     )

@@ -21,6 +21,7 @@ OPTIONS = [
     core.AckerOptions,
     core.DashOptions,
     core.Lidar2dOptions,
+    core.FmcwLidar2dOptions,
 ]
 
 

@@ -55,6 +55,22 @@ def lidar(number: int = 60, **overrides: Any) -> core.Lidar2dOptions:
     return core.Lidar2dOptions(**{**options, **overrides})
 
 
+def fmcw(number: int = 60, **overrides: Any) -> core.FmcwLidar2dOptions:
+    options: dict[str, Any] = {
+        "range_min": 0.0,
+        "range_max": 10.0,
+        "angle_range": 2 * PI,
+        "number": number,
+        "noise": False,
+        "std": 0.2,
+        "angle_std": 0.0,
+        "offset": [0.0, 0.0, 0.0],
+        "motion_compensate": False,
+        "velocity_noise_std": 0.0,
+    }
+    return core.FmcwLidar2dOptions(**{**options, **overrides})
+
+
 def robot(**overrides: Any) -> core.ObjectSpec:
     options: dict[str, Any] = {
         "number": -1,
@@ -97,10 +113,11 @@ def scene(
     step_time: float = 0.1,
     placements: Sequence[core.RandomPlacement] = (),
     history: bool = False,
+    fog: core.Fog | None = None,
 ) -> tuple[core.World, core.State]:
     """World and state of these objects; one copy per seed."""
     world = core.World(
-        step_time=step_time, collision_mode=mode, objects=objects, placements=placements, copies=len(seeds)
+        step_time=step_time, collision_mode=mode, objects=objects, placements=placements, copies=len(seeds), fog=fog
     )
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 
@@ -114,10 +131,21 @@ def command(state: core.State, *controls: Sequence[float]) -> None:
 
 def everything(state: core.State) -> dict[str, np.ndarray]:
     """Copies of all arrays of a state."""
-    names = (
-        "pose extra control twist command given arrived collided stopped radius goal ranges hits count scene noise seed"
+    moving = (
+        "pose",
+        "extra",
+        "control",
+        "twist",
+        "command",
+        "given",
+        "arrived",
+        "collided",
+        "stopped",
+        "radius",
+        "goal",
     )
-    return {name: getattr(state, name).copy() for name in names.split()}
+    sensing = ("ranges", "hits", "velocities", "explored")
+    return {name: getattr(state, name).copy() for name in (*moving, *sensing, "count", "scene", "noise", "seed")}
 
 
 def rows_of(values: dict[str, np.ndarray], world: int, worlds: int) -> dict[str, np.ndarray]:

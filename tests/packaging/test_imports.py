@@ -20,7 +20,7 @@ LAYERS = (
     "world simulation",
     (
         "actions batch body env env_access env_custom env_drawing hooks info observers parameters python_behaviors "
-        "python_drives render scans views"
+        "python_drives render scans sensing views"
     ),
     "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
     "cli __main__",

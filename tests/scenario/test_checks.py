@@ -160,7 +160,6 @@ def test_finds(data: dict[str, Any], severity: str, code: str, path: tuple[str |
 LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
     ({"world": {"obstacle_map": "cave.png"}}, ("world", "obstacle_map")),
     ({"world": {"obstacle_map": {"name": "perlin", "resolution": 0.1}}}, ("world", "obstacle_map")),
-    ({"world": {"fog_map": True}}, ("world", "fog_map")),
     ({"world": {"collision_mode": "contact"}}, ("world", "collision_mode")),
     ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
     ({"world": {"boundary": "walls"}}, ("world", "boundary")),
@@ -168,8 +167,6 @@ LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
     (robot(behavior={"name": "sfm"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
     (robot(group_behavior={"name": "sfm"}), ("robot", 0, "group_behavior", "name")),
-    (robot(sensors=[{"name": "fmcw_lidar2d", "velocity_linewidth": 2}]), ("robot", 0, "sensors", 0)),
-    (robot(fov=1.0, fov_radius=2, fov_occlusion=True), ("robot", 0, "fov_occlusion")),
 ]
 
 

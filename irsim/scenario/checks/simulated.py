@@ -25,8 +25,6 @@ def check(context: Context) -> Iterator[Finding]:
     world = context.scenario.world
     if world.obstacle_map is not None:
         yield _not_yet(("world", "obstacle_map"), "grid maps")
-    if world.fog_map:
-        yield _not_yet(("world", "fog_map"), "fog")
     if world.collision_mode == "contact":
         yield _not_yet(("world", "collision_mode"), "pushing and sliding contacts")
     if world.control_mode == "keyboard":
@@ -60,9 +58,6 @@ def _uses(context: Context) -> Iterator[tuple[Path, str]]:
                 yield (*context.entry_path(record, "sensors"), index), f"the sensor '{name}'"
         if record.shape.name == "compound":  # type: ignore[attr-defined]
             yield from _posed_random_parts(context.entry_path(record, "shape"), record.shape)
-    for path, entry, _ in context.entries():
-        if entry.fov_occlusion:
-            yield (*path, "fov_occlusion"), "occlusion in the field of view"
 
 
 def _posed_random_parts(path: Path, shape: Any) -> Iterator[tuple[Path, str]]:

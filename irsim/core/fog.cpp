@@ -1,0 +1,104 @@
+#include "fog.hpp"
+
+#include "beams.hpp"
+#include "features.hpp"
+
+namespace irsim {
+namespace {
+
+struct Cells {
+  std::uint8_t* explored;
+  const Fog& fog;
+  Vec2 origin, cell;
+
+  void mark(Vec2 p) const {
+    const double i = std::floor((p.x - origin.x) / cell.x), j = std::floor((p.y - origin.y) / cell.y);
+    if (i >= 0.0 && j >= 0.0 && i < fog.columns && j < fog.rows) {
+      explored[static_cast<std::size_t>(i) * fog.rows + static_cast<std::size_t>(j)] = 1;
+    }
+  }
+
+  /// Distances along a beam between which it is over the fog.
+  std::pair<double, double> over(Vec2 from, Vec2 beam) const {
+    double low = 0.0, high = kInfinity;
+    const auto clip_axis = [&](double at, double rate, double size) {
+      if (rate == 0.0) {
+        if (at < 0.0 || at > size) high = -1.0;
+        return;
+      }
+      const double a = -at / rate, b = (size - at) / rate;
+      low = std::max(low, std::min(a, b)), high = std::min(high, std::max(a, b));
+    };
+    clip_axis(from.x - origin.x, beam.x, fog.size[0]);
+    clip_axis(from.y - origin.y, beam.y, fog.size[1]);
+    return {low, high};
+  }
+
+  /// The cells under samples half a cell apart, and under the end.
+  void along(Vec2 from, Vec2 beam, double range) const {
+    const double step = 0.5 * std::min(cell.x, cell.y);
+    const auto [low, high] = over(from, beam);
+    const double last = std::min(range, high + step);
+    for (double k = std::max(0.0, std::floor(low / step)); k * step < last; k += 1.0) mark(from + beam * (k * step));
+    mark(from + beam * range);
+  }
+
+  /// The cells whose centre is within reach and within half an opening angle of the heading.
+  void sector(const Pose& pose, double angle, double reach) const {
+    const auto index = [](double at, double size, int count) { return clip(std::floor(at / size), 0.0, count - 1.0); };
+    const Vec2 at = pose.position() - origin;
+    const int i0 = static_cast<int>(index(at.x - reach, cell.x, fog.columns));
+    const int i1 = static_cast<int>(index(at.x + reach, cell.x, fog.columns));
+    const int j0 = static_cast<int>(index(at.y - reach, cell.y, fog.rows));
+    const int j1 = static_cast<int>(index(at.y + reach, cell.y, fog.rows));
+    for (int i = i0; i <= i1; ++i) {
+      for (int j = j0; j <= j1; ++j) {
+        const Vec2 d = Vec2{(i + 0.5) * cell.x, (j + 0.5) * cell.y} - at;
+        if (!(norm(d) <= reach)) continue;
+        if (angle < kTurn && !(std::fabs(wrap(std::atan2(d.y, d.x) - pose.theta)) <= 0.5 * angle)) continue;
+        explored[static_cast<std::size_t>(i) * fog.rows + static_cast<std::size_t>(j)] = 1;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+void lift_fog(const World& world, State& state, int w, Workspace& work) {
+  const Fog& fog = *world.fog;
+  const Cells cells{
+      state.explored.data + static_cast<std::size_t>(w) * fog.cells(), fog, {fog.origin[0], fog.origin[1]}, fog.cell()};
+  for (const int object : fog.carriers) {
+    const auto sensor = std::find_if(world.scans.begin(), world.scans.end(),
+                                     [&](const Scan& scan) { return scan.mount.object == object; });
+    if (sensor == world.scans.end()) continue;
+    const Mount& mount = sensor->mount;
+    const int row = w * world.objects + object;
+    const Pose& pose = state.pose[row];
+    const Vec2 body = state.heading(row);
+    const Vec2 from = pose.position() + rotate({mount.offset[0], mount.offset[1]}, body);
+    const Vec2 heading = unit(pose.theta + mount.offset[2]);
+    const double* ranges = state.ranges.data + static_cast<std::size_t>(w) * world.beams_per_world + mount.first;
+    for (int i = 0; i < mount.count; ++i) {
+      cells.along(from, rotate({mount.cosine[i], mount.sine[i]}, heading), ranges[i]);
+    }
+  }
+  for (std::size_t k = 0; k < fog.views.size(); ++k) {
+    const FogView& view = fog.views[k];
+    const int row = w * world.objects + view.object;
+    const Pose& pose = state.pose[row];
+    if (!view.occlusion) {
+      cells.sector(pose, view.angle, view.reach);
+      continue;
+    }
+    const Mount& mount = world.fog_beams[k];
+    Fan fan(work.beams, pose.position(), state.heading(row), mount, view.reach);
+    aim_all(fan, mount, state.heading(row));
+    cast_at_visible(fan, world, state, w, view.object);
+    for (int i = 0; i < mount.count; ++i) {
+      cells.along(pose.position(), fan.beam(i), fan.hit(i) < 0 ? view.reach : fan.range(i));
+    }
+  }
+}
+
+}  // namespace irsim

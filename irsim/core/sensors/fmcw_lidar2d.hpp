@@ -1,0 +1,61 @@
+// Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit (reference: section 7).
+#pragma once
+
+#include "beams.hpp"
+#include "fields.hpp"
+
+namespace irsim {
+
+struct FmcwLidar2dOptions {
+  double range_min, range_max;   // [m]
+  double angle_range;            // [rad]
+  int number;                    // of beams
+  bool noise;                    // of ranges and directions
+  double std;                    // of the range of a hit [m]
+  double angle_std;              // of the direction of a beam [rad]
+  std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
+  bool motion_compensate;        // leave the carrier's own motion out
+  double velocity_noise_std;     // of the radial velocity, whatever `noise` says [m/s]
+  static constexpr auto fields() {
+    using F = FmcwLidar2dOptions;
+    return std::make_tuple(field("range_min", &F::range_min), field("range_max", &F::range_max),
+                           field("angle_range", &F::angle_range), field("number", &F::number),
+                           field("noise", &F::noise), field("std", &F::std), field("angle_std", &F::angle_std),
+                           field("offset", &F::offset), field("motion_compensate", &F::motion_compensate),
+                           field("velocity_noise_std", &F::velocity_noise_std));
+  }
+};
+
+inline std::vector<double> beams(const FmcwLidar2dOptions& options) {
+  return spread_beams(options.angle_range, options.number);
+}
+
+inline int velocity_rows(const FmcwLidar2dOptions&) { return 1; }
+
+/// A hit whose (noisy) range is outside the band is no measurement: its velocity is 0.
+inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
+  const int n = s.mount.count;
+  // of a scan: n range errors, n direction errors, n velocity errors
+  const std::uint64_t first_draw = 3 * s.scan_number() * static_cast<std::uint64_t>(n);
+  const Fan fan = cast_beams(options, s, first_draw + n);
+  const bool noisy = options.noise && options.std > 0.0, shaky = options.velocity_noise_std > 0.0;
+  NormalDraws range_error(s.draws()), velocity_error(s.draws());
+  const Vec2 own = options.motion_compensate ? Vec2{} : s.object_velocities[s.mount.object];
+  for (int i = 0; i < n; ++i) {
+    const int hit = fan.hit(i);
+    double range = hit < 0 ? options.range_max : fan.range(i);
+    if (hit >= 0 && noisy) range += options.std * range_error(first_draw + i);
+    const bool valid = hit >= 0 && range >= options.range_min && range <= options.range_max;
+    s.ranges[i] = clip(range, options.range_min, options.range_max);
+    s.hits[i] = hit;
+    s.valid[i] = valid;
+    double receding = 0.0;
+    if (valid) {
+      receding = dot(s.object_velocities[hit] - own, fan.beam(i));
+      if (shaky) receding += options.velocity_noise_std * velocity_error(first_draw + 2 * n + i);
+    }
+    s.velocities[i] = receding;
+  }
+}
+
+}  // namespace irsim

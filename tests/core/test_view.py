@@ -1,0 +1,168 @@
+"""Fields of view, against sectors and lines of sight of shapely."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core.worlds import PI, circle, line, obstacle, polygon, rectangle, robot, scene
+
+SHAPES = [
+    [circle(0.5)],
+    [circle(0.3, (0.2, -0.4))],
+    [rectangle(1, 2)],
+    [rectangle(9, 7)],
+    [polygon((0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3))],
+    [polygon((0, 0), (0, 1), (1, 1))],
+    [line((-2, 0), (0, 1), (2, 0), (1, -1))],
+    [rectangle(2, 0.5), circle(0.6, (1, 0.4))],
+]
+ARC = 2000
+
+
+def shape_of(state: core.State, row: int) -> shapely.Geometry:
+    parts = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, True)
+            parts.append(shapely.Point(x, y).buffer(radius, quad_segs=ARC // 4))
+        elif kind == "polygon":
+            parts.append(shapely.Polygon(state.vertices(row, part, True)))
+        else:
+            parts.append(shapely.LineString(state.vertices(row, part, True)))
+    return shapely.union_all(parts)
+
+
+def sector_of(pose, angle: float, reach: float) -> shapely.Geometry:
+    x, y, theta = pose
+    if angle >= 2 * PI:
+        return shapely.Point(x, y).buffer(reach, quad_segs=ARC // 4)
+    bearings = theta + np.linspace(-angle / 2, angle / 2, ARC)
+    rim = np.stack([x + reach * np.cos(bearings), y + reach * np.sin(bearings)], axis=1)
+    return shapely.Polygon([(x, y), *rim])
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data())
+def test_seen_is_what_meets_the_sector(data: st.DataObject) -> None:
+    rng = np.random.default_rng(data.draw(st.integers(0, 100_000)))
+    angle = data.draw(st.sampled_from([0.05, 0.6, PI / 2, PI - 0.1, PI, PI + 0.2, 5.0, 6.2, 2 * PI]))
+    reach = data.draw(st.sampled_from([0.4, 2.0, 6.0]))
+    count = data.draw(st.integers(1, 10))
+    objects = [
+        obstacle(
+            pose=rng.uniform([-5, -5, -PI], [5, 5, PI]).tolist(),
+            parts=SHAPES[rng.integers(len(SHAPES))],
+            static=bool(k % 2),
+            unobstructed=bool(k % 3),
+        )
+        for k in range(count)
+    ]
+    own = rng.uniform([-1, -1, -PI], [1, 1, PI]).tolist()
+    _, state = scene(robot(pose=own), *objects, mode=1)
+    seen = state.in_view(0, angle, reach, False)
+    sector = sector_of(own, angle, reach)
+    for row in range(1, count + 1):
+        body = shape_of(state, row)
+        if body.intersects(sector.buffer(-1e-3)) or body.buffer(-1e-3).intersects(sector):
+            assert row in seen
+        elif body.distance(sector) > 1e-3:
+            assert row not in seen
+    assert 0 not in seen
+    assert seen == sorted(seen)
+
+
+def view(*objects: core.ObjectSpec, angle: float = PI / 2, reach: float = 5.0, hidden: bool = False) -> list[int]:
+    return scene(robot(), *objects, mode=1)[1].in_view(0, angle, reach, hidden)
+
+
+def test_a_large_object_straight_ahead_is_seen() -> None:
+    assert view(obstacle(pose=[3, 0, 0], parts=[circle(2.5)]), angle=0.2) == [1]
+    assert view(obstacle(pose=[3, 0, 0], parts=[rectangle(0.1, 8)]), angle=0.2) == [1]
+    assert view(obstacle(parts=[rectangle(8, 8)]), angle=0.2) == [1]  # the observer is inside
+
+
+def test_edges_count() -> None:
+    beside = obstacle(pose=[0, 2, 0], parts=[rectangle(2, 2)])  # its corner (1, 1) is at 45 degrees
+    assert view(beside, angle=PI / 2 + 1e-9) == [1]
+    assert view(beside, angle=PI / 2 - 1e-9) == []
+    assert view(obstacle(pose=[6, 0, 0], parts=[rectangle(2, 2)]), reach=5.0) == [1]
+    assert view(obstacle(pose=[6, 0, 0], parts=[rectangle(2, 2)]), reach=4.999) == []
+    assert view(obstacle(pose=[6, 0, 0], parts=[circle(1.0)]), reach=5.0) == [1]
+    assert view(obstacle(pose=[-1, 0, 0], parts=[circle(0.5)]), angle=0.0) == []
+    assert view(obstacle(pose=[2, 0, 0], parts=[circle(0.5)]), angle=0.0) == [1]
+    assert view(obstacle(pose=[2, 0, 0]), angle=math.nan) == []
+    assert view(obstacle(pose=[2, 0, 0]), reach=math.nan) == []
+
+
+def test_a_changed_pose_counts_at_once() -> None:
+    _, state = scene(robot(), robot(pose=[-3, 0, 0]), mode=1)
+    assert state.in_view(0, 1.0, 5.0, False) == []
+    state.pose[1, 0] = 3.0
+    assert state.in_view(0, 1.0, 5.0, False) == [1]
+
+
+def test_occlusion_by_a_wall() -> None:
+    behind = obstacle(pose=[4, 0, 0], parts=[circle(0.5)])
+    wall = obstacle(pose=[2, 0, 0], parts=[rectangle(0.2, 2)])
+    low = obstacle(pose=[2, -0.5, 0], parts=[rectangle(0.2, 0.8)])
+    assert view(behind, wall) == [1, 2]
+    assert view(behind, wall, hidden=True) == [2]
+    assert view(behind, low, hidden=True) == [1, 2]  # its upper half looks over
+    assert view(behind, obstacle(pose=[2, 0, 0], parts=[rectangle(0.2, 2)], unobstructed=True), hidden=True) == [1, 2]
+    two = [obstacle(pose=[2, y, 0], parts=[rectangle(0.2, 1.0)]) for y in (-0.55, 0.55)]  # a slit of 0.1 m
+    assert view(behind, *two, hidden=True) == [1, 2, 3]
+    assert view(obstacle(pose=[4, 0, 0], parts=[line((0, -1), (0, 1))]), hidden=True) == [1]
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.integers(0, 100_000), st.sampled_from([0.5, PI / 2, 4.0, 2 * PI]))
+def test_occlusion_agrees_with_many_lines_of_sight(seed: int, angle: float) -> None:
+    """Sampled lines of sight: what one of them sees is seen; what is seen is seen by one, slivers apart."""
+    rng = np.random.default_rng(seed)
+    count, reach = int(rng.integers(2, 9)), 6.0
+    objects = [
+        obstacle(
+            pose=rng.uniform([-5, -5, -PI], [5, 5, PI]).tolist(),
+            parts=SHAPES[rng.integers(len(SHAPES))],
+            static=bool(k % 2),
+            unobstructed=k % 4 == 3,
+        )
+        for k in range(count)
+    ]
+    own = rng.uniform([-1, -1, -PI], [1, 1, PI]).tolist()
+    _, state = scene(robot(pose=own), *objects, mode=1)
+    bodies = {row: shape_of(state, row) for row in range(1, count + 1)}
+    if any(body.boundary.distance(shapely.Point(own[:2])) < 0.05 for body in bodies.values()):
+        return
+    seen = set(state.in_view(0, angle, reach, True))
+    assert seen <= set(state.in_view(0, angle, reach, False))
+    sampled, half = set(), angle / 2 - 1e-6
+    eye = shapely.Point(own[:2])
+    for bearing in own[2] + np.linspace(-half, half, 1500):
+        end = (own[0] + reach * math.cos(bearing), own[1] + reach * math.sin(bearing))
+        ray = shapely.LineString([own[:2], end])
+        near = {}
+        for row, body in bodies.items():
+            hit = ray.intersection(body.boundary if body.geom_type != "LineString" else body)
+            near[row] = math.inf if hit.is_empty else eye.distance(hit)
+        first = min((d for row, d in near.items() if row % 4 != 0), default=math.inf)
+        sampled |= {row for row, d in near.items() if d < math.inf and d <= first + 1e-9}
+    inside = {row for row, body in bodies.items() if body.geom_type != "LineString" and body.contains(eye)}
+    assert sampled <= seen | inside
+    assert len(seen - sampled - inside) <= 1  # what is narrower than the lines are apart
+
+
+@pytest.mark.parametrize("hidden", [False, True])
+def test_worlds_of_a_batch_look_for_themselves(hidden: bool) -> None:
+    objects = [robot(), *(obstacle(pose=[2 + k, 0.1 * k, 0]) for k in range(4))]
+    _, state = scene(*objects, seeds=[1, 2], mode=1)
+    state.pose[5:, 0] += 100.0
+    state.refresh()
+    assert state.in_view(0, 1.0, 8.0, hidden) == state.in_view(5, 1.0, 8.0, hidden) != []
