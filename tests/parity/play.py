@@ -13,11 +13,13 @@ A scenario file says under `custom` how it is played:
     calls      [[step, object id or "env", method, arguments], ...]: called before the step of that number
     reset      true: env.reset() right after irsim.make(); with D12 among `differs` record.py does it anyway, because
                irsim.make() already evaluates what the reference evaluates in its reset()
+    look       what else is compared: sensors (all of each robot, not only the first), fov, fog
     differs    ids of intended differences that touch this scenario (README.md)
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -36,7 +38,7 @@ def column(values: Any, width: int, fill: float) -> np.ndarray:
     return row
 
 
-def look(env: Any) -> dict[str, Any]:
+def look(env: Any, more: Sequence[str] = ()) -> dict[str, Any]:
     """Everything compared, at this moment: one array per field, first axis objects (or beams)."""
     objects = list(env.objects)
     seen: dict[str, Any] = {
@@ -54,11 +56,29 @@ def look(env: Any) -> dict[str, Any]:
     }
     for index, robot in enumerate(env.robot_list):
         if robot.lidar is not None:
-            scan = env.get_lidar_scan(index)
-            seen[f"ranges_{index}"] = np.array(scan["ranges"], dtype=float)
-            seen[f"valid_{index}"] = np.array(scan["valid"], dtype=bool)
-            seen[f"hit_velocity_{index}"] = np.array(scan["velocity"], dtype=float)
+            seen.update(read_scan(env.get_lidar_scan(index), index))
+        if "sensors" in more:
+            for place, sensor in enumerate(robot.sensors):
+                seen.update(read_scan(sensor.get_scan(), 100 * index + place + 10))
+        if "fov" in more:
+            found = {o.id for o in robot.get_fov_detected_objects()}
+            seen[f"in_view_{index}"] = [o.id in found for o in objects]
+            seen[f"detected_{index}"] = [o is not robot and robot.fov_detect_object(o) for o in objects]
+    if "fog" in more:
+        seen["explored"] = np.array(env._world.fog_map.explored)
+        seen["explored_ratio"] = float(env._world.fog_map.explored_ratio)
     return {name: np.array(value) for name, value in seen.items()}
+
+
+def read_scan(scan: dict[str, Any], number: int) -> dict[str, Any]:
+    """The measurements of one sensor."""
+    seen = {f"ranges_{number}": np.array(scan["ranges"], dtype=float)}
+    seen[f"valid_{number}"] = np.array(scan["valid"], dtype=bool)
+    if "velocity" in scan:
+        seen[f"hit_velocity_{number}"] = np.array(scan["velocity"], dtype=float)
+    if "radial_velocity" in scan:
+        seen[f"radial_velocity_{number}"] = np.array(scan["radial_velocity"], dtype=float)
+    return seen
 
 
 def once(env: Any) -> dict[str, np.ndarray]:
@@ -120,14 +140,15 @@ def play(irsim: ModuleType, path: Path, custom: dict[str, Any], reset: bool) -> 
         env.reset()
     steps = custom["steps"]
     actions = {key: unroll(segments, steps) for key, segments in custom.get("actions", {}).items()}
-    rows = [look(env)]
+    more = custom.get("look", [])
+    rows = [look(env, more)]
     for k in range(steps):
         for when, target, method, arguments in custom.get("calls", []):
             if when == k:
                 owner = env if target == "env" else next(o for o in env.objects if o.id == target)
                 getattr(owner, method)(*arguments)
         step(env, {key: plan[k] for key, plan in actions.items()}, custom.get("style", "ids"))
-        rows.append(look(env))
+        rows.append(look(env, more))
     trace = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
     trace.update(once(env))
     env.end()
