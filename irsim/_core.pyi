@@ -5,7 +5,7 @@ are writable views of the core's own memory (no copy), float64 unless said other
 """
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import ClassVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -244,7 +244,16 @@ class State:
     Constructing draws scene 0 of every world and evaluates collisions, arrival and sensors (D12).
     """
 
+    @overload
     def __init__(self, world: World, seeds: NDArray[np.uint64], history: bool) -> None: ...
+    @overload
+    def __init__(self, world: World, before: State, origins: Sequence[tuple[State, int]]) -> None:
+        """Go on where `before` (of one world) is, with other objects.
+
+        Clock, keys and events are those of `before`; object i has the pose, initial values, goals, flags, history and
+        shape of its origin, a row of `before` or of another state. Flags are those of the last step; sensors look
+        again.
+        """
     pose: Floats  # (R, 3) x, y, theta
     extra: Floats  # (R, E) extra state rows, E >= 1
     control: Floats  # (R, 3) executed control without noise
@@ -309,6 +318,10 @@ class State:
             reach: From the origin of the object [m].
             occlusion: Parts hidden behind what is not `unobstructed` do not count.
         """
+    def reshape(self, row: int, parts: Sequence[Part], seed: int) -> None:
+        """Give the row another body until the next scene is drawn; `seed` is for random parts."""
+    def look(self) -> None:
+        """Take every scan anew from where objects are now; collisions and flags wait for a step or `refresh`."""
     def vertices(self, row: int, part: int, world_frame: bool) -> Floats:
         """(M, 2) vertices of a polygon or linestring part; (0, 2) for a circle."""
     def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import platform
 import sys
+from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,7 +64,8 @@ class EnvParam:
 
     def __init__(self, objects: list[ObjectView], logger: Logger) -> None:
         self.objects, self.logger = objects, logger
-        self.platform_name = sys.platform
+        self.platform_name = platform.system()
+        self.id_iter: Iterator[int] = count(len(objects))
 
 
 class PathParam:

@@ -42,11 +42,12 @@ class PythonBehaviors:
         native = group_behaviors(records)
         members: dict[int, list[int]] = {}
         for index, record in enumerate(records):
-            members.setdefault(record.group, []).append(index)
+            if record.joined:
+                members.setdefault(record.group, []).append(index)
         self.objects = [
             index
             for index, record in enumerate(records)
-            if record.group not in native and _is_own(record, record.behavior, CUSTOM_BEHAVIORS)
+            if not (record.joined and record.group in native) and _is_own(record, record.behavior, CUSTOM_BEHAVIORS)
         ]
         self.groups = [
             group

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["PythonSensor", "attach_python_sensors", "sensors_of"]
+__all__ = ["PythonSensor", "attach_python_sensors", "attach_sensors", "sensors_of"]
 
 _LIDARS = {"lidar2d": Lidar2D, "fmcw_lidar2d": FMCWLidar2D}
 
@@ -97,7 +98,7 @@ def _nothing() -> None:
 
 def sensors_of(simulation: Simulation, view: ObjectView) -> list[Any]:
     """The sensors of an object, in the order of its entry; those that nothing computes are left out."""
-    native = iter([i for i, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.index])
+    native = _native(simulation, view)
     sensors: list[Any] = []
     for index, options in enumerate(view.record.sensors):
         feature = SENSORS.get(str(getattr(options, "name", "")))
@@ -106,6 +107,19 @@ def sensors_of(simulation: Simulation, view: ObjectView) -> list[Any]:
         elif feature is not None and feature.function is not None:
             sensors.append(PythonSensor(view, options, feature, index))
     return sensors
+
+
+def attach_sensors(simulation: Simulation, view: ObjectView) -> None:
+    """Let the sensors of an object read its place in another simulation."""
+    native = _native(simulation, view)
+    for sensor in view.sensors:
+        if not isinstance(sensor, PythonSensor):
+            sensor.attach(simulation, next(native))
+
+
+def _native(simulation: Simulation, view: ObjectView) -> Iterator[int]:
+    """Numbers of the sensors of an object among the native ones of its world."""
+    return (number for number, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.index)
 
 
 def _measure(simulation: Simulation, mask: NDArray[np.bool_] | None) -> None:
@@ -126,5 +140,6 @@ def attach_python_sensors(simulation: Simulation) -> None:
     }
     features = [feature for name in sensors if (feature := SENSORS.get(name)) is not None]
     if any(feature.kernel is None and feature.function is not None for feature in features):
-        simulation.measurements.append(_measure)
+        if _measure not in simulation.measurements:
+            simulation.measurements.append(_measure)
         simulation.measure()

@@ -12,6 +12,7 @@ from irsim import _core as core
 from irsim.diagnostics import Diagnostic
 from irsim.errors import PlacementError
 from irsim.log import Logger
+from irsim.streams import generator
 from irsim.world.build import build_world
 
 if TYPE_CHECKING:
@@ -51,6 +52,8 @@ class Simulation:
         measurements: Python sensors, called after every step, reset and refresh; empty in worlds that have none.
         scene_drawn: Called with the indices of worlds that have begun their next scene.
         report: Told once about what goes wrong in code of users and does not end the run.
+        revision: Grows whenever objects come, go or change their shape.
+        user: Whose draws ``rng`` gives: 0 those of an environment; an object on its own has a number of its own.
 
     Raises:
         PlacementError: A random object found no room.
@@ -74,6 +77,11 @@ class Simulation:
         self.names: dict[int, str] = {}
         self.passable: set[int] = set()
         world = build_world(scenario, self.copies)
+        self.revision = 0
+        self._history = history
+        self._reseeded = False
+        self.user = 0
+        self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
         self._check_placement()
 
@@ -93,6 +101,42 @@ class Simulation:
         self.ids = np.array([*(record.id for record in records), -1], dtype=np.int32)
         self.names.update((record.id, record.name) for record in records)
         self.passable |= {record.id for record in records if record.unobstructed}
+
+    def exchange(self, scenario: ResolvedScenario, origins: Sequence[tuple[Simulation, int]]) -> None:
+        """Go on with other objects.
+
+        Args:
+            scenario: The present one but for its objects.
+            origins: For each of them, the simulation of one world and the row that hold its present state.
+        """
+        world = build_world(scenario)
+        world.collision_mode = self.world.collision_mode
+        state = core.State(world, self.state, [(source.state, row) for source, row in origins])
+        self.scenario = scenario
+        self.revision += 1
+        self._bind(world, state)
+
+    def restore(self, scenario: ResolvedScenario) -> None:
+        """Start the next scene with these objects; the first one if there is a new seed."""
+        seed, scene, _ = self.key()
+        world = build_world(scenario)
+        world.collision_mode = self.world.collision_mode
+        state = core.State(world, np.array([seed], dtype=np.uint64), self._history)
+        self.scenario = scenario
+        self.revision += 1
+        self._bind(world, state)
+        if not self._reseeded:
+            state.scene[0] = scene
+            state.reset(self._all, True)
+        self._reseeded = False
+        self._check_placement()
+        for told in self.scene_drawn:
+            told([0])
+
+    def reshape(self, row: int, parts: Sequence[core.Part], seed: int = 0) -> None:
+        """Give an object another body until the next scene is drawn; ``seed`` is for random parts."""
+        self.state.reshape(row, parts, seed)
+        self.revision += 1
 
     def step(self) -> None:
         """Advance every world by one period."""
@@ -167,6 +211,7 @@ class Simulation:
         Raises:
             PlacementError: A random object found no room in the next scene.
         """
+        self._reseeded = False
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
         self.state.reset(chosen, next_scene)
         self._check_placement()
@@ -178,11 +223,20 @@ class Simulation:
     def reseed(self, seeds: Sequence[int] | NDArray[np.uint64], mask: NDArray[np.bool_] | None = None) -> None:
         """New seeds; the next reset of these worlds begins again at their first scene."""
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
+        self._reseeded = True
         self.state.reseed(np.asarray(seeds, dtype=np.uint64), chosen)
 
     def key(self, world: int = 0) -> tuple[int, int, int]:
         """(seed, scene, noise episode) of a world."""
         return int(self.state.seed[world]), int(self.state.scene[world]), int(self.state.noise[world])
+
+    @property
+    def rng(self) -> np.random.Generator:
+        """A NumPy generator for user code; it starts anew with every reset, from the key of the first world."""
+        key = self.key()
+        if self._rng is None or self._rng[0] != key:
+            self._rng = key, generator(*key, stream="user", object_id=self.user)
+        return self._rng[1]
 
     @property
     def time(self) -> float:

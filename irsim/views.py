@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,13 +13,13 @@ from numpy.typing import NDArray
 from irsim.body import ObjectBody, column
 from irsim.info import ObjectInfo, ObstacleInfo
 from irsim.scans import Lidar2D
-from irsim.sensing import sensors_of
+from irsim.sensing import attach_sensors, sensors_of
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
     from irsim.simulation import Simulation
 
-__all__ = ["ObjectView", "views"]
+__all__ = ["ObjectView", "set_views", "views"]
 
 Floats = NDArray[np.float64]
 
@@ -35,6 +36,7 @@ class ObjectView(ObjectBody):
         world: World index in a batch.
         index: Place among the objects of its world, which changes when earlier ones are taken out.
         row: Row in the simulation's arrays.
+        surroundings: The objects of the environment an object was made for, as long as it is not added.
         plot_kwargs: Drawing options, may be changed at any time.
     """
 
@@ -51,12 +53,23 @@ class ObjectView(ObjectBody):
         self.state_dim, self.vel_dim = record.state_dim, record.vel_dim
         self.state_shape, self.vel_shape = (record.state_dim, 1), (record.vel_dim, 1)
         self.wheelbase, self.tags = record.wheelbase, record.tags
+        self.surroundings: Sequence[ObjectView] | None = None
         self.text: str | None = None
         self.goal_text: str | None = None
         self._plain = record.state_dim == 3
+        self.sensors: list[Any] = []
         self.attach(simulation, index, world)
-        self.sensors: list[Any] = sensors_of(simulation, self)
+        self.sensors = sensors_of(simulation, self)
         self.lidar: Lidar2D | None = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
+
+    def renumber(self, number: int) -> None:
+        """Another id, for an object that is alone; an automatic name follows."""
+        record = self.record
+        name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
+        scenario = replace(self._simulation.scenario, objects=[replace(record, id=number, name=name)])
+        self.id, self.name = number, name
+        self._simulation.exchange(scenario, [(self._simulation, 0)])
+        set_views(self._simulation, [self])
 
     def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
         """Look at another place from now on: rows move when objects come and go."""
@@ -64,6 +77,8 @@ class ObjectView(ObjectBody):
         self.row = world * simulation.objects + index
         self._pose = simulation.pose[self.row]
         self._state = simulation.pose[self.row, :, None]
+        if self.sensors:
+            attach_sensors(simulation, self)
 
     # state -----------------------------------------------------------------------------------------------------------
     @property
@@ -225,7 +240,7 @@ class ObjectView(ObjectBody):
     @property
     def environment_objects(self) -> list[ObjectView]:
         """All objects of its world, in the order of their rows."""
-        return views(self._simulation, self.world)
+        return views(self._simulation, self.world) if self.surroundings is None else list(self.surroundings)
 
     @property
     def external_objects(self) -> list[ObjectView]:
@@ -349,6 +364,14 @@ def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
     if world not in cache:
         cache[world] = [ObjectView(simulation, i, world) for i in range(simulation.objects)]
     return cache[world]
+
+
+def set_views(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
+    """Let these views show the rows of a simulation of one world, in this order."""
+    for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
+        view.record = record
+        view.attach(simulation, index)
+    simulation.__dict__["_views"] = {0: list(shown)}
 
 
 def _goal_list(goal: Any) -> list[list[float]]:

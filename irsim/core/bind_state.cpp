@@ -1,6 +1,8 @@
 #include "bind_state.hpp"
 
+#include "exchange.hpp"
 #include "phases.hpp"
+#include "spec.hpp"
 #include "view.hpp"
 
 namespace irsim {
@@ -149,6 +151,24 @@ std::vector<std::string> parts(const BoundState& self, int row) {
 
 BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
     : world(&world_), state(make_state(world_, seeds, history)) {
+  expose();
+}
+
+BoundState::BoundState(World& world_, const BoundState& before, const std::vector<std::pair<BoundState*, int>>& origins)
+    : world(&world_), state(world_, before.state.seed.data, before.state.keep_history, false) {
+  if (world_.copies != 1 || before.world->copies != 1) throw nb::value_error("only single worlds can go on");
+  if (static_cast<int>(origins.size()) != world_.objects) throw nb::value_error("one origin per object is needed");
+  before.check_idle();
+  std::vector<Origin> from;
+  for (const auto& [source, object] : origins) {
+    source->check_row(object);
+    from.push_back({source->world, &source->state, object});
+  }
+  go_on(world_, state, *before.world, before.state, from);
+  expose();
+}
+
+void BoundState::expose() {
   const std::size_t rows = state.rows, worlds = state.worlds, beams = state.ranges.size;
   const std::size_t extra_rows = state.extra_rows;
   pose = view<double>(state.pose.memory, {rows, 3});
@@ -202,6 +222,8 @@ void bind_state(nb::module_& m) {
   nb::class_<S>(m, "State")
       .def(nb::init<World&, const Seeds&, bool>(), nb::arg("world"), nb::arg("seeds"), nb::arg("history"),
            nb::keep_alive<1, 2>())
+      .def(nb::init<World&, const S&, const std::vector<std::pair<S*, int>>&>(), nb::arg("world"), nb::arg("before"),
+           nb::arg("origins"), nb::keep_alive<1, 2>())
       .def_ro("pose", &S::pose)
       .def_ro("extra", &S::extra)
       .def_ro("control", &S::control)
@@ -284,6 +306,23 @@ void bind_state(nb::module_& m) {
                            self.state.workspaces.front());
           },
           nb::arg("row"), nb::arg("angle"), nb::arg("reach"), nb::arg("occlusion"))
+      .def(
+          "reshape",
+          [](S& self, int row, const std::vector<PartSpec>& parts, std::uint64_t seed) {
+            self.check_row(row);
+            if (parts.empty()) throw nb::value_error("an object needs at least one part");
+            reshape(*self.world, self.state, row, draw_outlines(parts, Draws({seed, 0}, Stream::shape, 0)));
+          },
+          nb::arg("row"), nb::arg("parts"), nb::arg("seed"))
+      .def("look",
+           [](S& self) {
+             const Claim claim(self);
+             for (int w = 0; w < self.state.worlds; ++w) {
+               place_fixed(*self.world, self.state, w);
+               place_moving(*self.world, self.state, w);
+               sense(*self.world, self.state, w, self.state.workspaces.front());
+             }
+           })
       .def("vertices", &vertices, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("circle", &circle, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("parts", &parts, nb::arg("row"))

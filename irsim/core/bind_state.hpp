@@ -13,6 +13,8 @@ using Mask = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::devi
 
 struct BoundState {
   BoundState(World& world, const Seeds& seeds, bool history);
+  /// Goes on where `before` is, each object where it was in the state and row named for it.
+  BoundState(World& world, const BoundState& before, const std::vector<std::pair<BoundState*, int>>& origins);
 
   World* world;
   State state;
@@ -26,6 +28,9 @@ struct BoundState {
   void check_world(int w) const;
   void check_mask(const Mask& mask) const;
   void check_idle() const;
+
+ private:
+  void expose();
 };
 
 /// Claims the state for a call that releases the GIL; a second thread gets an error instead of torn memory.

@@ -5,21 +5,6 @@
 #include "phases.hpp"
 
 namespace irsim {
-
-void place_moving(const World& world, State& state, int w) {
-  Scene& scene = state.scenes[w];
-  const int first = w * world.objects;
-  for (const int i : world.moving) {
-    const int row = first + i;
-    const Pose& pose = state.pose[row];
-    if (state.direction_of[row] != pose.theta) {
-      state.direction[row] = unit(pose.theta);
-      state.direction_of[row] = pose.theta;
-    }
-    scene.moving.place(*scene.shapes, i, pose, state.direction[row]);
-  }
-}
-
 namespace {
 
 void find_pairs(const World& world, State& state, int w) {
@@ -66,6 +51,20 @@ void log_contacts(const World& world, State& state, int w) {
 }
 
 }  // namespace
+
+void place_moving(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  const int first = w * world.objects;
+  for (const int i : world.moving) {
+    const int row = first + i;
+    const Pose& pose = state.pose[row];
+    if (state.direction_of[row] != pose.theta) {
+      state.direction[row] = unit(pose.theta);
+      state.direction_of[row] = pose.theta;
+    }
+    scene.moving.place(*scene.shapes, i, pose, state.direction[row]);
+  }
+}
 
 void collide(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];

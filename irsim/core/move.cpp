@@ -35,7 +35,8 @@ void integrate(const World& world, State& state, int w) {
       Vec3 u = state.control[row];
       if (drive.noise) {
         const Vec3 sigma = deviation(drive, u);
-        const auto normals = Draws(state.key(w), Stream::motion, world.number[i]).normals(static_cast<std::uint64_t>(state.count[w]));
+        const auto normals =
+            Draws(state.key(w), Stream::motion, world.number[i]).normals(static_cast<std::uint64_t>(state.count[w]));
         for (int c = 0; c < 3; ++c) u[c] += sigma[c] * normals[c];
       }
       run(drive, Motion{state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],

@@ -139,7 +139,8 @@ void place_randomly(const World& world, State& state, int w) {
     for (const int i : entry.objects) {
       if (world.is_static[i] || world.wander[i]) continue;  // no goal to reach; drawn at every reset
       Goal goal;
-      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread, goals, goal)) failed(i);
+      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread, goals, goal))
+        failed(i);
       spread.add(goal.position());
       goals.add(i, goal);
       state.goals[first + i].initial = {goal};

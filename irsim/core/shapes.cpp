@@ -48,12 +48,28 @@ void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
   centre.push_back(around.centre);
   centroid.push_back(centroid_of(outlines, around.centre));
   radius.push_back(around.radius);
+  close(body.back(), fixed);
+}
+
+void Shapes::copy(const Shapes& other, int object, bool fixed) {
+  const Slot &from = other.body[object], &to = other.body[object + 1];
+  parts.insert(parts.end(), other.parts.begin() + from.part, other.parts.begin() + to.part);
+  vertices.insert(vertices.end(), other.vertices.begin() + from.vertex, other.vertices.begin() + to.vertex);
+  centre.push_back(other.centre[object]);
+  centroid.push_back(other.centroid[object]);
+  radius.push_back(other.radius[object]);
+  close(body.back(), fixed);
+}
+
+/// Give the last object, which begins at `first`, its place among the moving or the static ones.
+void Shapes::close(const Slot& first, bool fixed) {
+  const Slot end{objects(), static_cast<int>(parts.size()), static_cast<int>(vertices.size())};
   Slot& used = size[fixed ? 1 : 0];
   placed.push_back(used);
   used.object += 1;
-  used.part += static_cast<int>(outlines.size());
-  used.vertex += static_cast<int>(vertices.size()) - base;
-  body.push_back({objects(), static_cast<int>(parts.size()), static_cast<int>(vertices.size())});
+  used.part += end.part - first.part;
+  used.vertex += end.vertex - first.vertex;
+  body.push_back(end);
 }
 
 void Outlines::resize(const Slot& size) {

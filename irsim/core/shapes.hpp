@@ -52,6 +52,11 @@ struct Shapes {
   int objects() const { return static_cast<int>(centre.size()); }
   int part_count(int object) const { return body[object + 1].part - body[object].part; }
   void add(const std::vector<Outline>& outlines, bool fixed);
+  /// Add what `other` has for an object.
+  void copy(const Shapes& other, int object, bool fixed);
+
+ private:
+  void close(const Slot& first, bool fixed);
 };
 
 /// World-frame geometry of one object, ready for collision and sensing.

@@ -41,14 +41,14 @@ struct ObjectSpec {
   static constexpr auto fields() {
     using S = ObjectSpec;
     return std::make_tuple(
-        field("number", &S::number), field("role", &S::role), field("group", &S::group), field("drive", &S::drive), field("parts", &S::parts),
-        field("static", &S::is_static), field("unobstructed", &S::unobstructed), field("wander", &S::wander),
-        field("loop", &S::loop), field("pose", &S::pose), field("extra", &S::extra), field("control", &S::control),
-        field("vel_min", &S::vel_min), field("vel_max", &S::vel_max), field("acce", &S::acce),
-        field("angle_range", &S::angle_range), field("goals", &S::goals), field("goal_threshold", &S::goal_threshold),
-        field("arrive_mode", &S::arrive_mode), field("range_low", &S::range_low), field("range_high", &S::range_high),
-        field("target_roles", &S::target_roles), field("behavior", &S::behavior), field("grouped", &S::grouped),
-        field("sensors", &S::sensors));
+        field("number", &S::number), field("role", &S::role), field("group", &S::group), field("drive", &S::drive),
+        field("parts", &S::parts), field("static", &S::is_static), field("unobstructed", &S::unobstructed),
+        field("wander", &S::wander), field("loop", &S::loop), field("pose", &S::pose), field("extra", &S::extra),
+        field("control", &S::control), field("vel_min", &S::vel_min), field("vel_max", &S::vel_max),
+        field("acce", &S::acce), field("angle_range", &S::angle_range), field("goals", &S::goals),
+        field("goal_threshold", &S::goal_threshold), field("arrive_mode", &S::arrive_mode),
+        field("range_low", &S::range_low), field("range_high", &S::range_high), field("target_roles", &S::target_roles),
+        field("behavior", &S::behavior), field("grouped", &S::grouped), field("sensors", &S::sensors));
   }
 };
 

@@ -18,25 +18,6 @@ void evaluate(const World& world, State& state, int w, bool with_arrival) {
   sense(world, state, w, work);
 }
 
-/// Build the geometry of the static objects where they stand, unless that is known.
-void place_fixed(const World& world, State& state, int w) {
-  Scene& scene = state.scenes[w];
-  std::vector<Pose> poses;
-  poses.reserve(world.fixed_objects.size());
-  for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
-  const auto stands = [&](const std::shared_ptr<const Fixed>& fixed) {
-    return fixed &&
-           std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
-                      [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
-  };
-  if (stands(scene.fixed)) return;
-  if (stands(world.fixed)) {
-    scene.fixed = world.fixed;
-  } else {
-    scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
-  }
-}
-
 void first_values(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) {
     const ObjectSpec& spec = world.specs[i];
@@ -56,7 +37,7 @@ void first_values(const World& world, State& state, int w) {
 
 }  // namespace
 
-State::State(const World& world, const std::uint64_t* seeds, bool history_)
+State::State(const World& world, const std::uint64_t* seeds, bool history_, bool drawn)
     : worlds(world.copies),
       objects(world.objects),
       rows(world.copies * world.objects),
@@ -103,7 +84,25 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_)
       std::copy(scan.mount.angle.begin(), scan.mount.angle.end(),
                 beam_angles.data + static_cast<std::size_t>(w) * world.beams_per_world + scan.mount.first);
     }
-    draw_scene(world, *this, w);
+    if (drawn) draw_scene(world, *this, w);
+  }
+}
+
+void place_fixed(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  std::vector<Pose> poses;
+  poses.reserve(world.fixed_objects.size());
+  for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
+  const auto stands = [&](const std::shared_ptr<const Fixed>& fixed) {
+    return fixed &&
+           std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
+                      [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
+  };
+  if (stands(scene.fixed)) return;
+  if (scene.shapes == world.shapes && stands(world.fixed)) {
+    scene.fixed = world.fixed;
+  } else {
+    scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
   }
 }
 

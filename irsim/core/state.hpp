@@ -24,7 +24,8 @@ struct GoalQueue {
 };
 
 struct State {
-  State(const World& world, const std::uint64_t* seeds, bool history);
+  /// `drawn`: with scene 0 of every world, ready to step.
+  State(const World& world, const std::uint64_t* seeds, bool history, bool drawn = true);
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -100,6 +101,9 @@ void reset(const World& world, State& state, const std::uint8_t* mask, bool next
 void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask);
 /// Take over poses written from outside: geometry of all objects, collisions and sensors.
 void refresh(const World& world, State& state);
+
+/// Build the geometry of the static objects where they stand, unless that is known.
+void place_fixed(const World& world, State& state, int w);
 
 /// A pose was written from outside: the geometry of static objects follows at once, that of others with the next step.
 void moved(const World& world, State& state, int row);

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
-from typing import Any, NoReturn
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from irsim.actions import assign_actions
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_custom import EnvCustom
-from irsim.env_drawing import EnvDrawing
+from irsim.env_objects import EnvObjects
 from irsim.errors import NotSimulatedError
 from irsim.log import LEVELS, Logger
 from irsim.observers.events import Event, read_events
@@ -24,8 +22,11 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
 from irsim.sensing import attach_python_sensors
 from irsim.simulation import Simulation
-from irsim.streams import check_seed, fresh_seed, generator
+from irsim.streams import check_seed, fresh_seed
 from irsim.views import views
+
+if TYPE_CHECKING:
+    import numpy as np
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -63,7 +64,7 @@ def make(
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvDrawing, EnvCustom):
+class Env(EnvObjects, EnvCustom):
     """One world, stepped from Python.
 
     Args:
@@ -97,39 +98,48 @@ class Env(EnvDrawing, EnvCustom):
     ) -> None:
         self.id = next(_IDS)
         self.logger = Logger(log_level, log_file)
-        if isinstance(world_name, ResolvedScenario):
-            self.scenario = world_name
-        else:
-            self.scenario, warnings = open_scenario(world_name, strict=strict)
-            for warning in warnings:
-                self.logger.warning(_one_line(warning))
-        self.step_mode = _step_mode(step_mode if step_mode is not None else self.scenario.world.step_mode)
-        chosen = seed if seed is not None else self.scenario.world.seed
-        self.seed = fresh_seed() if chosen is None else check_seed(chosen)
+        self.path_param = PathParam()
+        self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed
+        self._world_name = world_name
+        self._open(world_name)
         self.headless = headless or disable_all_plot
         self.display = display and not self.headless
         self.save_ani = save_ani
         self.ani_kwargs = dict(ani_kwargs or {})
         self.full = full
-        self._simulation = Simulation(self.scenario, [self.seed], history=True)
-        self._simulation.report = self.logger.error_once
-        attach_python_behaviors(self._simulation)
-        attach_python_sensors(self._simulation)
-        self._objects = views(self._simulation)
-        self._world = WorldView(self._simulation)
-        self.world_param = WorldParam(self._simulation, self.step_mode)
-        self.env_param = EnvParam(self._objects, self.logger)
-        self.path_param = PathParam()
-        self._external = self.step_mode == "external"
-        self._events_seen = self._events_told = 0
-        self._label: str | None = self.scenario.world.status
-        self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self.pause_flag = self.quit_flag = self.debug_flag = False
         self.reset_flag = self.reload_flag = self.save_figure_flag = False
         self.debug_count = 0
         self._ended = False
         self._start_drawing()
         self._log_collisions()
+
+    def _open(self, world_name: str | Path | ResolvedScenario | None) -> None:
+        """Read a scenario and build its first scene."""
+        if isinstance(world_name, ResolvedScenario):
+            scenario = world_name
+        else:
+            scenario, warnings = open_scenario(world_name, strict=self._strict)
+            for warning in warnings:
+                self.logger.warning(_one_line(warning))
+        mode = _step_mode(self._wanted_mode if self._wanted_mode is not None else scenario.world.step_mode)
+        chosen = self._wanted_seed if self._wanted_seed is not None else scenario.world.seed
+        seed = fresh_seed() if chosen is None else check_seed(chosen)
+        simulation = Simulation(scenario, [seed], history=True)
+        simulation.report = self.logger.error_once
+        attach_python_behaviors(simulation)
+        attach_python_sensors(simulation)
+        self.scenario, self.step_mode, self.seed, self._simulation = scenario, mode, seed, simulation
+        self._originals = views(simulation)
+        self._objects = list(self._originals)
+        self._exchanged = False
+        self._world = WorldView(simulation)
+        self.world_param = WorldParam(simulation, mode)
+        self.env_param = EnvParam(self._objects, self.logger)
+        self._count_ids()
+        self._external = mode == "external"
+        self._events_seen = self._events_told = 0
+        self._label: str | None = scenario.world.status
 
     # time ------------------------------------------------------------------------------------------------------------
     def step(self, action: Any = None, action_id: Any = None) -> None:
@@ -230,11 +240,36 @@ class Env(EnvDrawing, EnvCustom):
         """
         if self._ended:
             raise RuntimeError("the environment has ended: make a new one to go on")
-        self._simulation.reset(next_scene=random)
+        if random and self._exchanged:
+            self._restore_objects()
+        else:
+            self._simulation.reset(next_scene=random)
+        if random:
+            self._count_ids()
+        self._start_over("Reset")
+
+    def reload(self, world_name: str | Path | None = None) -> None:
+        """Read the scenario again, or another one, and begin it as ``make`` does with this environment's seed.
+
+        Objects are new ones; views kept from before show what they last showed. The figure stays.
+
+        Args:
+            world_name: Another file; default: the present one.
+        """
+        if self._ended:
+            raise RuntimeError("the environment has ended: make a new one to go on")
+        name = self._world_name if world_name is None else world_name
+        self._wanted_seed = self.seed
+        self._open(name)
+        self._world_name = name
+        self._start_over(self.scenario.world.status)
+
+    def _start_over(self, label: str | None) -> None:
         self.pause_flag = self.debug_flag = self.reset_flag = False
         self.debug_count = 0
+        self.reload_flag = False
         self._events_told = 0
-        self._label = "Reset"
+        self._label = label
         self._redraw()
         self._log_collisions()
 
@@ -300,20 +335,18 @@ class Env(EnvDrawing, EnvCustom):
 
         Args:
             seed: 0 to 2**64 - 1; None draws a fresh one.
-            reload: Reset at once.
+            reload: Also read the scenario again and begin it with this seed.
         """
         self.seed = fresh_seed() if seed is None else check_seed(seed)
         self._simulation.reseed([self.seed])
+        self._wanted_seed = self.seed
         if reload:
-            self.reset()
+            self.reload()
 
     @property
     def rng(self) -> np.random.Generator:
         """A NumPy generator for your own code; it starts anew with every reset, from this episode's key."""
-        key = self._simulation.key()
-        if self._rng is None or self._rng[0] != key:
-            self._rng = key, generator(*key, stream="user")
-        return self._rng[1]
+        return self._simulation.rng
 
     def _log_collisions(self) -> None:
         self._events_seen = self._simulation.state.event_count

@@ -94,7 +94,7 @@ class SceneBuilder:
         self._styles: dict[int, tuple[Any, ObjectStyle]] = {}
         self._drawn: dict[int, _Drawn] = {}
         self._trails: dict[int, _Trail] = {}
-        self._scene_number: int | None = None
+        self._known: tuple[int, int] | None = None  # scene and revision
 
     def build(
         self,
@@ -113,10 +113,10 @@ class SceneBuilder:
             overrides: Plot keys that hold for this scene.
         """
         simulation = self.simulation
-        number = int(simulation.state.scene[self.world])
-        if number != self._scene_number:
+        known = int(simulation.state.scene[self.world]), simulation.revision
+        if known != self._known:
             self.reset()
-            self._scene_number = number
+            self._known = known
         world = simulation.scenario.world
         x, y = float(world.offset[0]), float(world.offset[1])
         scene = Scene(

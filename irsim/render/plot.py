@@ -316,6 +316,7 @@ class EnvPlot:
     # life ------------------------------------------------------------------------------------------------------------
     def reset(self) -> None:
         """Draw everything anew: drawings, titles and views of scripts are gone; kept frames stay."""
+        self._options = self.env.simulation.scenario.world.plot
         self._begin()
         self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._overlay.forget()

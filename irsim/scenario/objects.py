@@ -66,6 +66,7 @@ class ObjectRecord:
     inertia: float | None
     restitution: float
     tags: tuple[str, ...] = ()
+    joined: bool = True  # follows the behavior of its group, if that has one
 
 
 @dataclass(slots=True)

@@ -56,7 +56,8 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
     """
     leaders: dict[int, ObjectRecord] = {}
     for record in records:
-        leaders.setdefault(record.group, record)
+        if record.joined:
+            leaders.setdefault(record.group, record)
     found: dict[int, BehaviorOptions] = {}
     for group, leader in leaders.items():
         options = leader.group_behavior
@@ -95,7 +96,7 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
     return core.ObjectSpec(
         number=record.id,
         role=_ROLES[record.role],
-        group=record.group,
+        group=record.group if record.joined else -1 - record.id,
         drive=drive,
         parts=shape.function(record.shape),
         static=record.static,
@@ -128,7 +129,9 @@ def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
     return core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
-        objects=[build_object(record, groups.get(record.group)) for record in scenario.objects],
+        objects=[
+            build_object(record, groups.get(record.group) if record.joined else None) for record in scenario.objects
+        ],
         placements=[
             core.RandomPlacement(
                 objects=[row[number] for number in placement.objects if number in row],

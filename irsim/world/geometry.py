@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from irsim import _core as core
+
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
+    from irsim.views import ObjectView
 
-__all__ = ["shapely_geometry"]
+__all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching"]
 
 _QUADRANT_SEGMENTS = 16
 
@@ -30,3 +33,46 @@ def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> 
         else:
             parts.append(shapely.LineString(state.vertices(row, part, world_frame)))
     return parts[0] if len(parts) == 1 else shapely.union_all(parts)
+
+
+def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
+    """The body of a row for the core, body frame."""
+    state = simulation.state
+    parts: list[core.Part] = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, False)
+            parts.append(core.Circle(radius=radius, center=[x, y]))
+        else:
+            vertices = state.vertices(row, part, False).tolist()
+            parts.append(core.Polygon(vertices=vertices) if kind == "polygon" else core.Linestring(vertices=vertices))
+    return parts
+
+
+def touching(a: ObjectView, b: ObjectView) -> bool:
+    """Whether two bodies meet where they are now, exactly."""
+    first, second = core_parts(a._simulation, a.row), core_parts(b._simulation, b.row)
+    return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
+
+
+def from_shapely(geometry: Any) -> list[core.Part]:
+    """Polygons, lines and collections of them as parts for the core; holes are filled.
+
+    Raises:
+        ValueError: Empty, or of points.
+    """
+    parts: list[core.Part] = []
+    for piece in getattr(geometry, "geoms", [geometry]):
+        if piece.is_empty:
+            continue
+        if piece.geom_type == "Polygon":
+            parts.append(core.Polygon(vertices=[[x, y] for x, y, *_ in piece.exterior.coords[:-1]]))
+        elif piece.geom_type in ("LineString", "LinearRing"):
+            parts.append(core.Linestring(vertices=[[x, y] for x, y, *_ in piece.coords]))
+        elif hasattr(piece, "geoms"):
+            parts += from_shapely(piece)
+        else:
+            raise ValueError(f"a body is made of polygons and lines, not of a {piece.geom_type}")
+    if not parts:
+        raise ValueError("the geometry is empty")
+    return parts

@@ -1,0 +1,325 @@
+"""Objects that are made, added and taken out while a world runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from irsim.env import Env
+from irsim.errors import ScenarioError
+
+WORLD = """
+world: {width: 10, height: 10}
+robot:
+  - kinematics: {name: diff, noise: true}
+    state: [1, 1, 0]
+    goal: [9, 9, 0]
+    behavior: {name: dash}
+    sensors: [{type: lidar2d, range_max: 5, number: 8, noise: true}]
+obstacle:
+  - {number: 2, shape: {name: rectangle, length: 1, width: 0.5}, state: [[3, 6, 0], [8, 2, 1]]}
+  - {number: 2, kinematics: {name: omni, noise: true}, behavior: {name: dash, wander: true}, state: [[2, 8], [8, 8]],
+     shape: {name: circle, radius: 0.2}}
+"""
+
+
+@pytest.fixture
+def make(tmp_path: Any) -> Callable[..., Env]:
+    def build(text: str = WORLD, **options: Any) -> Env:
+        path = tmp_path / "world.yaml"
+        path.write_text(text)
+        return Env(path, headless=True, **{"seed": 5, "log_level": "ERROR", **options})
+
+    return build
+
+
+def test_a_made_object_is_not_in_the_world(make: Callable[..., Env]) -> None:
+    env = make()
+    made = env.create_obstacle(shape={"name": "circle", "radius": 0.3}, state=(4, 4, 0))
+    assert made not in env.objects
+    assert (made.id, made.name, made.role, made.static) == (5, "obstacle_5", "obstacle", True)
+    assert made.goal is None
+    assert made.external_objects == env.objects
+    assert env.create_robot().state[:, 0].tolist() == [0, 0, 0]
+    made.set_state(np.array([[4.5], [4.5], [0.0]]))
+    env.add_object(made)
+    assert env.objects[-1] is made
+    assert made.state[:, 0].tolist() == [4.5, 4.5, 0]
+    assert made.init_state[:, 0].tolist() == [4, 4, 0]
+    assert made.external_objects == env.objects[:-1]
+
+
+def test_an_added_robot_drives_and_collides(make: Callable[..., Env]) -> None:
+    env = make()
+    robot = env.create_robot({"name": "diff"}, shape={"name": "circle", "radius": 0.2}, state=[5, 5, 0],
+                             goal=[9, 5, 0], behavior={"name": "dash"}, name="late")  # fmt: skip
+    wall = env.create_obstacle(shape={"name": "rectangle", "length": 0.2, "width": 2}, state=[7, 5, 0])
+    env.step()
+    env.add_objects([robot, wall])
+    assert env.robot_list == [env.robot, robot]
+    for _ in range(40):
+        env.step()
+    assert robot.collision_obj == [wall]
+    assert robot.state[0, 0] == pytest.approx(6.8, abs=0.15)
+    assert ("late", wall.name) in [(e.object, e.partner) for e in env.events if e.kind == "collision"]
+    assert env.done("any")
+
+
+@pytest.mark.parametrize("gone", [1, 3])
+def test_others_go_on_as_if_nothing_had_happened(make: Callable[..., Env], gone: int) -> None:
+    text = WORLD.replace("height: 10", "height: 10, collision_mode: unobstructed")
+    env, twin = make(text), make(text)
+    for each in (env, twin):
+        for _ in range(5):
+            each.step()
+    env.delete_object(gone)
+    env.add_object(env.create_obstacle(state=[5, -5, 0], shape={"name": "circle", "radius": 0.1}))
+    kept = [view.id for view in env.objects if view.id < 5]
+    assert kept == [i for i in range(5) if i != gone]
+    for _ in range(30):
+        env.step()
+        twin.step()
+        for number in kept:
+            mine, other = env.get_object_by_id(number), twin.get_object_by_id(number)
+            assert mine is not None
+            assert other is not None
+            np.testing.assert_array_equal(mine.state, other.state)
+            np.testing.assert_array_equal(mine.velocity, other.velocity)
+            assert mine.goal is not None or other.goal is None
+    np.testing.assert_array_equal(np.hstack(env.robot.trajectory), np.hstack(twin.robot.trajectory))
+    env.reset()
+    twin.reset()
+    np.testing.assert_array_equal(env.robot.state, twin.robot.state)
+
+
+def test_sensors_and_contacts_follow_their_objects(make: Callable[..., Env]) -> None:
+    env = make()
+    near = env.create_obstacle(state=[2, 1, 0], shape={"name": "circle", "radius": 0.5}, name="near")
+    env.add_object(near)
+    assert near.id in env.robot.lidar.hits  # type: ignore[union-attr]
+    env.delete_object(1)
+    assert near.id in env.robot.lidar.hits  # type: ignore[union-attr]
+    env.delete_object("near")
+    assert near.id not in env.robot.lidar.hits  # type: ignore[union-attr]
+    assert set(env.robot.lidar.hits) <= {view.id for view in env.objects} | {-1}  # type: ignore[union-attr]
+
+
+def test_a_taken_out_object_stays_usable_and_comes_back(make: Callable[..., Env]) -> None:
+    env = make()
+    for _ in range(3):
+        env.step()
+    mover = env.get_object_by_id(3)
+    assert mover is not None
+    state, goal = mover.state, mover.goal
+    env.delete_object(3)
+    env.step()
+    np.testing.assert_array_equal(mover.state, state)
+    assert len(mover.trajectory) == 3
+    env.add_object(mover)
+    np.testing.assert_array_equal(mover.state, state)
+    np.testing.assert_array_equal(mover.goal, goal)
+    env.step()
+    assert (mover.state != state).any()
+    assert len(mover.trajectory) == 4
+
+
+def test_resets(make: Callable[..., Env]) -> None:
+    env = make()
+    first = env.objects
+    added = env.create_robot({"name": "omni"}, state=[5, 5, 0], goal=[6, 6, 0], behavior={"name": "dash"})
+    env.add_object(added)
+    env.delete_objects([1, 99])
+    env.step()
+    env.reset()
+    assert [view.id for view in env.objects] == [0, 2, 3, 4, 5]
+    assert added.state[:, 0].tolist() == [5, 5, 0]
+    env.reset(random=True)
+    assert env.objects == first
+    assert env.create_obstacle().id == 5
+    twin = make()
+    twin.reset(random=True)
+    for mine, other in zip(env.objects, twin.objects, strict=True):
+        np.testing.assert_array_equal(mine.state, other.state)
+    assert added not in env.objects
+    added.set_state([1, 2, 3])
+
+
+def test_a_new_seed_draws_the_present_objects_anew(make: Callable[..., Env]) -> None:
+    text = "world: {width: 20}\nobstacle: {number: 3, distribution: {name: random}, shape: {name: circle, radius: 0.2}}"
+    env, twin = make(text), make(text, seed=11)
+    added = env.create_obstacle(state=[30, 30, 0])
+    env.add_object(added)
+    env.delete_object(0)
+    env.set_random_seed(11)
+    env.reset()
+    np.testing.assert_array_equal(env.objects[-1].state[:, 0], [30, 30, 0])
+    np.testing.assert_array_equal(env.objects[0].state, twin.objects[1].state)
+
+
+def test_names_are_unique_and_nothing_is_added_twice(make: Callable[..., Env]) -> None:
+    env = make()
+    with pytest.raises(ValueError, match="'robot_0' already exists"):
+        env.add_object(env.create_obstacle(name="robot_0"))
+    fresh = env.create_obstacle(state=[20, 20, 0])
+    with pytest.raises(ValueError, match="already exists"):
+        env.add_objects([fresh, fresh])
+    assert len(env.objects) == 5
+    env.add_object(fresh)
+    with pytest.raises(TypeError):
+        env.add_object("robot")  # type: ignore[arg-type]
+    env.validate_unique_names()
+    other = make()
+    other.objects[0].name = "another"
+    with pytest.raises(ValueError, match="in a world already"):
+        env.add_object(other.objects[0])
+
+
+def test_an_object_made_elsewhere_gets_an_id_of_its_own(make: Callable[..., Env]) -> None:
+    env, other = make(), make()
+    one, two = env.create_obstacle(state=[5, 5, 0]), other.create_obstacle(state=[6, 6, 0])
+    assert one.id == two.id
+    env.add_object(one)
+    two.set_state([6, 6.5, 0])
+    with pytest.raises(ValueError, match="already exists"):
+        env.add_object(two)
+    named = other.create_obstacle(state=[7, 7, 0], name="b")
+    named.renumber(0)
+    env.add_object(named)
+    assert sorted({view.id for view in env.objects}) == [0, 1, 2, 3, 4, 5, 6]
+    assert env.get_object_by_name("b") is named
+
+
+def test_keys_that_cannot_be_used(make: Callable[..., Env], capsys: pytest.CaptureFixture[str]) -> None:
+    env = make(log_level="WARNING")
+    with pytest.raises(ScenarioError):
+        env.create_robot({"name": "hovercraft"})
+    env.create_robot({"name": "diff"}, colour="red")
+    assert "colour" in capsys.readouterr().out
+
+
+def test_several_goals_are_a_way(make: Callable[..., Env]) -> None:
+    env = make()
+    robot = env.create_robot({"name": "diff"}, goal=[[1, 1], [2, 2, 0]])
+    assert [goal.shape for goal in robot.goals] == [(2, 1), (3, 1)]
+
+
+def test_different_state_sizes(make: Callable[..., Env]) -> None:
+    env = make()
+    env.step()
+    shape = {"name": "rectangle", "length": 0.8, "width": 0.4, "wheelbase": 0.5}
+    car = env.create_robot({"name": "acker"}, shape=shape, state=[5, 5, 0, 0.3], vel_max=[2, 1])
+    env.add_object(car)
+    assert car.state.shape == (4, 1)
+    env.step([1.0, 0.1], action_id=car.id)
+    assert car.state[3, 0] != 0
+    assert [len(view.trajectory[0]) for view in (env.robot, car)] == [3, 4]
+
+
+def test_python_behaviors_follow_their_objects(make: Callable[..., Env]) -> None:
+    from irsim.lib import register_behavior
+
+    seen = []
+
+    @register_behavior("omni", "drift-along")
+    def drift(ego_object: Any, external_objects: Any, **kwargs: Any) -> list[float]:
+        seen.append((ego_object.name, len(external_objects)))
+        return [0.5, 0.0]
+
+    env = make()
+    drifter = env.create_robot({"name": "omni"}, behavior={"name": "drift-along"}, state=[5, 5, 0], name="drifter")
+    env.add_object(drifter)
+    env.delete_object(1)
+    env.step()
+    assert seen == [("drifter", 4)]
+    assert drifter.state[0, 0] == pytest.approx(5.05)
+    env.delete_object(drifter.id)
+    env.step()
+    assert len(seen) == 1
+
+
+def test_a_group_keeps_its_behavior_when_its_first_member_goes(make: Callable[..., Env]) -> None:
+    text = """
+world: {width: 20, height: 20}
+robot:
+  - {number: 3, kinematics: {name: omni}, state: [[1, 1, 0], [1, 5, 0], [1, 9, 0]], goal: [[9, 1], [9, 5], [9, 9]],
+     group_behavior: [{name: orca}, null, null], shape: {name: circle, radius: 0.2}}
+"""
+    env = make(text)
+    env.delete_object(0)
+    env.add_object(env.create_robot({"name": "omni"}, state=[5, 5, 0], goal=[1, 1, 0]))
+    for _ in range(5):
+        env.step()
+    moved = [view.state[0, 0] > 1 for view in env.objects]
+    assert moved == [True, True, True]
+    assert env.objects[2].state[:, 0].tolist() == [5, 5, 0]
+
+
+def test_random_places_and_shapes(make: Callable[..., Env]) -> None:
+    text = """
+world: {width: 10, height: 10}
+robot: {kinematics: {name: diff}, state: [1, 1, 0], shape: {name: circle, radius: 0.2}}
+obstacle:
+  - {number: 4, kinematics: {name: acker}, shape: {name: circle, radius: 0.3}, state: [5, 5, 0, 0.2]}
+  - {shape: {name: polygon, vertices: [[0, 0], [1, 0], [0, 1]]}, state: [8, 8, 0]}
+"""
+    env = make(text)
+    env.random_obstacle_position([0, 0, 0], [3, 3, 0], ids=[1, 2, 3], non_overlapping=True)
+    placed = [env.objects[i] for i in (1, 2, 3)]
+    assert all((view.state[:2] >= 0).all() and (view.state[:2] <= 3).all() for view in placed)
+    assert all(view.state[3, 0] == 0.2 for view in placed)
+    everyone = env.objects
+    assert not any(a.geometry.intersects(b.geometry) for a in placed for b in everyone if a is not b)
+    assert everyone[4].state[:2, 0].tolist() == [5, 5]
+    env.step()
+    env.reset()
+    assert all((view.state[:2] <= 3).all() for view in placed)
+    before = env.objects[5].original_vertices
+    env.random_polygon_shape(center_range=[0, 0, 0, 0], avg_radius_range=[0.5, 0.6], num_vertices_range=[5, 6])
+    after = env.objects[5].original_vertices
+    assert before is not None
+    assert after is not None
+    assert after.shape == (2, 5)
+    assert env.objects[5].radius < 1.3
+    env.reset()
+    np.testing.assert_array_equal(env.objects[5].original_vertices, after)
+    env.reset(random=True)
+    np.testing.assert_array_equal(env.objects[5].original_vertices, before)
+
+
+def test_reload(make: Callable[..., Env], tmp_path: Any) -> None:
+    env = make()
+    env.add_object(env.create_obstacle())
+    env.step()
+    env.reload()
+    assert [view.id for view in env.objects] == [0, 1, 2, 3, 4]
+    assert (env.time, env.status) == (0, "None")
+    twin = make()
+    env.step()
+    twin.step()
+    np.testing.assert_array_equal(env.robot.state, twin.robot.state)
+    other = tmp_path / "other.yaml"
+    other.write_text("world: {width: 3}\nrobot: [{kinematics: {name: omni}}]")
+    env.reload(other)
+    assert len(env.objects) == 1
+    assert env.world_param.count == 0
+    assert env._world.width == 3
+    env.step([1, 0])
+    assert env.time == 0.1
+
+
+def test_pictures_follow(make: Callable[..., Env], tmp_path: Any) -> None:
+    env = make()
+    env.headless = False
+    env.display = False
+    scene = env._env_plot.scene()
+    assert {mark.object for mark in scene.marks} == {0, 1, 2, 3, 4}
+    env.add_object(env.create_obstacle(state=[5, 5, 0]))
+    env.delete_object(2)
+    assert {mark.object for mark in env._env_plot.scene().marks} == {0, 1, 3, 4, 5}
+    assert env.save_figure(tmp_path / "a.png") is not None
+    env.reload()
+    assert {mark.object for mark in env._env_plot.scene().marks} == {0, 1, 2, 3, 4}
+    env.end(0)
