@@ -1,4 +1,4 @@
-"""Writes the references of the agent skill: ``python -m irsim.lookup.reference [--check]``.
+"""Writes the references of the agent skill and the page on IR-SIM: ``python -m irsim.lookup.reference [--check]``.
 
 They are generated from the models, registries, templates and codes, as the answers of :func:`irsim.lookup.lookup` are.
 """
@@ -10,11 +10,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import irsim.compatibility
 from irsim import resources
 from irsim.files import write_atomically
+from irsim.lookup.compatibility import page
 from irsim.lookup.pages import pages
+from irsim.scenario.schema import json_schema
 
-__all__ = ["main", "out_of_date"]
+__all__ = ["compatibility", "main", "out_of_date"]
 
 SKILL = "irsim-scenario"
 
@@ -24,6 +27,11 @@ def out_of_date(folder: Path) -> list[Path]:
     wanted = {folder / f"{name}.md": text for name, text in pages().items()}
     stale = [path for path, text in wanted.items() if not path.is_file() or path.read_text(encoding="utf-8") != text]
     return stale + sorted(set(folder.glob("*")) - set(wanted))
+
+
+def compatibility() -> dict[Path, str]:
+    """Where the page about IR-SIM 2.12 is, and what it should say."""
+    return {Path(irsim.compatibility.__file__).with_name("README.md"): page(json_schema())}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -36,7 +44,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if pages are out of date")
     folder = resources.skills_directory() / SKILL / "references"
     if parser.parse_args(arguments).check:
-        stale = out_of_date(folder)
+        stale = out_of_date(folder) + [
+            path for path, text in compatibility().items() if not path.is_file() or path.read_text("utf-8") != text
+        ]
         for path in stale:
             print(f"{path} is out of date; python -m irsim.lookup.reference writes it again", file=sys.stderr)
         return 1 if stale else 0
@@ -45,6 +55,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         path.unlink(missing_ok=True)
     for name, text in pages().items():
         write_atomically(folder / f"{name}.md", text)
+    for path, text in compatibility().items():
+        write_atomically(path, text)
     print(f"wrote {folder}")
     return 0
 

@@ -8,6 +8,7 @@ from collections import Counter
 
 from irsim import templates
 from irsim.codes import CODES, TOOL_CODES, Code
+from irsim.compatibility import DIFFERENCES
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
@@ -67,6 +68,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return _code(topic.strip())
     if name in templates.names():
         return _template(templates.load(name))
+    if topic.strip() in DIFFERENCES:
+        return _difference(topic.strip())
     schema = json_schema() if schema is None else schema
     found = _find(schema, words) if words else None
     if found:
@@ -338,6 +341,12 @@ def _overview(registry: Registry) -> str:
 def _guide(name: str) -> Answer:
     guide = GUIDES[name]
     return Answer(topic=name, kind="guide", title=f"{name}: {guide.title}", text=guide.text, example=guide.example)
+
+
+def _difference(name: str) -> Answer:
+    one = DIFFERENCES[name]
+    text = f"IR-SIM 2.12: {one.theirs}. irsim: {one.ours}. Why: {one.why}."
+    return Answer(topic=name, kind="guide", title=f"{name}: an intended difference from IR-SIM 2.12", text=text)
 
 
 def _code(name: str) -> Answer:

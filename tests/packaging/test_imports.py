@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = (
     "_conflict _options angles codes colors diagnostics errors files log registry resources selection units vectors",
-    "_core streams text",
+    "_core compatibility streams text",
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",

@@ -1,7 +1,7 @@
 """The intended differences that touch a scenario, and how the trace is compared where one applies.
 
-A scenario names ids under `custom.differs`. Without an id every field of every step must equal the trace. Ids with a D
-are those of the published list of differences; format-17 and dynamics-18 are single fixes of documented surprises.
+A scenario names ids under `custom.differs`: those of the published list, `irsim.compatibility.DIFFERENCES`. Without an
+id every field of every step must equal the trace.
 """
 
 from __future__ import annotations

@@ -1,0 +1,81 @@
+"""The published page about IR-SIM 2.12, ``irsim/compatibility/README.md``: one row per key and per public name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from irsim.compatibility.differences import (
+    ABSENT,
+    DIFFERENCES,
+    EXTENSIONS,
+    KEY_DIFFERENCES,
+    NAME_DIFFERENCES,
+)
+from irsim.compatibility.names import reference_names
+from irsim.lookup.tables import plain_table
+from irsim.lookup.walk import Node, mappings
+from irsim.registry import REGISTRIES
+
+__all__ = ["page"]
+
+_INTRO = (
+    "Files and Python loops of IR-SIM 2.12 run unmodified. *same* means: same meaning, defaults, units and shapes. "
+    "An id names an intended difference, explained in the first table; *added* is optional and changes no old file."
+)
+
+
+def page(schema: Node) -> str:
+    """The page as Markdown.
+
+    Args:
+        schema: The JSON Schema of the language.
+    """
+    ids = [(f"`{name}`", one.theirs, one.ours, one.why) for name, one in DIFFERENCES.items()]
+    parts = [
+        "# Compatibility with IR-SIM 2.12",
+        "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->",
+        _INTRO,
+        "## Intended differences\n\n" + plain_table(("id", "IR-SIM 2.12", "irsim", "why"), ids),
+        "## Keys of scenarios\n\n" + plain_table(("key", "compared with 2.12"), _keys(schema)),
+    ]
+    parts += [
+        f"## `{place.replace(':', '.')}`\n\n" + plain_table(("name", "compared with 2.12"), rows)
+        for place, rows in _names()
+    ]
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def _keys(schema: Node) -> list[tuple[str, str]]:
+    language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))["properties"]
+    rows: list[tuple[str, str]] = []
+    for section, name in (("world", "world"), ("robot", "entry")):
+        [keys] = [option["properties"] for option in mappings(schema, language[section])]
+        rows += [_key_row(f"{name}.{key}") for key in keys]
+    for kind, registry in REGISTRIES.items():
+        for feature in registry.features():
+            rows += [_key_row(f"{kind}.{feature.name}")]
+            rows += [
+                _key_row(f"{kind}.{feature.name}.{key}", kind) for key in feature.options.model_fields if key != "name"
+            ]
+    return rows
+
+
+def _key_row(place: str, kind: str = "") -> tuple[str, str]:
+    short = f"{kind}.{place.rpartition('.')[2]}" if kind else place
+    owner = place.rpartition(".")[0]
+    added = EXTENSIONS.get(place) or (EXTENSIONS.get(owner) if kind else None)
+    if added is not None:
+        return f"`{place}`", f"added: {added}"
+    return f"`{place}`", KEY_DIFFERENCES.get(place) or KEY_DIFFERENCES.get(short) or "same"
+
+
+def _names() -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    for place, names in reference_names().items():
+        owner = place.partition(":")[2] or place
+        rows = []
+        for name in names:
+            told = NAME_DIFFERENCES.get(f"{owner}.{name}", "same")
+            absent = ABSENT.get(f"{place}.{name}") or ABSENT.get(place)
+            rows.append((f"`{name}`", f"missing: {absent}" if absent else told))
+        if rows:
+            yield place, rows
