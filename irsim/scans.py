@@ -20,6 +20,8 @@ __all__ = ["FMCWLidar2D", "Lidar2D"]
 Floats = NDArray[np.float64]
 _MISS_MARGIN = 0.02
 """Beams whose range is within this of ``range_max`` [m] leave no point in the cloud."""
+_HIGHLIGHT = "#56B4E9"
+"""Colour of beams picked out by ``set_laser_color``."""
 
 
 class Lidar2D:
@@ -59,6 +61,7 @@ class Lidar2D:
         self.angle_inc = self.angle_range / (self.number - 1) if self.number > 1 else 0.0
         self.time_inc = 0.0
         self.colors: dict[int, tuple[str, float]] = {}
+        self._drawn: Any = None
         self._fixed = {
             "angle_min": self.angle_min,
             "angle_max": self.angle_max,
@@ -107,11 +110,7 @@ class Lidar2D:
     @property
     def lidar_origin(self) -> Floats:
         """(3, 1) pose of the sensor in the world frame."""
-        x, y, theta = self._simulation.pose[self.parent.row]
-        dx, dy, turn = self.offset[:, 0]
-        heading = (theta + turn + math.pi) % (2 * math.pi) - math.pi
-        c, s = math.cos(theta), math.sin(theta)
-        return np.array([[x + c * dx - s * dy], [y + s * dx + c * dy], [heading]])
+        return self._placed(self._simulation.pose[self.parent.row])
 
     def step(self, state: Any = None) -> None:
         """Take the scan anew.
@@ -162,24 +161,77 @@ class Lidar2D:
         for index in np.atleast_1d(np.asarray(laser_indices, dtype=int)):
             self.colors[int(index)] = (laser_color or _HIGHLIGHT, alpha)
 
+    # drawing by hand: environments draw their lidars by themselves --------------------------------------------------
+    def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
+        """Draw the beams into some axes.
 
-_HIGHLIGHT = "#56B4E9"
+        Args:
+            ax: Matplotlib axes in world coordinates.
+            state: Pose of the carrier; by default where it stands.
+            **kwargs: ``alpha`` and ``color`` of the beams.
+        """
+        from irsim.render.layers import BeamLayer
+
+        self.plot_clear()
+        self.alpha, self.color = kwargs.get("alpha", self.alpha), kwargs.get("color", self.color)
+        self._drawn = BeamLayer(ax, 2)
+        self._show(state)
+
+    def step_plot(self) -> None:
+        """Bring what ``plot`` has drawn up to date."""
+        if self._drawn is not None:
+            self._show(None)
+
+    def plot_clear(self) -> None:
+        """Remove what ``plot`` has drawn."""
+        if self._drawn is not None:
+            self._drawn.remove()
+        self._drawn = None
+
+    def _show(self, state: Any) -> None:
+        from irsim.render.beams import draw_scan
+
+        origin = None if state is None else self._placed(np.asarray(state, dtype=np.float64).reshape(-1)[:3])
+        self._drawn.show(draw_scan(self, origin=origin))
+
+    def _placed(self, carrier: Floats) -> Floats:
+        """(3, 1) pose of the sensor on a carrier at this pose."""
+        x, y, theta = carrier
+        dx, dy, turn = self.offset[:, 0]
+        heading = (theta + turn + math.pi) % (2 * math.pi) - math.pi
+        c, s = math.cos(theta), math.sin(theta)
+        return np.array([[x + c * dx - s * dy], [y + s * dx + c * dy], [heading]])
 
 
 class FMCWLidar2D(Lidar2D):
     """A lidar that measures how fast each hit recedes, too.
 
+    The drawing options of the scenario (``velocity_color``, ``velocity_color_max``, …) are attributes, too.
+
     Attributes:
         motion_compensate: The carrier's own motion is left out of the radial velocities.
         velocity_noise_std: Standard deviation of their noise [m/s].
+        drawing: Drawing options by name; may be changed.
     """
 
     def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
         super().__init__(simulation, parent, options, index)
         self.motion_compensate = bool(options.motion_compensate)
         self.velocity_noise_std = float(options.velocity_noise_std)
-        for key, value in options.drawing().items():
-            setattr(self, key, value)  # velocity_color, velocity_color_max, … as in the scenario
+        self.drawing: dict[str, Any] = options.drawing()
+
+    def __getattr__(self, name: str) -> Any:
+        drawing = self.__dict__.get("drawing", {})
+        if name in drawing:
+            return drawing[name]
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        drawing = self.__dict__.get("drawing", {})
+        if name in drawing:
+            drawing[name] = value
+        else:
+            object.__setattr__(self, name, value)
 
     @property
     def radial_velocity(self) -> Floats:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.render.beams import draw_scan
 from irsim.render.bodies import Body, Pose, arrow, box, ellipse, place, read_body
 from irsim.render.palette import Palette
 from irsim.render.scene import (
-    Beams,
     Circle,
     Floats,
+    Fog,
     Geometry,
     Label,
     Line,
@@ -25,7 +26,9 @@ from irsim.render.scene import (
     Stroke,
 )
 from irsim.render.style import ObjectStyle, resolve_style
+from irsim.scans import Lidar2D
 from irsim.views import views
+from irsim.world.fog import FOG_COLOR
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -36,7 +39,7 @@ __all__ = ["MODES", "SceneBuilder"]
 MODES = ("dynamic", "static", "all")
 """Which objects the overrides of a frame apply to."""
 
-_BEAM_ZORDER = 2
+_FOG_ZORDER = 2
 _FULL_TURN = 2 * math.pi - 0.01
 _MOVING = 1e-9
 
@@ -128,6 +131,7 @@ class SceneBuilder:
             beams=[],
             labels=[],
             pictures=[],
+            fog=self._fog(),
         )
         overrides = overrides or {}
         objects = views(simulation, self.world)
@@ -215,32 +219,21 @@ class SceneBuilder:
 
     # sensors ---------------------------------------------------------------------------------------------------------
     def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:
-        simulation = self.simulation
-        first_beam = self.world * simulation.world.beams_per_world
-        taken: dict[int, int] = {}
-        for owner, first, count in simulation.world.scans():
-            view, sensor = objects[owner], taken.get(owner, 0)
-            taken[owner] = sensor + 1
+        for view in objects:
             chosen = mode == "all" or (mode == "static") == view.static
-            if not self.style(view, overrides if chosen else {}).show_sensor:
+            if not view.sensors or not self.style(view, overrides if chosen else {}).show_sensor:
                 continue
-            lidar = view.sensors[sensor]
-            x, y, theta = lidar.lidar_origin[:, 0].tolist()
-            beams = slice(first_beam + first, first_beam + first + count)
-            angles, ranges = simulation.state.beam_angles[beams] + theta, simulation.ranges[beams]
-            ends = np.stack([x + ranges * np.cos(angles), y + ranges * np.sin(angles)], axis=1)
-            scene.beams.append(
-                Beams(
-                    object=view.id,
-                    sensor=sensor,
-                    origin=(x, y),
-                    ends=ends,
-                    color=lidar.options.drawn_color,
-                    alpha=lidar.options.drawn_alpha,
-                    zorder=_BEAM_ZORDER,
-                    highlights=[(beam, c, a) for beam, (c, a) in lidar.colors.items() if 0 <= beam < count],
-                )
-            )
+            lidars = ((i, sensor) for i, sensor in enumerate(view.sensors) if isinstance(sensor, Lidar2D))
+            scene.beams += [draw_scan(lidar, i) for i, lidar in lidars]
+
+    def _fog(self) -> Fog | None:
+        explored = self.simulation.state.explored[self.world]
+        if not explored.size:
+            return None
+        world = self.simulation.scenario.world
+        x, y = float(world.offset[0]), float(world.offset[1])
+        extent = x, x + float(world.width), y, y + float(world.height)
+        return Fog(explored.astype(bool), extent, FOG_COLOR, 1.0, _FOG_ZORDER)
 
 
 def _draw(

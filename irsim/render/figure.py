@@ -14,7 +14,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D, Bbox
 
 from irsim.render.canvas import Compositor
-from irsim.render.layers import BeamLayer, MarkLayer, layer_key, rgba
+from irsim.render.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels
 from irsim.render.scene import Label, Picture, Scene
@@ -82,6 +82,7 @@ class SceneFigure:
     def _start(self) -> None:
         self._marks: dict[tuple[Any, ...], MarkLayer] = {}
         self._beams: dict[tuple[int, int], BeamLayer] = {}
+        self._fog: FogLayer | None = None
         self._labels: dict[tuple[int, str], Text] = {}
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
@@ -143,6 +144,9 @@ class SceneFigure:
             if shown not in self._beams:
                 self._beams[shown] = BeamLayer(self.ax, beams.zorder)
             self._beams[shown].show(beams)
+        if scene.fog is not None:
+            self._fog = self._fog or FogLayer(self.ax, scene.fog.zorder)
+            self._fog.show(scene.fog)
         self._show_pictures(scene.pictures)
         self._show_labels(scene.labels)
 

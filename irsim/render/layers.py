@@ -10,13 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection, PathCollection
 from matplotlib.colors import to_rgba
+from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.render.palette import Color
-from irsim.render.scene import Beams, Circle, Floats, Geometry, Line, Mark, Sector
+from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Sector
 
-__all__ = ["BeamLayer", "MarkLayer", "layer_key", "rgba"]
+__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "layer_key", "rgba"]
 
 _PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow")
 """Order of drawing within one zorder."""
@@ -82,20 +83,69 @@ class BeamLayer:
     """The beams of one sensor, which change in every scene."""
 
     def __init__(self, ax: Axes, zorder: float) -> None:
+        self._ax = ax
         self.artist = _Spokes(zorder + _RANK * _PARTS.index("beams"))
         ax.add_collection(self.artist, autolim=False)
+        self._dots: PathCollection | None = None
 
     def show(self, beams: Beams | None) -> None:
         """Draw this scan; None draws nothing."""
         self.artist.set_visible(beams is not None)
+        self._show_dots(None if beams is None else beams.dots)
         if beams is None:
             return
         self.artist.set_ends(beams.origin, beams.ends)
         colors: Any = np.empty((len(beams.ends), 4))
-        colors[:] = rgba(beams.color, beams.alpha)
+        colors[:] = rgba(beams.color, beams.alpha) if beams.colors is None else beams.colors
         for beam, color, alpha in beams.highlights:
             colors[beam] = rgba(color, alpha)
         self.artist.set_edgecolor(colors)
+        self.artist.set_linewidth(_BEAM_WIDTH if beams.widths is None else beams.widths.tolist())
+
+    def _show_dots(self, dots: Dots | None) -> None:
+        if self._dots is not None:
+            self._dots.set_visible(dots is not None)
+        if dots is None:
+            return
+        if self._dots is None:
+            self._dots = self._ax.scatter([], [], zorder=dots.zorder)
+        self._dots.set_offsets(dots.points)
+        self._dots.set_sizes([dots.area])
+        colors: Any = dots.colors
+        self._dots.set_facecolor(colors)
+        self._dots.set_edgecolor(rgba(dots.edge_color))
+        self._dots.set_linewidth(dots.edge_width)
+
+    def remove(self) -> None:
+        """Take the artists out of the axes."""
+        self.artist.remove()
+        if self._dots is not None:
+            self._dots.remove()
+
+
+class FogLayer:
+    """The fog as an image over the world, redrawn only when it has lifted somewhere.
+
+    Attributes:
+        artist: The image.
+    """
+
+    def __init__(self, ax: Axes, zorder: float) -> None:
+        self.artist = AxesImage(ax, interpolation="nearest", origin="lower", zorder=zorder)
+        self.artist.set_clip_path(ax.patch)
+        ax.add_image(self.artist)
+        self._shown: Any = None
+
+    def show(self, fog: Fog) -> None:
+        """Draw it."""
+        if self._shown is not None and np.array_equal(self._shown, fog.explored):
+            return
+        self._shown = fog.explored
+        color = np.array([round(255 * level) for level in rgba(fog.color, fog.alpha)], dtype=np.uint8)
+        pixels = np.tile(color, (*fog.explored.T.shape, 1))
+        pixels[fog.explored.T, 3] = 0
+        self.artist.set_data(pixels)
+        self.artist.set_extent(fog.extent)
 
 
 class _Spokes(Collection):

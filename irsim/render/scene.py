@@ -16,7 +16,21 @@ from numpy.typing import NDArray
 
 from irsim.render.palette import Color
 
-__all__ = ["Beams", "Circle", "Geometry", "Label", "Line", "Mark", "Picture", "Region", "Scene", "Sector", "Stroke"]
+__all__ = [
+    "Beams",
+    "Circle",
+    "Dots",
+    "Fog",
+    "Geometry",
+    "Label",
+    "Line",
+    "Mark",
+    "Picture",
+    "Region",
+    "Scene",
+    "Sector",
+    "Stroke",
+]
 
 Floats = NDArray[np.float64]
 
@@ -106,10 +120,23 @@ class Label:
 
 
 @dataclass(slots=True, eq=False)
+class Dots:
+    """Round marks at ``points`` (K, 2), filled with ``colors`` (K, 4) RGBA; ``area`` in square points."""
+
+    points: Floats
+    colors: Floats
+    area: float
+    edge_color: Color
+    edge_width: float
+    zorder: float
+
+
+@dataclass(slots=True, eq=False)
 class Beams:
     """One scan: lines from ``origin`` to ``ends`` (B, 2).
 
-    ``highlights`` are (beam, colour, alpha) of beams that differ from the rest.
+    ``highlights`` are (beam, colour, alpha) of beams that differ from the rest. ``colors`` (B, 4) RGBA and ``widths``
+    (B,) in points are there when each beam has its own, ``dots`` when hits are marked.
     """
 
     object: int
@@ -120,6 +147,20 @@ class Beams:
     alpha: float
     zorder: float
     highlights: list[tuple[int, Color, float]] = field(default_factory=list)
+    colors: Floats | None = None
+    widths: Floats | None = None
+    dots: Dots | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Fog:
+    """What nobody has seen yet: ``explored`` (nx, ny) tells which cells over ``extent`` are clear."""
+
+    explored: NDArray[np.bool_]
+    extent: tuple[float, float, float, float]
+    color: Color
+    alpha: float
+    zorder: float
 
 
 @dataclass(slots=True, eq=False)
@@ -143,6 +184,7 @@ class Scene:
         status: The environment's status word.
         extent: The world: x from, x to, y from, y to.
         center: Point the view is centred on; None shows the world.
+        fog: None in a world without fog.
     """
 
     time: float
@@ -153,6 +195,7 @@ class Scene:
     beams: list[Beams]
     labels: list[Label]
     pictures: list[Picture]
+    fog: Fog | None = None
 
     def of(self, object_id: int, part: str) -> Iterator[Mark]:
         """The marks that show ``part`` of one object."""
