@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS
 from irsim.units import Degrees, Integer, Meters, MetersPerSecond, Number, Seconds
@@ -57,4 +58,4 @@ class Sfm(BehaviorOptions):
     """As group behavior: half the angle one sees without turning."""
 
 
-BEHAVIORS.register(Sfm)
+BEHAVIORS.register(Sfm, kernel=core.SfmOptions)

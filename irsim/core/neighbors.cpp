@@ -34,7 +34,7 @@ const Neighbors& neighbors(const World& world, const State& state, Workspace& wo
   if (near.known) return near;
   near.known = true;
   near.used = 0;
-  near.off_centre = 0.0;
+  near.off_centre = near.off_origin = 0.0;
   near.lines.clear();
   near.bounds.resize(world.moving.size());
   near.discs.resize(world.moving.size());
@@ -50,6 +50,7 @@ const Neighbors& neighbors(const World& world, const State& state, Workspace& wo
       near.lines.push_back(i);
     } else {
       near.off_centre = std::max(near.off_centre, norm(shapes.centroid[i] - shapes.centre[i]));
+      near.off_origin = std::max(near.off_origin, norm(shapes.centre[i]));
     }
   }
   return near;

@@ -26,7 +26,8 @@ struct Neighbors {
   std::vector<Vec2> bounds;  // centre of the bounding circle; NaN for linestrings
   std::vector<Disc> discs;
   std::vector<int> lines;  // ids of moving linestrings
-  double off_centre = 0;   // no disc is farther than this from the centre of the bounding circle [m]
+  // no disc, and no origin, is farther than this from the centre of the bounding circle [m]
+  double off_centre = 0, off_origin = 0;
 
   struct Level {
     double cell;

@@ -1,0 +1,148 @@
+#include "behaviors/sfm.hpp"
+
+#include "geometry/predicates.hpp"
+#include "surroundings.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // of two objects: no direction, no force [m]
+constexpr double kStraight = 1e-12;  // smaller angles are rounding errors: the other is straight ahead [rad]
+constexpr double kOnWall = 1e-9;     // of a wall [m]
+constexpr double kWallReach = 5.0;   // walls act within so many sigmas
+constexpr double kTolerance = 0.02;  // heading error that is left alone [rad]
+
+/// Of another disc: away along the interaction, and sideways.
+Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
+  const Vec2 way = other.centre - ego.position;
+  const double distance = norm(way);
+  if (distance < kSamePlace) return {};
+  const Vec2 towards = way * (1.0 / distance);
+  const Vec2 interaction = (ego.velocity - other.velocity) * o.lambda_importance + towards;
+  const double length = norm(interaction);
+  if (!(length > 0.0)) return {};
+  const Vec2 along = interaction * (1.0 / length);
+  const double reach = o.gamma * length;
+  const double angle = std::atan2(cross(along, towards), dot(along, towards));
+  const double gap = std::max(distance - 2.0 * o.safety_radius, 0.0);
+  const double braking = o.n_velocity * reach * angle, turning = o.n_angular * reach * angle;
+  const double sign = angle > kStraight ? 1.0 : angle < -kStraight ? -1.0 : 0.0;
+  const double f_velocity = -std::exp(-gap / reach - braking * braking);
+  const double f_angular = -sign * std::exp(-gap / reach - turning * turning);
+  return along * f_velocity + Vec2{-along.y, along.x} * f_angular;
+}
+
+/// Away from the nearest point of a wall.
+Vec2 wall_force(const SfmOptions& o, const Ego& ego, Vec2 nearest) {
+  const Vec2 away = ego.position - nearest;
+  const double distance = norm(away);
+  if (distance > kWallReach * o.sigma_obstacle + ego.radius) return {};
+  if (distance < kOnWall) return {1.0, 0.0};
+  return away * (std::exp(-std::max(distance - ego.radius, 0.0) / o.sigma_obstacle) / distance);
+}
+
+/// Whether the nearest point is the corner where `next` starts, and `next` faces the ego: then `next` speaks for it.
+bool shared_corner(const Walls& walls, const Wall& wall, Vec2 nearest, Vec2 position) {
+  if (wall.next < 0 || nearest.x != wall.b.x || nearest.y != wall.b.y) return false;
+  const Wall& next = walls.list[wall.next];
+  const Vec2 along = next.b - next.a;
+  return cross(along, position - next.a) <= 0.0 && dot(position - next.a, along) <= 0.0;
+}
+
+Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& ego) {
+  Vec2 force;
+  const double reach = kWallReach * o.sigma_obstacle + ego.radius;
+  for_lines(decision, ego, reach,
+            [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); });
+  const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
+  for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
+    const Vec2 nearest = nearest_on_segment(wall.a, wall.b, ego.position);
+    if (!shared_corner(walls, wall, nearest, ego.position)) force = force + wall_force(o, ego, nearest);
+  });
+  return force;
+}
+
+/// What the members of one social group do to each other.
+struct Companions {
+  const SfmOptions& options;
+  const Decision& decision;
+  const std::vector<int>& positions;  // in Decision::members; those beyond are nobody
+
+  template <class Visit>
+  void each(Visit&& visit) const {
+    for (const int position : positions) {
+      if (position >= static_cast<int>(decision.members.size())) continue;
+      const int id = decision.members[position], row = decision.first_row + id;
+      const Scene& scene = decision.state.scenes[decision.w()];
+      visit(id, decision.state.pose[row].position(), scene.shapes->radius[id] + kPadding);
+    }
+  }
+
+  Vec2 force(const Ego& ego) const {
+    Vec2 sum, repulsion;
+    double size = 0.0;
+    each([&](int id, Vec2 position, double radius) {
+      sum = sum + position;
+      size += 1.0;
+      const Vec2 apart = ego.position - position;
+      if (id != ego.id && norm(apart) < options.group_repulsion_threshold.value_or(ego.radius + radius)) {
+        repulsion = repulsion + apart;
+      }
+    });
+    if (size < 2.0) return {};
+    const Vec2 to_middle = sum * (1.0 / size) - ego.position;
+    const Vec2 to_others = (sum - ego.position) * (1.0 / (size - 1.0)) - ego.position;
+    const Vec2 coherence = to_middle * (0.5 * (std::tanh(norm(to_middle) - 0.5 * (size - 1.0)) + 1.0));
+    return coherence * options.force_factor_coherence + repulsion * options.force_factor_group_repulsion +
+           gaze(ego, to_others) * options.force_factor_gaze;
+  }
+
+  /// Slower, when the others are not in view.
+  Vec2 gaze(const Ego& ego, Vec2 to_others) const {
+    const double lengths = norm(ego.velocity) * norm(to_others);
+    if (!(lengths > 0.0)) return {};
+    const double angle = std::acos(clip(dot(ego.velocity, to_others) / lengths, -1.0, 1.0));
+    return ego.velocity * -std::max(angle - options.gaze_vision_angle * (kPi / 180.0), 0.0);
+  }
+};
+
+Vec2 group_force(const SfmOptions& o, const Decision& decision, const Ego& ego) {
+  if (!decision.grouped || !o.social_groups) return {};
+  for (const std::vector<int>& positions : *o.social_groups) {
+    for (const int position : positions) {
+      if (position >= static_cast<int>(decision.members.size()) || decision.members[position] != ego.id) continue;
+      return Companions{o, decision, positions}.force(ego);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
+  const World& world = decision.world;
+  const double dt = world.step_time;
+  for (int k = 0; k < decision.count; ++k) {
+    const Ego ego = ego_of(decision, k);
+    const double speed = norm(ego.desired);
+    const Vec2 desired = speed > 0.0 ? ego.desired * (options.vmax / speed) : Vec2{};
+    Vec2 social;
+    for_discs(decision, ego, options.neighbor_threshold,
+              [&](const Disc& other) { social = social + social_force(options, ego, other); });
+    const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
+                       social * options.force_factor_social +
+                       obstacle_force(options, decision, ego) * options.force_factor_obstacle +
+                       group_force(options, decision, ego);
+    Vec2 velocity = ego.velocity + force * dt;
+    const double fast = norm(velocity);
+    if (fast > options.vmax) velocity = velocity * (options.vmax / fast);
+    Turning turning;
+    turning.tolerance = kTolerance;
+    turning.guarantee_time = dt;
+    turning.max_rate =
+        std::min(world.vel_max[ego.id][1], decision.state.control[ego.row][1] + world.acce[ego.id][1] * dt);
+    intents[k] = Intent::of_velocity(velocity, turning);
+  }
+}
+
+}  // namespace irsim

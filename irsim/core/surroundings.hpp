@@ -1,0 +1,76 @@
+// What one object sees of itself and of others when it decides (reference: 5.2).
+#pragma once
+
+#include "decision.hpp"
+
+namespace irsim {
+
+constexpr double kPadding = 0.1;  // added to every radius that behaviors see [m]
+
+/// Object k of a decision, world frame.
+struct Ego {
+  int id, row;
+  Vec2 position, velocity;  // origin [m], present command at the present heading [m/s]
+  Vec2 desired;             // toward the goal at full speed [m/s]; zero within 0.1 m of it, and without goal
+  double radius;            // padded [m]
+};
+Ego ego_of(const Decision& decision, int k);
+
+/// Whether `other` is shown to `ego`: not itself, and of a role that the behavior targets or a member of its group.
+inline bool shown(const Decision& decision, int ego, int other) {
+  const World& world = decision.world;
+  if (other == ego) return false;
+  const int roles = world.target_roles[ego];
+  if (roles == 0 || (roles == 1) == (world.is_robot[other] != 0)) return true;
+  return decision.grouped && world.group[other] == world.group[ego];
+}
+
+/// Calls `visit(disc)`, by ascending id, for every other disc whose centre is nearer than `reach`; radii as they are.
+/// Members of a group behavior know each other's origins and see those as the centres.
+template <class Visit>
+void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const World& world = decision.world;
+  const int w = decision.w();
+  const Neighbors& near = neighbors(world, decision.state, decision.work, w);
+  const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
+  for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
+    if (!shown(decision, ego.id, other)) return;
+    Disc disc = disc_of(world, decision.state, decision.work, w, other);
+    if (decision.grouped && world.group[other] == world.group[ego.id]) {
+      disc.centre = decision.state.pose[decision.first_row + other].position();
+    }
+    if (squared(disc.centre - ego.position) < reach * reach) visit(disc);
+  });
+}
+
+/// Calls `visit(a, b)` for the segments of linestrings, static ones first, moving ones wherever they are.
+template <class Visit>
+void for_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const int w = decision.w();
+  const Scene& scene = decision.state.scenes[w];
+  for_walls(scene.fixed->lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
+    if (shown(decision, ego.id, line.object)) visit(line.a, line.b);
+  });
+  for (const int object : neighbors(decision.world, decision.state, decision.work, w).lines) {
+    if (!shown(decision, ego.id, object)) continue;
+    const Shapes& shapes = *scene.shapes;
+    const int row = decision.first_row + object;
+    const Vec2 origin = decision.state.pose[row].position(), direction = decision.state.heading(row);
+    const Part& part = shapes.parts[shapes.body[object].part];
+    const Vec2* vertices = &shapes.vertices[shapes.body[object].vertex];
+    for (int v = part.first; v < part.last; ++v) {
+      visit(origin + rotate(vertices[v], direction), origin + rotate(vertices[v + 1], direction));
+    }
+  }
+}
+
+/// Calls `visit(wall)` for the walls within `reach` that turn their outside to the ego.
+template <class Visit>
+void for_facing_walls(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
+  for_walls(walls, decision.work.walls, ego.position, reach, [&](const Wall& wall) {
+    if (shown(decision, ego.id, wall.object) && cross(wall.b - wall.a, ego.position - wall.a) <= 0.0) visit(wall);
+  });
+}
+
+}  // namespace irsim
