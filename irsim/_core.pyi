@@ -47,6 +47,30 @@ class OrcaOptions(_Options):
         maxSpeed: float | None,
     ) -> None: ...
 
+class SfmOptions(_Options):
+    def __init__(
+        self,
+        *,
+        vmax: float,
+        neighbor_threshold: float,
+        relaxation_time: float,
+        force_factor_desired: float,
+        force_factor_social: float,
+        force_factor_obstacle: float,
+        sigma_obstacle: float,
+        lambda_importance: float,
+        gamma: float,
+        n_angular: float,
+        n_velocity: float,
+        safety_radius: float,
+        social_groups: Sequence[Sequence[int]] | None,
+        force_factor_coherence: float,
+        force_factor_group_repulsion: float,
+        group_repulsion_threshold: float | None,
+        force_factor_gaze: float,
+        gaze_vision_angle: float,
+    ) -> None: ...
+
 # sensors (core/sensors/)
 class Lidar2dOptions(_Options):
     def __init__(

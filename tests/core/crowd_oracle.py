@@ -95,9 +95,7 @@ def group_force(o: Any, view: View, companions: Sequence[tuple[np.ndarray, float
         angle = abs(math.atan2(cross(view.velocity, to_others), view.velocity @ to_others))
         gaze = -max(angle - math.radians(o.gaze_vision_angle), 0.0) * view.velocity
     return (
-        o.force_factor_coherence * coherence
-        + o.force_factor_group_repulsion * repulsion
-        + o.force_factor_gaze * gaze
+        o.force_factor_coherence * coherence + o.force_factor_group_repulsion * repulsion + o.force_factor_gaze * gaze
     )
 
 

@@ -17,7 +17,7 @@ robot:
   - kinematics: {name: dif}
     shape: {name: circle, radius: -1}
     state: [1, 1, 0]
-    behavior: {name: orca}
+    behavior: {name: orka}
     goal: [20, 3]
 """
 
@@ -43,7 +43,7 @@ async def test_invalid_is_data_with_every_problem_and_its_fix(workspace: Path) -
     assert ("unknown-key", "world.heigth", 1) in issues
     assert ("unknown-kinematics", "robot[0].kinematics.name", 3) in issues
     assert ("out-of-range", "robot[0].shape.radius", 4) in issues
-    assert ("not-yet-simulated", "robot[0].behavior.name", 6) in issues
+    assert ("unknown-behavior", "robot[0].behavior.name", 6) in issues
     assert data["error_count"] == sum(issue["severity"] == "error" for issue in data["issues"]) == 4
     assert "height" in issues["unknown-key", "world.heigth", 1]["fix"]
     for issue in data["issues"]:

@@ -164,9 +164,7 @@ LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
     ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
     ({"world": {"boundary": "walls"}}, ("world", "boundary")),
     (robot(behavior={"name": "rvo"}), ("robot", 0, "behavior", "name")),
-    (robot(behavior={"name": "sfm"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
-    (robot(group_behavior={"name": "sfm"}), ("robot", 0, "group_behavior", "name")),
 ]
 
 

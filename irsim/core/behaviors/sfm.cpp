@@ -42,8 +42,8 @@ Vec2 wall_force(const SfmOptions& o, const Ego& ego, Vec2 nearest) {
 }
 
 /// Whether the nearest point is the corner where `next` starts, and `next` faces the ego: then `next` speaks for it.
-bool shared_corner(const Walls& walls, const Wall& wall, Vec2 nearest, Vec2 position) {
-  if (wall.next < 0 || nearest.x != wall.b.x || nearest.y != wall.b.y) return false;
+bool shared_corner(const Walls& walls, const Wall& wall, Vec2 position) {
+  if (wall.next < 0 || dot(position - wall.b, wall.b - wall.a) < 0.0) return false;
   const Wall& next = walls.list[wall.next];
   const Vec2 along = next.b - next.a;
   return cross(along, position - next.a) <= 0.0 && dot(position - next.a, along) <= 0.0;
@@ -56,8 +56,8 @@ Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& eg
             [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); });
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
   for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
-    const Vec2 nearest = nearest_on_segment(wall.a, wall.b, ego.position);
-    if (!shared_corner(walls, wall, nearest, ego.position)) force = force + wall_force(o, ego, nearest);
+    if (shared_corner(walls, wall, ego.position)) return;
+    force = force + wall_force(o, ego, nearest_on_segment(wall.a, wall.b, ego.position));
   });
   return force;
 }
