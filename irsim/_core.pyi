@@ -408,7 +408,39 @@ def finish(world: World, state: State) -> None:
 
 # Used by the Python API and by tests
 def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
-    """Controls with which the drive of a row realises a world-frame velocity [m/s] (zero without a native drive)."""
+    """Controls with which the drive of a row realises a world-frame velocity [m/s]; that itself without one."""
+
+# The phases for one object alone; they look neither at `given` of others nor at the clock
+def renew_row(world: World, state: State, row: int) -> None:
+    """A wanderer's next random goal, a looper's goals again; nothing for others."""
+
+def decide_row(world: World, state: State, row: int) -> None:
+    """Let the native behavior of a row fill its `command`; zero without one."""
+
+def limit_row(world: World, state: State, row: int) -> None: ...
+def integrate_row(world: World, state: State, row: int) -> None: ...
+def remember_row(world: World, state: State, row: int) -> None:
+    """Append the row's present pose to its history."""
+
+# Drives without a world
+def drive_step(
+    drive: _Options, state: Sequence[float], control: Sequence[float], dt: float
+) -> tuple[list[float], list[float]]:
+    """(state after one period, twist); as many state rows as given, at least 3."""
+
+def drive_follow(
+    drive: _Options,
+    state: Sequence[float],
+    velocity: Sequence[float],
+    min_speed: float = ...,
+    tolerance: float = ...,
+    guarantee_time: float = ...,
+    max_rate: float = ...,
+) -> list[float]:
+    """Three controls (surplus ones zero) with which a drive realises a world-frame velocity [m/s]."""
+
+def drive_deviation(drive: _Options, control: Sequence[float]) -> list[float]:
+    """Standard deviations of the motion noise of three controls."""
 
 def neighbors(
     world: World, state: State, index: int, centre: tuple[float, float], reach: float

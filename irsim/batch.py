@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.python_behaviors import attach_python_behaviors
+from irsim.python_parts import attach_python
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
-from irsim.sensing import attach_python_sensors
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed
 
@@ -50,8 +49,7 @@ class Batch:
         self.scenario = scenario
         self.seeds = [check_seed(seed) for seed in seeds]
         self._simulation = Simulation(scenario, self.seeds, threads=threads)
-        attach_python_behaviors(self._simulation)
-        attach_python_sensors(self._simulation)
+        attach_python(self._simulation)
         simulation, n, objects = self._simulation, len(self.seeds), self._simulation.objects
         self.n = n
         self.names = tuple(record.name for record in scenario.objects)

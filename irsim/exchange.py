@@ -10,8 +10,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from irsim.python_behaviors import attach_python_behaviors
-from irsim.sensing import attach_python_sensors
+from irsim.python_drives import attach_python_drives
+from irsim.python_parts import attach_python
 from irsim.simulation import Simulation
 from irsim.views import ObjectView, set_views, views
 
@@ -26,6 +26,7 @@ def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simula
     world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none"})
     simulation = Simulation(replace(scenario, world=world, objects=[record], placements=[]), [seed], history=True)
     simulation.user = record.id + 1
+    attach_python_drives(simulation)
     return simulation
 
 
@@ -69,8 +70,7 @@ def _exchange(simulation: Simulation, shown: Sequence[ObjectView], records: Sequ
 def _settle(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
     """After other rows: who is where, and where code of users takes part."""
     set_views(simulation, shown)
-    attach_python_behaviors(simulation)
-    attach_python_sensors(simulation)
+    attach_python(simulation)
 
 
 def _keep(view: ObjectView, own: Simulation) -> None:

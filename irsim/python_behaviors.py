@@ -156,9 +156,7 @@ def _is_own(record: ObjectRecord, options: Any, table: CustomBehaviors) -> bool:
 
 
 def _impose(simulation: Simulation, view: ObjectView, name: str, control: Any) -> None:
-    values = _checked(control, name, view)
-    simulation.command[view.row, : values.size] = values
-    simulation.given[view.row] = 1
+    simulation.impose(view.row, _checked(control, name, view))
 
 
 def _unknown(simulation: Simulation, view: ObjectView, name: str) -> ScenarioError:

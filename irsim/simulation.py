@@ -16,6 +16,8 @@ from irsim.streams import generator
 from irsim.world.build import build_world
 
 if TYPE_CHECKING:
+    from irsim.hooks import Hooks
+    from irsim.python_drives import PythonDrives
     from irsim.scenario.objects import ResolvedScenario
 
 __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
@@ -50,6 +52,8 @@ class Simulation:
         passable: Ids of those that are ``unobstructed``.
         decisions: Python behaviors, called in every step; empty in worlds that have none.
         measurements: Python sensors, called after every step, reset and refresh; empty in worlds that have none.
+        drives: Drives written in Python; None where there are none.
+        hooks: Objects with steps, or parts of steps, of their own; None where there are none.
         scene_drawn: Called with the indices of worlds that have begun their next scene.
         report: Told once about what goes wrong in code of users and does not end the run.
         revision: Grows whenever objects come, go or change their shape.
@@ -72,6 +76,8 @@ class Simulation:
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
         self.measurements: list[PythonMeasurement] = []
+        self.drives: PythonDrives | None = None
+        self.hooks: Hooks | None = None
         self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
         self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
@@ -140,16 +146,28 @@ class Simulation:
 
     def step(self) -> None:
         """Advance every world by one period."""
-        if not self.decisions:
+        drives, hooks = self.drives, self.hooks
+        if not self.decisions and drives is None and hooks is None:
             core.advance(self.world, self.state, 1, threads=self.threads)
             self.measure()
             return
         world, state = self.world, self.state
-        core.decide(world, state)
+        if hooks is None:
+            core.decide(world, state)
+        else:
+            hooks.decide()
         for decide in self.decisions:
             decide(self)
+        if drives is not None:
+            drives.follow()
+        if hooks is not None:
+            hooks.before_motion()
         core.limit(world, state)
         core.integrate(world, state)
+        if drives is not None:
+            drives.move()
+        if hooks is not None:
+            hooks.after_motion()
         core.finish(world, state)
         core.collide(world, state)
         core.arrive(world, state)
@@ -174,7 +192,54 @@ class Simulation:
     @property
     def in_python(self) -> bool:
         """Whether Python code takes part in every step."""
-        return bool(self.decisions or self.measurements)
+        return bool(self.decisions or self.measurements or self.drives is not None or self.hooks is not None)
+
+    # one row ----------------------------------------------------------------------------------------------------------
+    def impose(self, row: int, control: NDArray[np.float64] | Sequence[float]) -> None:
+        """Command a row in the next step, whatever its behavior."""
+        self.command[row, : min(3, len(control))] = control[:3]
+        if len(control) > 3 and self.drives is not None and (wide := self.drives.wide(row)) is not None:
+            wide.command[:] = control
+        self.given[row] = 1
+
+    def command_of(self, row: int, size: int) -> NDArray[np.float64]:
+        """(size,) the command of a row."""
+        wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
+        return self.command[row, :size] if wide is None else wide.command
+
+    def control_of(self, row: int, size: int) -> NDArray[np.float64]:
+        """(size,) the executed control of a row."""
+        wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
+        return self.control[row, :size] if wide is None else wide.control
+
+    def row_state(self, row: int, size: int) -> NDArray[np.float64]:
+        """(size,) pose and extra rows of a row, a copy."""
+        return np.concatenate([self.pose[row], self.extra[row, : size - 3]])
+
+    def set_row_state(self, row: int, values: NDArray[np.float64]) -> None:
+        """Put a row elsewhere."""
+        self.pose[row] = values[:3]
+        self.extra[row, : len(values) - 3] = values[3:]
+
+    def decide_alone(self, view: Any) -> NDArray[np.float64]:
+        """(vel_dim,) what the behavior of one object wants now."""
+        for decide in self.decisions:
+            if view.index in getattr(decide, "objects", ()):
+                return np.asarray(decide.control(view), dtype=np.float64).reshape(-1)  # type: ignore[attr-defined]
+        core.decide_row(self.world, self.state, view.row)
+        wanted = self.command[view.row, : view.vel_dim].copy()
+        if self.drives is None:
+            return wanted
+        return self.drives.control_alone(view.row, wanted)
+
+    def move_alone(self, row: int) -> None:
+        """One period of one object, as commanded."""
+        core.limit_row(self.world, self.state, row)
+        core.integrate_row(self.world, self.state, row)
+        if self.drives is not None:
+            self.drives.move_row(row)
+
+    # all rows ---------------------------------------------------------------------------------------------------------
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Advance by up to ``steps`` periods without coming back to Python in between where no Python takes part.
@@ -215,6 +280,8 @@ class Simulation:
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
         self.state.reset(chosen, next_scene)
         self._check_placement()
+        if self.drives is not None:
+            self.drives.reset(np.flatnonzero(chosen).tolist())
         if next_scene:
             for told in self.scene_drawn:
                 told(np.flatnonzero(chosen).tolist())

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.body import ObjectBody, column
+from irsim.hooks import ObjectHooks
 from irsim.info import ObjectInfo, ObstacleInfo
 from irsim.scans import Lidar2D
 from irsim.sensing import attach_sensors, sensors_of
 
 if TYPE_CHECKING:
+    from irsim.kinematics._handler import KinematicsHandler
     from irsim.scenario.objects import ObjectRecord
     from irsim.simulation import Simulation
 
@@ -24,7 +26,7 @@ __all__ = ["ObjectView", "set_views", "views"]
 Floats = NDArray[np.float64]
 
 
-class ObjectView(ObjectBody):
+class ObjectView(ObjectBody, ObjectHooks):
     """One robot or obstacle.
 
     Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
@@ -79,6 +81,27 @@ class ObjectView(ObjectBody):
         self._state = simulation.pose[self.row, :, None]
         if self.sensors:
             attach_sensors(simulation, self)
+        self._take_part()
+
+    @property
+    def _handler(self) -> KinematicsHandler | None:
+        """The drive, where a user wrote it."""
+        drives = self._simulation.drives
+        return None if drives is None else drives.handler(self.row)
+
+    @property
+    def kf(self) -> KinematicsHandler:
+        """The drive: constructed by the engine where a user wrote it, else one that computes the same."""
+        if (handler := self._handler) is not None:
+            return handler
+        from irsim.lib.handler.kinematics_handler import KinematicsFactory
+
+        options: Any = self.record.kinematics
+        if options is None:
+            return KinematicsFactory.create_kinematics("static")
+        return KinematicsFactory.create_kinematics(
+            options.name, options.noise, options.alpha, options.mode, self.record.wheelbase, self.role, options.tau
+        )
 
     # state -----------------------------------------------------------------------------------------------------------
     @property
@@ -110,6 +133,8 @@ class ObjectView(ObjectBody):
     @property
     def heading(self) -> float:
         """Direction of travel of an ``omni`` drive, of the body otherwise [rad]."""
+        if (handler := self._handler) is not None:
+            return float(handler.compute_heading(self.state, self.velocity))
         if self.kinematics == "omni":
             forward, lateral = self._simulation.control[self.row, :2]
             return math.atan2(lateral, forward) + float(self._pose[2])
@@ -118,11 +143,13 @@ class ObjectView(ObjectBody):
     @property
     def velocity(self) -> Floats:
         """(vel_dim, 1) executed control, in the command frame of the drive."""
-        return column(self._simulation.control[self.row, : self.vel_dim])
+        return column(self._simulation.control_of(self.row, self.vel_dim))
 
     @property
     def velocity_xy(self) -> Floats:
         """(2, 1) velocity in the world frame [m/s] that the present control gives."""
+        if (handler := self._handler) is not None:
+            return column(handler.velocity_to_xy(self.state, self.velocity))
         return column(self._simulation.state.velocity_world(self.row))
 
     @property
@@ -131,6 +158,8 @@ class ObjectView(ObjectBody):
         top = self.record.vel_max
         if self.kinematics is None:
             return 0.0
+        if (handler := self._handler) is not None:
+            return float(handler.compute_max_speed(self.vel_max))
         if self.kinematics in ("omni", "omni_angular"):
             return math.hypot(top[0], top[1])
         return float(top[0])
@@ -172,7 +201,9 @@ class ObjectView(ObjectBody):
         values = np.asarray(velocity, dtype=np.float64).reshape(-1)
         if values.size != self.vel_dim:
             raise ValueError(f"the velocity of {self.name!r} is {self.vel_dim} numbers, not {velocity!r}")
-        self._simulation.control[self.row, : self.vel_dim] = values
+        self._simulation.control[self.row, : min(3, self.vel_dim)] = values[:3]
+        if self.vel_dim > 3:
+            self._simulation.control_of(self.row, self.vel_dim)[:] = values
         if init:
             self._simulation.state.set_initial(self.row, pose=False, control=True)
 

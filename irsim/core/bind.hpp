@@ -113,6 +113,7 @@ void bind_features(nb::module_& m);
 void bind_world(nb::module_& m);
 void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);
+void bind_object(nb::module_& m);
 void bind_tools(nb::module_& m);
 
 }  // namespace irsim

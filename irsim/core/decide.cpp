@@ -1,4 +1,6 @@
 // Goals of those who have arrived are renewed, then behaviors choose.
+#include <algorithm>
+
 #include "features.hpp"
 #include "phases.hpp"
 
@@ -9,7 +11,25 @@ bool idle(const World& world, const State& state, int first, int object) {
   return world.is_static[object] || state.stopped[first + object];
 }
 
-/// wander: a new random goal. loop: the initial goals again; a single goal alternates with the start.
+/// Let `group` decide for the objects listed in `work.objects`.
+void choose(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
+  const int first = w * world.objects, count = static_cast<int>(work.objects.size());
+  if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
+  const Decision decision{world, state, first, work.objects.data(), count, group.members, group.grouped, work};
+  Intent* intents = work.intents.data();
+  with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
+  for (int k = 0; k < count; ++k) {
+    const int object = work.objects[k];
+    const Intent& intent = intents[k];
+    state.infeasible[first + object] += intent.infeasible;
+    state.command[first + object] = intent.kind == Intent::control_body
+                                        ? intent.control
+                                        : control_for(world, state, w, object, intent.velocity, intent.turning);
+  }
+}
+
+}  // namespace
+
 void renew(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   if (world.wander[object]) return draw_wander_goal(world, state, w, object);
@@ -24,13 +44,11 @@ void renew(const World& world, State& state, int w, int object) {
   state.sync_goal(row);
 }
 
-}  // namespace
-
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning) {
   const int row = w * world.objects + object;
   const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
                   state.heading(row), turning};
-  Vec3 control;
+  Vec3 control{{velocity.x, velocity.y, 0.0}};  // whoever moves objects without a native drive turns it into controls
   with(world.drive[object], [&](const auto& drive) { control = follow(drive, wish); });
   return control;
 }
@@ -49,20 +67,17 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     for (const int i : group.objects) {
       if (!idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
     }
-    if (work.objects.empty()) continue;
-    const int count = static_cast<int>(work.objects.size());
-    if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
-    const Decision decision{world, state, first, work.objects.data(), count, group.members, group.grouped, work};
-    Intent* intents = work.intents.data();
-    with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
-    for (int k = 0; k < count; ++k) {
-      const int object = work.objects[k];
-      const Intent& intent = intents[k];
-      state.infeasible[first + object] += intent.infeasible;
-      state.command[first + object] = intent.kind == Intent::control_body
-                                          ? intent.control
-                                          : control_for(world, state, w, object, intent.velocity, intent.turning);
-    }
+    if (!work.objects.empty()) choose(world, state, w, group, work);
+  }
+}
+
+void decide(const World& world, State& state, int w, Workspace& work, int object) {
+  work.neighbors.known = work.orca.known = false;
+  state.command[w * world.objects + object] = {};
+  for (const BehaviorGroup& group : world.behaviors) {
+    if (std::find(group.objects.begin(), group.objects.end(), object) == group.objects.end()) continue;
+    work.objects.assign(1, object);
+    choose(world, state, w, group, work);
   }
 }
 

@@ -7,5 +7,6 @@ NB_MODULE(_core, m) {
   irsim::bind_world(m);
   irsim::bind_state(m);
   irsim::bind_steps(m);
+  irsim::bind_object(m);
   irsim::bind_tools(m);
 }

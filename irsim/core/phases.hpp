@@ -21,6 +21,15 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
 /// Whether every robot of world w is stopped or has arrived; a world without robots never is done.
 bool done(const World& world, const State& state, int w);
 
+/// The same for one object alone.
+void decide(const World& world, State& state, int w, Workspace& work, int object);
+void limit(const World& world, State& state, int w, int object);
+void integrate(const World& world, State& state, int w, int object);
+/// wander: a new random goal. loop: the initial goals again; a single goal alternates with the start.
+void renew(const World& world, State& state, int w, int object);
+/// Append the present pose of a row to its history.
+void remember(State& state, int row);
+
 /// The control of `object` that realises a world-frame velocity.
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning);
 

@@ -17,10 +17,9 @@ from irsim.observers.events import Event, read_events
 from irsim.observers.outcome import Outcome, outcome_of
 from irsim.observers.trace import Rollout, record_rollout
 from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
-from irsim.python_behaviors import attach_python_behaviors
+from irsim.python_parts import attach_python
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
-from irsim.sensing import attach_python_sensors
 from irsim.simulation import Simulation
 from irsim.streams import check_seed, fresh_seed
 from irsim.views import views
@@ -127,8 +126,7 @@ class Env(EnvObjects, EnvCustom):
         seed = fresh_seed() if chosen is None else check_seed(chosen)
         simulation = Simulation(scenario, [seed], history=True)
         simulation.report = self.logger.error_once
-        attach_python_behaviors(simulation)
-        attach_python_sensors(simulation)
+        attach_python(simulation)
         self.scenario, self.step_mode, self.seed, self._simulation = scenario, mode, seed, simulation
         self._originals = views(simulation)
         self._objects = list(self._originals)
@@ -164,8 +162,7 @@ class Env(EnvObjects, EnvCustom):
         else:
             if action is not None:
                 for view, control in assign_actions(self._objects, action, action_id, self.logger.warning_once):
-                    simulation.command[view.row, : len(control)] = control
-                    simulation.given[view.row] = 1
+                    simulation.impose(view.row, control)
             simulation.step()
         self._after_step()
 

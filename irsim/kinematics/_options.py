@@ -22,6 +22,16 @@ class KinematicsOptions(Options):
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "angular")
     """Names of the control components, in the order of ``vel_max``, ``velocity`` and actions."""
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad/s")
+    usual_vel_max: ClassVar[tuple[float, ...]] = ()
+    usual_vel_min: ClassVar[tuple[float, ...]] = ()
+    usual_acce: ClassVar[tuple[float, ...]] = ()
+    """Limits where a scenario gives none; empty: 1, -1 and infinity for each control component."""
+    usual_colors: ClassVar[tuple[str, str] | None] = None
+    """Colours of robots and obstacles where a scenario gives none; None: those of every drive."""
+    picture: ClassVar[str | None] = None
+    """What robots are drawn as where a scenario does not say."""
+    arrow: ClassVar[bool] = True
+    """Whether its heading is drawn where a scenario does not say."""
 
     name: str
     """Which drive: the motion model."""

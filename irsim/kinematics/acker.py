@@ -22,6 +22,7 @@ class Acker(KinematicsOptions):
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "steer")
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
+    picture: ClassVar[str | None] = "car_green.png"
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "acker", "wheelbase": 3.0}]}
 

@@ -73,7 +73,6 @@ class ObjectStyle:
 STYLE_KEYS = frozenset(entry.name for entry in fields(ObjectStyle)) - {"image_zorder"}
 """The keys that a scenario's `plot` and ``env.render(...)`` understand."""
 
-_ARROW_DRIVES = ("diff", "acker", "omni_angular")
 _TEXT_GAP = 0.1
 
 
@@ -108,7 +107,6 @@ def resolve_style(
         if key not in plot.model_fields_set:
             values[key] = standard
     values.update((key, value) for key, value in overrides.items() if key in STYLE_KEYS and value is not None)
-    drive = getattr(record.kinematics, "name", None)
     own = {
         "obj_color": color,
         "goal_color": color,
@@ -118,7 +116,7 @@ def resolve_style(
         "traj_width": width,
         "text_position": (-radius - _TEXT_GAP, radius + _TEXT_GAP),
         "trail_type": shape,
-        "show_arrow": drive in _ARROW_DRIVES and not record.static,
+        "show_arrow": getattr(record.kinematics, "arrow", False) and not record.static,
         "image_zorder": 2.0 if values["obj_zorder"] is None else values["obj_zorder"],
         "obj_zorder": 3.0 if record.role == "robot" else 1.0,
     }

@@ -22,7 +22,6 @@ Role = Literal["robot", "obstacle"]
 DEFAULT_STATE = [1.0, 1.0, 0.0]
 DEFAULT_GOAL = [1.0, 9.0, 0.0]
 DEFAULT_RADIUS = 1.0
-ACKER_PICTURE = "car_green.png"
 _STATIC_CONTROLS = 3  # rows of the control of an object that never moves, as in IR-SIM
 _MARGIN = 0.5  # of random placement and the circle distribution, from the world's edge [m]
 
@@ -146,9 +145,9 @@ class _Maker:
             state=_fitted(DEFAULT_STATE if state is None else state, state_dim),
             goals=[] if random else self._goals(value, placed),
             velocity=_control(value["velocity"], 0.0, vel_dim, kinematics),
-            vel_min=_limit(value["vel_min"], -1.0, vel_dim, kinematics),
-            vel_max=_limit(value["vel_max"], 1.0, vel_dim, kinematics),
-            acce=_control(value["acce"], math.inf, vel_dim, kinematics),
+            vel_min=_limit(value["vel_min"], "vel_min", vel_dim, kinematics),
+            vel_max=_limit(value["vel_max"], "vel_max", vel_dim, kinematics),
+            acce=_control(_usual(value["acce"], "acce", vel_dim, kinematics), math.inf, vel_dim, kinematics),
             state_dim=state_dim,
             vel_dim=vel_dim,
             angle_range=(angles[0], angles[0] + 2 * math.pi) if value["angle_range"] else (-math.pi, math.pi),
@@ -203,6 +202,8 @@ class _Maker:
         if kinematics is None:
             pushable = not self.entry.static and value["mass"] is not None and math.isfinite(value["mass"])
             return PUSHABLE_COLOR if pushable else OBSTACLE_COLOR
+        if kinematics.usual_colors is not None:
+            return kinematics.usual_colors[self.role == "obstacle"]
         if self.role == "obstacle":
             return OBSTACLE_COLOR
         return ACKER_COLOR if kinematics.name == "acker" else ROBOT_COLOR
@@ -253,11 +254,17 @@ def _control(values: list[float] | None, default: float, size: int, kinematics: 
     return list(values) if kinematics is not None else (list(values) + [default] * size)[:size]
 
 
-def _limit(values: list[float] | None, default: float, size: int, kinematics: Any) -> list[float]:
+def _limit(values: list[float] | None, key: Literal["vel_min", "vel_max"], size: int, kinematics: Any) -> list[float]:
     """Limits of the control components; a single number holds for all of them."""
     if values is not None and len(values) == 1:
         return list(values) * size
-    return _control(values, default, size, kinematics)
+    return _control(_usual(values, key, size, kinematics), 1.0 if key == "vel_max" else -1.0, size, kinematics)
+
+
+def _usual(values: list[float] | None, key: str, size: int, kinematics: Any) -> list[float] | None:
+    """What was written, or what the drive usually has, if anything."""
+    usual: tuple[float, ...] = getattr(kinematics, f"usual_{key}", ())
+    return list(usual) if values is None and len(usual) == size else values
 
 
 def _fitted(values: Sequence[float], length: int) -> list[float]:
@@ -266,9 +273,7 @@ def _fitted(values: Sequence[float], length: int) -> list[float]:
 
 
 def _picture(given: str | None, role: Role, kinematics: KinematicsOptions | None) -> str | None:
-    if given is None and role == "robot" and kinematics is not None and kinematics.name == "acker":
-        return ACKER_PICTURE
-    return given
+    return kinematics.picture if given is None and role == "robot" and kinematics is not None else given
 
 
 def _wheelbase(kinematics: KinematicsOptions | None, shape: BaseModel) -> float | None:

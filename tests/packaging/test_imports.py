@@ -20,7 +20,7 @@ LAYERS = (
     "world simulation",
     (
         "actions batch body env env_access env_custom env_drawing env_objects exchange hooks info observers parameters"
-        " python_behaviors python_drives render scans sensing views"
+        " python_behaviors python_drives python_parts render scans sensing views"
     ),
     "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
     "cli __main__",
@@ -30,6 +30,7 @@ LAYERS = (
 
 EXCEPTIONS = {
     ("errors", "scenario"),  # a ScenarioError prints itself with the report of that package, loaded at that moment
+    ("views", "lib"),  # robot.kf is a handler of that package, made when somebody asks
     ("render", "api"),  # irsim.render is a function too: calling the package calls the one of irsim.api
 }
 """Imports inside functions that may point down the list."""

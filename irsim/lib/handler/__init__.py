@@ -1,0 +1,5 @@
+"""Names that IR-SIM scripts import from ``irsim.lib.handler``; plain re-exports."""
+
+from irsim.lib.handler.kinematics_handler import KinematicsFactory, KinematicsHandler, register_kinematics
+
+__all__ = ["KinematicsFactory", "KinematicsHandler", "register_kinematics"]

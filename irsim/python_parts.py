@@ -1,0 +1,17 @@
+"""Everything in a simulation that users wrote in Python."""
+
+from __future__ import annotations
+
+from irsim.python_behaviors import attach_python_behaviors
+from irsim.python_drives import attach_python_drives
+from irsim.sensing import attach_python_sensors
+from irsim.simulation import Simulation
+
+__all__ = ["attach_python"]
+
+
+def attach_python(simulation: Simulation) -> None:
+    """Let drives, behaviors and sensors of users take part; calling it again looks anew at the objects there are."""
+    attach_python_drives(simulation)
+    attach_python_behaviors(simulation)
+    attach_python_sensors(simulation)

@@ -1,0 +1,240 @@
+"""Drives of users: constructed per object, limited like others, in batches, with sensors, collisions and behaviors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.errors import BehaviorError
+from irsim.lib import KinematicsFactory, KinematicsHandler, register_kinematics
+
+Make = Callable[..., irsim.Env]
+
+
+def register_unicycle() -> list[Any]:
+    """A differential drive in Python; returns the handlers constructed."""
+    made: list[Any] = []
+
+    @register_kinematics("Unicycle")
+    class Unicycle(KinematicsHandler):
+        """Like `diff`, with a counter as fourth state row."""
+
+        state_dim = 4
+        vel_max = (1.5, 2.0)
+        color = "c"
+        obstacle_color = "m"
+
+        def __init__(self, name: str, noise: bool, alpha: Any, gain: float = 1.0) -> None:
+            super().__init__(name, noise, alpha)
+            self.gain = gain
+            made.append(self)
+
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            assert state.shape == (4, 1)
+            assert velocity.shape == (2, 1)
+            x, y, theta, count = state[:, 0]
+            v, w = velocity[:, 0]
+            return np.array(
+                [
+                    [x + self.gain * v * math.cos(theta) * step_time],
+                    [y + self.gain * v * math.sin(theta) * step_time],
+                    [theta + w * step_time],
+                    [count + 1],
+                ]
+            )
+
+    return made
+
+
+SCENARIO = """
+robot:
+  - kinematics: {name: %s}
+    shape: {name: circle, radius: 0.2}
+    state: [1, 1, 0.5]
+    goal: [8, 4]
+    vel_min: [-1.5, -2]
+    vel_max: [1.5, 2]
+    acce: [2, 4]
+    behavior: %s
+    sensors: [{name: lidar2d, number: 9, angle_range: 3.0}]
+obstacle:
+  - {shape: {name: circle, radius: 0.5}, state: [3, 3, 0]}
+"""
+
+
+def test_a_drive_written_like_ours_moves_like_ours(make: Make) -> None:
+    register_unicycle()
+    env, ours = make(SCENARIO % ("unicycle", "null"), strict=True), make(SCENARIO % ("diff", "null"))
+    for step in range(40):
+        for each in (env, ours):
+            each.step([1.0 + 0.01 * step, 0.2])
+        assert env.robot.state[:3] == pytest.approx(ours.robot.state, abs=1e-12)
+        assert env.robot.velocity == pytest.approx(ours.robot.velocity, abs=1e-12)
+        assert env.get_lidar_scan()["ranges"] == pytest.approx(ours.get_lidar_scan()["ranges"], abs=1e-9)
+        assert env.robot.velocity_xy == pytest.approx(ours.robot.velocity_xy, abs=1e-12)
+        assert env.robot.collision == ours.robot.collision
+    assert env.robot.collision, "it has run into the obstacle"
+    assert env.robot.state[3, 0] == len(env.robot.trajectory) < 40, "and stands since"
+    env.reset()
+    assert env.robot.state[:, 0].tolist() == [1.0, 1.0, 0.5, 0.0]
+
+
+@pytest.mark.parametrize("behavior", ["{name: dash}", "{name: orca}"])
+def test_built_in_behaviors_drive_it_to_the_goal(make: Make, behavior: str) -> None:
+    register_unicycle()
+    text = (SCENARIO % ("unicycle", behavior)).replace("state: [3, 3, 0]", "state: [4, 8, 0]")
+    env = make(text)
+    env.rollout(400)
+    assert env.robot.arrive
+
+
+def test_its_own_conversion_of_velocities_is_used(make: Make) -> None:
+    @register_kinematics("sledge")
+    class Sledge(KinematicsHandler):
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return state + np.array([[velocity[0, 0]], [velocity[1, 0]], [0.0]]) * step_time
+
+        def velocity_to_xy(self, state: Any, velocity: Any) -> Any:
+            return velocity[:2]
+
+        def velocity_from_xy(self, state: Any, velocity_xy: Any) -> Any:
+            return velocity_xy
+
+        def compute_max_speed(self, vel_max: Any) -> float:
+            return 7.0
+
+        def compute_heading(self, state: Any, velocity: Any) -> float:
+            return 1.25
+
+    env = make(SCENARIO % ("sledge", "{name: dash}"))
+    env.step()
+    wanted = np.array([7.0, 3.0]) / math.hypot(7, 3) * 1.5
+    assert env.robot.velocity[:, 0] == pytest.approx(np.clip(wanted, [-0.2, -0.4], [0.2, 0.4]))
+    assert env.robot.velocity_xy[:, 0] == pytest.approx(env.robot.velocity[:, 0])
+    assert (env.robot.max_speed, env.robot.heading) == (7.0, 1.25)
+    assert env.robot.kf.name == "sledge"
+
+
+def test_limits_colours_and_rows_of_the_class_are_the_defaults(make: Make) -> None:
+    made = register_unicycle()
+    text = "{kinematics: {name: UNICYCLE, gain: 2.0, noise: true, alpha: [1, 2, 3, 4]}, state: [2, 2, 0]}"
+    env = make(f"robot: [{text}]\nobstacle: [{{kinematics: {{name: unicycle}}, state: [6, 6, 0]}}]")
+    robot, obstacle = env.objects
+    assert robot.vel_max[:, 0].tolist() == [1.5, 2.0]
+    assert robot.vel_min[:, 0].tolist() == [-1.0, -1.0]
+    assert robot.state.shape == (4, 1)
+    assert (robot.color, obstacle.color) == ("c", "m")
+    assert [(h.name, h.gain, h.noise) for h in made] == [("unicycle", 2.0, True), ("unicycle", 1.0, False)]
+    assert list(made[0].alpha) == [1, 2, 3, 4]
+
+
+def test_a_key_that_the_constructor_does_not_take(make: Make) -> None:
+    register_unicycle()
+    with pytest.raises(TypeError, match="grip"):
+        make("robot: {kinematics: {name: unicycle, grip: 3}, state: [2, 2, 0]}")
+
+
+def test_four_wheels(make: Make) -> None:
+    @register_kinematics("four_wheels")
+    class FourWheels(KinematicsHandler):
+        action_dim = 4
+        vel_max = (5.0,) * 4
+        vel_min = (-5.0,) * 4
+        acce = (math.inf, math.inf, math.inf, 10.0)
+
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return state + np.array([[velocity.mean()], [0.0], [0.0]]) * step_time
+
+    env = make("robot: {kinematics: {name: four_wheels}, state: [1, 1, 0], goal: [9, 1], velocity: [0, 0, 0, 1]}")
+    env.step([1, 2, 9, 4])
+    assert env.robot.velocity[:, 0].tolist() == [1, 2, 5, 2]
+    assert env.robot.state[0, 0] == pytest.approx(1.25)
+    env.step()
+    assert env.robot.velocity[:, 0].tolist() == [0, 0, 0, 0], "without behavior and action it stands"
+    env.reset()
+    assert env.robot.velocity[:, 0].tolist() == [0, 0, 0, 1]
+    env = make("robot: {kinematics: {name: four_wheels}, state: [1, 1, 0], goal: [9, 1], behavior: {name: dash}}")
+    with pytest.raises(BehaviorError, match="velocity_from_xy"):
+        env.step()
+
+
+def test_in_a_batch_each_world_is_the_one_alone(make: Make, tmp_path: Path) -> None:
+    made = register_unicycle()
+    text = """
+robot:
+  - number: 3
+    kinematics: {name: unicycle}
+    shape: {name: circle, radius: 0.1}
+    distribution: {name: random}
+    behavior: {name: dash, wander: true}
+"""
+    alone = make(text, seed=8)
+    batch = irsim.batch(tmp_path / "scenario.yaml", 3, seeds=[7, 8, 9])
+    assert len(made) == 12
+    for _ in range(20):
+        alone.step()
+        batch.step()
+    assert (batch.pose[1] == alone.simulation.pose).all()
+    assert (batch.extra[1] == alone.simulation.extra).all()
+    batch.reset(mask=[False, True, False])
+    alone.reset(random=True)
+    batch.step()
+    alone.step()
+    assert (batch.pose[1] == alone.simulation.pose).all()
+
+
+def test_what_is_no_state_is_said_so(make: Make) -> None:
+    @register_kinematics("broken")
+    class Broken(KinematicsHandler):
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return state * math.nan
+
+    env = make("robot: {kinematics: {name: broken}, state: [1, 1, 0]}")
+    with pytest.raises(BehaviorError, match="broken"):
+        env.step()
+
+
+def test_rows_that_a_drive_leaves_out_keep_their_values(make: Make) -> None:
+    @register_kinematics("short")
+    class Short(KinematicsHandler):
+        state_dim = 5
+
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return state[:4] + 1.0
+
+    env = make("robot: {kinematics: {name: short}, state: [1, 1, 0, 5, 6]}")
+    env.step()
+    assert env.robot.state[:, 0].tolist() == [2.0, 2.0, 1.0, 6.0, 6.0]
+
+
+def test_names_are_registered_once() -> None:
+    register_unicycle()
+    with pytest.raises(ValueError, match="already registered"):
+        register_unicycle()
+    with pytest.raises(ValueError, match="already registered"):
+        register_kinematics("diff")(KinematicsHandler)
+    with pytest.raises(TypeError, match="KinematicsHandler"):
+        register_kinematics("odd")(object)  # type: ignore[type-var]
+    assert KinematicsFactory.get_handler_class("unicycle") is not None
+    assert KinematicsFactory.create_kinematics("unicycle", gain=3.0).gain == 3.0  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("name", ["diff", "acker", "omni", "omni_angular"])
+def test_handlers_of_built_in_drives_move_like_the_engine(make: Make, name: str) -> None:
+    controls = [0.7, 0.3, 0.4][: 3 if name == "omni_angular" else 2]
+    env = make(f"robot: {{kinematics: {{name: {name}}}, state: [2, 2, 0.3, 0.1]}}")
+    handler = env.robot.kf
+    assert handler is not None
+    state = np.array(env.robot.state)
+    env.step(controls)
+    column = np.array(controls)[:, None]
+    assert handler.step(state, column, 0.1) == pytest.approx(env.robot.state, abs=1e-12)
+    assert handler.velocity_to_xy(env.robot.state, column) == pytest.approx(env.robot.velocity_xy, abs=1e-12)
+    assert handler.compute_max_speed(env.robot.vel_max) == pytest.approx(env.robot.max_speed)
+    assert handler.compute_heading(env.robot.state, column) == pytest.approx(env.robot.heading)
