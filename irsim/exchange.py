@@ -58,7 +58,7 @@ def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Seque
             own.exchange(own.scenario, [(simulation, view.row)])
             _keep(view, own)
     simulation.restore(scenario)
-    _settle(simulation, originals)
+    _settle(simulation, originals, anew=True)
 
 
 def _exchange(simulation: Simulation, shown: Sequence[ObjectView], records: Sequence[ObjectRecord]) -> None:
@@ -67,10 +67,10 @@ def _exchange(simulation: Simulation, shown: Sequence[ObjectView], records: Sequ
     _settle(simulation, shown)
 
 
-def _settle(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
+def _settle(simulation: Simulation, shown: Sequence[ObjectView], *, anew: bool = False) -> None:
     """After other rows: who is where, and where code of users takes part."""
     set_views(simulation, shown)
-    attach_python(simulation)
+    attach_python(simulation, anew=anew)
 
 
 def _keep(view: ObjectView, own: Simulation) -> None:

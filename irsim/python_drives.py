@@ -233,8 +233,13 @@ def _has_own(record: ObjectRecord, name: str) -> bool:
     return CUSTOM_BEHAVIORS.has(getattr(record.kinematics, "name", None), name)
 
 
-def attach_python_drives(simulation: Simulation) -> None:
-    """Let the drives that users registered move their objects; calling it again looks anew at the objects."""
+def attach_python_drives(simulation: Simulation, *, anew: bool = False) -> None:
+    """Let the drives that users registered move their objects; calling it again looks anew at the objects.
+
+    Args:
+        simulation: Where.
+        anew: Construct the handlers again.
+    """
     drives = simulation.drives
     if drives is None:
         drives = PythonDrives(simulation)
@@ -243,4 +248,4 @@ def attach_python_drives(simulation: Simulation) -> None:
         simulation.drives = drives
         simulation.scene_drawn.append(lambda worlds: drives.prepare(worlds, anew=True))
     drives.find()
-    drives.prepare(range(simulation.copies))
+    drives.prepare(range(simulation.copies), anew=anew)

@@ -10,8 +10,13 @@ from irsim.simulation import Simulation
 __all__ = ["attach_python"]
 
 
-def attach_python(simulation: Simulation) -> None:
-    """Let drives, behaviors and sensors of users take part; calling it again looks anew at the objects there are."""
-    attach_python_drives(simulation)
-    attach_python_behaviors(simulation)
+def attach_python(simulation: Simulation, *, anew: bool = False) -> None:
+    """Let drives, behaviors and sensors of users take part; calling it again looks anew at the objects there are.
+
+    Args:
+        simulation: Where.
+        anew: Construct drives, and behaviors that are classes, again.
+    """
+    attach_python_drives(simulation, anew=anew)
+    attach_python_behaviors(simulation, anew=anew)
     attach_python_sensors(simulation)

@@ -136,8 +136,6 @@ class Simulation:
             state.reset(self._all, True)
         self._reseeded = False
         self._check_placement()
-        for told in self.scene_drawn:
-            told([0])
 
     def reshape(self, row: int, parts: Sequence[core.Part], seed: int = 0) -> None:
         """Give an object another body until the next scene is drawn; ``seed`` is for random parts."""

@@ -238,3 +238,19 @@ def test_handlers_of_built_in_drives_move_like_the_engine(make: Make, name: str)
     assert handler.velocity_to_xy(env.robot.state, column) == pytest.approx(env.robot.velocity_xy, abs=1e-12)
     assert handler.compute_max_speed(env.robot.vel_max) == pytest.approx(env.robot.max_speed)
     assert handler.compute_heading(env.robot.state, column) == pytest.approx(env.robot.heading)
+
+
+def test_objects_with_it_come_and_go(make: Make) -> None:
+    made = register_unicycle()
+    env = make("robot: {kinematics: {name: diff}, state: [1, 1, 0]}")
+    new = env.create_robot(kinematics={"name": "unicycle"}, state=[2, 5, 0], shape={"name": "circle", "radius": 0.1})
+    env.add_object(new)
+    env.step({new.id: [0.5, 0.0]})
+    assert new.state[:, 0].tolist() == pytest.approx([2.05, 5, 0, 1])
+    assert new.kf is made[-1]
+    env.delete_object(0)
+    env.step({new.id: [0.5, 0.0]})
+    assert new.state[:, 0].tolist() == pytest.approx([2.10, 5, 0, 2])
+    env.reset(random=True)
+    assert [view.kinematics for view in env.objects] == ["diff"]
+    env.step()

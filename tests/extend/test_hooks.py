@@ -158,3 +158,20 @@ def test_worlds_without_anything_overridden_stay_in_the_core(make: Make) -> None
     env.step()
     assert env.simulation.hooks is None
     assert not env.simulation.in_python
+
+
+def test_what_comes_and_goes_keeps_its_own_steps(make: Make) -> None:
+    env = make(SCENARIO)
+    calls: list[str] = []
+    env.objects[1].post_process = lambda: calls.append("second")
+    new = env.create_robot(kinematics={"name": "diff"}, state=[2, 8, 0], shape={"name": "circle", "radius": 0.1})
+    new.post_process = lambda: calls.append("new")
+    env.add_object(new)
+    env.step()
+    assert calls == ["second", "new"]
+    env.delete_object(0)
+    env.step()
+    assert calls == ["second", "new"] * 2
+    env.delete_object(env.objects[0].id)
+    env.step()
+    assert calls[4:] == ["new"]
