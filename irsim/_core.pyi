@@ -136,7 +136,72 @@ class RandomPolygon:
         closed: bool,
     ) -> None: ...
 
-Part = Circle | Polygon | Linestring | RandomCircle | RandomPolygon
+class Room:
+    """A closed line that is solid outside: the walls round a world."""
+
+    def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
+
+class OccupancyGrid:
+    """Cells of a map; the occupied ones are closed boxes. Never changes, and worlds share it.
+
+    Args:
+        occupied: (nx, ny), i along +x, j along +y; non-zero where occupied.
+        origin: Lower left corner, world frame [m].
+        cell: Extent of a cell along x and y [m].
+    """
+
+    def __init__(self, occupied: NDArray[np.uint8], origin: Sequence[float], cell: Sequence[float]) -> None: ...
+    shape: tuple[int, int]  # (nx, ny)
+    origin: tuple[float, float]
+    cell: tuple[float, float]
+    count: int  # of occupied cells
+    occupied: Flags  # (nx, ny), a copy
+    clearance: Flags  # (nx, ny) how many cells away, diagonally too, the nearest occupied one is; at most 255; a copy
+    def outline(self) -> list[Floats]:
+        """Rings around the occupied cells, (K, 2) corners each, straight runs merged, the occupied side on the left."""
+    def cast(self, from_: Sequence[float], direction: Sequence[float], limit: float) -> float:
+        """Distance at which a beam (unit direction) first meets the outline; infinity beyond `limit` [m]."""
+
+class GridCells:
+    """The occupied cells of a grid; the pose of the object does not move them."""
+
+    def __init__(self, *, grid: OccupancyGrid) -> None: ...
+
+class PerlinCells:
+    """Cells of gradient noise, drawn per scene from the stream `map`.
+
+    Args:
+        size: Cells of the noise along x and y; of `every` cells along an axis one is kept.
+        origin: Lower left corner, world frame [m].
+        cell_size: Extent of the cells that are kept [m].
+        complexity, fill, fractal, attenuation: As in :class:`irsim.maps.perlin.PerlinMap`.
+    """
+
+    def __init__(
+        self,
+        *,
+        size: Sequence[int],
+        every: int,
+        origin: Sequence[float],
+        cell_size: Sequence[float],
+        complexity: float,
+        fill: float,
+        fractal: int,
+        attenuation: float,
+    ) -> None: ...
+
+def perlin_cells(
+    permutation: Sequence[int],
+    columns: int,
+    rows: int,
+    complexity: float,
+    fill: float,
+    fractal: int,
+    attenuation: float,
+) -> Flags:
+    """(columns, rows) 1 where gradient noise over a permutation of 0 ... 255 is among the highest `fill` of it."""
+
+Part = Circle | Polygon | Linestring | RandomCircle | RandomPolygon | Room | GridCells | PerlinCells
 
 class ObjectSpec:
     """One object of the template world. All keyword arguments are required.
@@ -351,7 +416,9 @@ class State:
     def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:
         """Centre x, y and radius of a circle part."""
     def parts(self, row: int) -> list[str]:
-        """Kinds of the parts: "circle", "polygon", "linestring"."""
+        """Kinds of the parts: "circle", "polygon", "linestring", "room", "cells" (vertices: corners of their box)."""
+    def cells(self, row: int) -> OccupancyGrid | None:
+        """The cells of a row that is a map."""
     def trajectory(self, row: int) -> Floats:
         """(K, 3 + E) state after each executed step since the last reset (history=True only).
 

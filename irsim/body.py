@@ -111,7 +111,7 @@ class ObjectBody:
         return state.vertices(self.row, part, world_frame).T.copy()
 
     def _outline(self, *, world_frame: bool) -> Floats | None:
-        return None if self.shape == "compound" else self._part(0, world_frame=world_frame)
+        return None if self.shape in ("compound", "map") else self._part(0, world_frame=world_frame)
 
     def _extent(self, axis: int) -> float:
         state = self._simulation.state

@@ -243,6 +243,33 @@ CODES: dict[str, Code] = {
         "sample_time is not a multiple of step_time", "Frames are drawn every int(sample_time / step_time) steps."
     ),
     "time-limit": Code("time limit below one step", "The run would end before its first step."),
+    # maps
+    "map-not-found": Code(
+        "map file not found",
+        "Maps are looked for as given, beside the scenario, below sys.path[0], beside the running script, and among "
+        "the bundled ones: cave.png, office.png, maze.png, flat_1.png, flat_2.png.",
+    ),
+    "map-unreadable": Code(
+        "map file cannot be read",
+        "A map is a picture that Pillow reads (PNG, PGM, JPEG, BMP, ...), black where it is occupied. A ROS map is a "
+        "YAML file with the keys image, resolution and origin.",
+    ),
+    "map-too-large": Code(
+        "map too large",
+        "Maps have up to 64 million cells, 256 MiB as files; servers allow less. Scale the picture down: cells of "
+        "5 cm are fine enough for most robots.",
+    ),
+    "map-empty": Code(
+        "map without walls", "No cell is occupied, so there is no map object. Black is occupied, white is free."
+    ),
+    "map-full": Code("map without room", "Every cell is occupied. Black is occupied, white is free."),
+    "map-values": Code(
+        "not an occupancy grid", "A map given as an array has the shape (nx, ny) and holds numbers from 0 to 100."
+    ),
+    "map-stand-in": Code(
+        "another map is used",
+        "The indoor scans of IR-SIM may not be handed on; flats of our own stand in for them under the same names.",
+    ),
     # engine
     "not-yet-simulated": Code(
         "valid, but not simulated yet",

@@ -6,6 +6,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
@@ -110,6 +111,7 @@ void bind_fields(nb::module_& m, const char* name) {
 }
 
 void bind_features(nb::module_& m);
+void bind_maps(nb::module_& m);
 void bind_world(nb::module_& m);
 void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);

@@ -115,14 +115,15 @@ PlacedPart part_of(const BoundState& self, int row, int part, bool world_frame) 
   for (int v = out.part.first; v <= out.part.last; ++v) {
     const Vec2 body = shapes.vertices[slot.vertex + v];
     const Pose& pose = self.state.pose[row];
-    out.vertices.push_back(world_frame ? pose.position() + rotate(body, self.state.heading(row)) : body);
+    out.vertices.push_back(
+        world_frame && !shapes.is_map(object) ? pose.position() + rotate(body, self.state.heading(row)) : body);
   }
   return out;
 }
 
 nb::object vertices(const BoundState& self, int row, int part, bool world_frame) {
   const PlacedPart placed = part_of(self, row, part, world_frame);
-  const bool ring = placed.part.kind == Kind::polygon;
+  const bool ring = is_closed(placed.part.kind);
   const std::size_t count = placed.part.kind == Kind::circle ? 0 : placed.vertices.size() - (ring ? 1 : 0);
   std::vector<double> out;
   for (std::size_t v = 0; v < count; ++v) out.insert(out.end(), {placed.vertices[v].x, placed.vertices[v].y});
@@ -137,7 +138,7 @@ std::tuple<double, double, double> circle(const BoundState& self, int row, int p
 
 std::vector<std::string> parts(const BoundState& self, int row) {
   self.check_row(row);
-  const char* names[] = {"circle", "polygon", "linestring"};
+  const char* names[] = {"circle", "polygon", "linestring", "room", "cells"};
   const int object = row % self.world->objects;
   const Shapes& shapes = *self.state.scenes[row / self.world->objects].shapes;
   std::vector<std::string> out;
@@ -145,6 +146,17 @@ std::vector<std::string> parts(const BoundState& self, int row) {
     out.push_back(names[static_cast<int>(shapes.parts[shapes.body[object].part + p].kind)]);
   }
   return out;
+}
+
+/// The cells of a row that is a map, or None.
+nb::object cells_of(const BoundState& self, int row) {
+  self.check_row(row);
+  const Shapes& shapes = *self.state.scenes[row / self.world->objects].shapes;
+  const OccupancyGrid* own = shapes.parts[shapes.body[row % self.world->objects].part].cells;
+  for (const auto& grid : shapes.grids) {
+    if (grid.get() == own) return nb::cast(std::const_pointer_cast<OccupancyGrid>(grid));
+  }
+  return nb::none();
 }
 
 }  // namespace
@@ -326,6 +338,7 @@ void bind_state(nb::module_& m) {
       .def("vertices", &vertices, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("circle", &circle, nb::arg("row"), nb::arg("part"), nb::arg("world_frame"))
       .def("parts", &parts, nb::arg("row"))
+      .def("cells", &cells_of, nb::arg("row"))
       .def("trajectory", &trajectory, nb::arg("row"));
 }
 

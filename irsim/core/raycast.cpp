@@ -1,6 +1,7 @@
 #include "raycast.hpp"
 
 #include "geometry/predicates.hpp"
+#include "maps/walk.hpp"
 
 namespace irsim {
 namespace {
@@ -125,8 +126,11 @@ inline bool Fan::nearer(int i, double range, int object) const {
 
 void Fan::cast_body(const Footprint& body, int object) {
   for (int part = 0; part < body.count; ++part) {
-    if (body.parts[part].kind == Kind::circle) {
+    const Part& p = body.parts[part];
+    if (p.kind == Kind::circle) {
       cast_circle(body, part, object);
+    } else if (p.cells != nullptr) {
+      cast_cells(*p.cells, object);
     } else {
       cast_edges(body, part, object);
     }
@@ -160,6 +164,16 @@ void Fan::cast_circle(const Footprint& body, int part, int object) {
   if (!(distance > radius * (1.0 + 1e-6))) return between(0.0, turn_, test);
   const double middle = beam_of(centre), half = std::asin(radius / distance) * per_radian_;
   between(middle - half, middle + half, test);
+}
+
+void Fan::cast_cells(const OccupancyGrid& grid, int object) {
+  const CellWalk walk(grid, origin_);
+  for (int i = 0; i < count_; ++i) {
+    const double range = walk.hit({buffers_.dx[i], buffers_.dy[i]}, kNearest, buffers_.range[i]);
+    if (!nearer(i, range, object)) continue;
+    buffers_.range[i] = range;
+    buffers_.hit[i] = object;
+  }
 }
 
 inline void Fan::test(int i, const Edge& edge) {

@@ -44,6 +44,7 @@ class Fan {
   bool hidden(const BeamBuffers::Body& body) const;
   void cast_body(const Footprint& body, int object);
   void cast_circle(const Footprint& body, int part, int object);
+  void cast_cells(const OccupancyGrid& grid, int object);
   void cast_edges(const Footprint& body, int part, int object);
   void test(int i, const Edge& edge);
   bool nearer(int i, double range, int object) const;

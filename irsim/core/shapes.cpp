@@ -3,13 +3,14 @@
 #include "geometry/enclosing_circle.hpp"
 
 namespace irsim {
-namespace {
 
 double twice_area(const std::vector<Vec2>& ring) {
   double sum = 0.0;
   for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]);
   return sum;
 }
+
+namespace {
 
 /// Of the area of a single part; `otherwise` for compounds, lines and what has no area.
 Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
@@ -25,23 +26,41 @@ Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
   return area != 0.0 ? ring[0] + sum * (1.0 / (3.0 * area)) : otherwise;
 }
 
+/// Corners of the outermost cells of each row.
+void add_extremes(const OccupancyGrid& grid, std::vector<Disc>& discs) {
+  for (int j = 0; j < grid.rows(); ++j) {
+    int first = grid.next_occupied(j, 0, grid.columns() - 1), last = first;
+    if (first < 0) continue;
+    for (last = grid.columns() - 1; !grid.occupied(last, j);) --last;
+    for (const int side : {0, 1}) {
+      discs.push_back({grid.corner(first, j + side)});
+      discs.push_back({grid.corner(last + 1, j + side)});
+    }
+  }
+}
+
 }  // namespace
 
 void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
   std::vector<Disc> discs;
   const int base = static_cast<int>(vertices.size());
   for (const Outline& outline : outlines) {
-    Part part{outline.kind, static_cast<int>(vertices.size()) - base, 0, outline.radius, 0.0};
+    Part part{outline.kind, static_cast<int>(vertices.size()) - base, 0, outline.radius, 0.0, outline.cells.get()};
     vertices.insert(vertices.end(), outline.vertices.begin(), outline.vertices.end());
     if (outline.kind == Kind::polygon) {
       const double area = twice_area(outline.vertices);
       part.turn = area > 0.0 ? 1.0 : area < 0.0 ? -1.0 : 0.0;
     }
-    if (outline.kind == Kind::polygon || (outline.kind == Kind::linestring && outline.vertices.size() == 1)) {
+    if (is_closed(outline.kind) || (outline.kind == Kind::linestring && outline.vertices.size() == 1)) {
       vertices.push_back(outline.vertices.front());
     }
     part.last = static_cast<int>(vertices.size()) - base - 1;
     parts.push_back(part);
+    if (outline.cells) {
+      grids.push_back(outline.cells);
+      add_extremes(*outline.cells, discs);
+      continue;
+    }
     for (const Vec2& v : outline.vertices) discs.push_back({v, outline.radius});
   }
   const Disc around = enclosing_circle(discs);
@@ -80,7 +99,9 @@ void Outlines::resize(const Slot& size) {
 }
 
 void Outlines::place(const Shapes& shapes, int object, const Pose& pose, Vec2 direction) {
-  const Vec2 origin = pose.position();
+  const bool moves = !shapes.is_map(object);
+  const Vec2 origin = moves ? pose.position() : Vec2{};
+  if (!moves) direction = {1.0, 0.0};
   const Slot& from = shapes.body[object];
   const Slot& to = shapes.placed[object];
   centres[to.object] = origin + rotate(shapes.centre[object], direction);

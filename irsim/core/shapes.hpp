@@ -3,20 +3,27 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "maps/occupancy.hpp"
 #include "random.hpp"
 #include "vec.hpp"
 
 namespace irsim {
 
-enum class Kind : std::uint8_t { circle, polygon, linestring };
+/// room: a closed line, solid outside; cells: those of a map, whose vertices are two corners of the box around them.
+enum class Kind : std::uint8_t { circle, polygon, linestring, room, cells };
+
+/// Whether the last edge of a part leads back to its first vertex.
+inline bool is_closed(Kind kind) { return kind == Kind::polygon || kind == Kind::room; }
 
 /// A part as its shape file draws it: circle = one vertex (the centre) and a radius.
 struct Outline {
   Kind kind;
   std::vector<Vec2> vertices;
   double radius = 0.0;
+  std::shared_ptr<const OccupancyGrid> cells = nullptr;
 };
 
 /// Whether a shape is drawn per scene; those that are say so by an overload.
@@ -25,12 +32,16 @@ constexpr bool is_drawn(const Shape&) {
   return false;
 }
 
-/// One part inside `Shapes`. Polygons repeat their first vertex at the end, so edges are [k, k + 1] for all kinds.
+/// Twice the area of a ring, positive counter-clockwise.
+double twice_area(const std::vector<Vec2>& ring);
+
+/// One part inside `Shapes`. Closed kinds repeat their first vertex at the end, so edges are [k, k + 1] for all.
 struct Part {
   Kind kind;
   int first, last;  // among the vertices of the object; a circle has one, all others at least two
   double radius;
   double turn;  // +1 counter-clockwise polygon, -1 clockwise, 0 no interior
+  const OccupancyGrid* cells = nullptr;
 };
 
 /// Where an object starts in arrays of objects, parts and vertices.
@@ -48,8 +59,11 @@ struct Shapes {
   std::vector<double> radius;  // (N,)
   std::vector<Slot> placed;    // (N,) in the `Outlines` of the moving or of the static objects
   Slot size[2];                // of those
+  std::vector<std::shared_ptr<const OccupancyGrid>> grids;  // of maps
 
   int objects() const { return static_cast<int>(centre.size()); }
+  /// Whether an object is a map, which its pose does not move.
+  bool is_map(int object) const { return parts[body[object].part].kind == Kind::cells; }
   int part_count(int object) const { return body[object + 1].part - body[object].part; }
   void add(const std::vector<Outline>& outlines, bool fixed);
   /// Add what `other` has for an object.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "features.hpp"
 #include "scene.hpp"
 #include "world.hpp"
 
@@ -14,6 +15,16 @@ constexpr std::size_t kFewWalls = 24;  // so few are looked at one by one
 
 void add_part(Walls& walls, const Footprint& body, const Part& part, int object) {
   const Vec2* vertices = body.vertices + part.first;
+  if (part.cells != nullptr) {
+    for (const std::vector<Vec2>& ring : part.cells->outline())
+      walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
+    return;
+  }
+  if (part.kind == Kind::room) {  // solid outside: clockwise
+    std::vector<Vec2> ring(vertices, vertices + (part.last - part.first));
+    if (twice_area(ring) > 0.0) std::reverse(ring.begin(), ring.end());
+    return walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
+  }
   if (part.kind == Kind::polygon) return walls.add_ring(vertices, part.last - part.first, part.turn, object);
   Vec2 corners[kCorners];
   const double radius = part.radius / std::cos(kPi / kCorners);
@@ -70,10 +81,15 @@ void Walls::within(Vec2 centre, double reach, std::vector<int>& found) const {
 
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {
   Walls walls;
+  // the outline of a map is long: only for those who look at it
+  const bool avoids = std::any_of(world.behaviors.begin(), world.behaviors.end(), [](const BehaviorGroup& group) {
+    return !std::holds_alternative<DashOptions>(group.behavior);
+  });
   for (const int i : world.fixed_objects) {
     const Footprint body = fixed.outlines.footprint(shapes, i);
-    const bool plain = body.count == 1 && body.parts[0].kind != Kind::polygon;
-    if (world.unobstructed[i] || plain) continue;
+    const Kind kind = body.parts[0].kind;
+    const bool plain = body.count == 1 && (kind == Kind::circle || kind == Kind::linestring);
+    if (world.unobstructed[i] || plain || (kind == Kind::cells && !avoids)) continue;
     for (int p = 0; p < body.count; ++p) add_part(walls, body, body.parts[p], i);
   }
   walls.build();

@@ -36,7 +36,7 @@ struct Walls {
 };
 
 /// The outlines of static objects that are neither circles nor linestrings nor `unobstructed` (a circle that is part of
-/// a compound counts by a polygon about it).
+/// a compound counts by a polygon about it; that of a map is left out where nobody has a behavior that avoids).
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed);
 /// The segments of static linestrings, `unobstructed` ones too.
 Walls make_lines(const World& world, const Shapes& shapes, const Fixed& fixed);

@@ -177,7 +177,10 @@ World::~World() = default;
 double World::cell(const Shapes& of, const std::vector<int>& ids) const {
   if (ids.empty()) return 1.0;
   std::vector<double> radii;
-  for (const int i : ids) radii.push_back(of.radius[i]);
+  for (const int i : ids) {
+    if (!of.is_map(i)) radii.push_back(of.radius[i]);
+  }
+  if (radii.empty()) return 1.0;
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
   return 3.0 * *middle;

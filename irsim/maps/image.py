@@ -6,7 +6,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim.maps._bundled import stand_in
 from irsim.maps._options import MapOptions
+from irsim.maps._site import MapSite, Raster
 from irsim.registry import MAPS
 
 
@@ -20,4 +22,17 @@ class ImageMap(MapOptions):
     """Picture file: as written, beside the scenario, or one of the bundled maps."""
 
 
-MAPS.register(ImageMap)
+@MAPS.register(ImageMap)
+def image(options: ImageMap, site: MapSite) -> Raster:
+    """The picture as it is; pixels need not be square.
+
+    Raises:
+        MapProblem: There is no such picture, or it cannot be read.
+    """
+    from irsim.maps._picture import image_raster, open_picture
+
+    path = site.find(options.path)
+    own = stand_in(options.path)
+    if own is not None and path.name == own:
+        site.notes.append(("map-stand-in", f"'{options.path}' does not come along: '{own}' is used in its place"))
+    return image_raster(*open_picture(path, options.path, site))

@@ -65,13 +65,21 @@ def read_body(state: State, row: int) -> Body:
             geometries.append(Circle(*state.circle(row, part, False)))
         else:
             vertices = np.array(state.vertices(row, part, False), dtype=np.float64)
+            if kind == "room":
+                vertices = np.concatenate([vertices, vertices[:1]])
             geometries.append(Region([vertices]) if kind == "polygon" else Line(vertices))
     corners = [bounds(geometry) for geometry in geometries]
     low = min(c[0] for c in corners), min(c[1] for c in corners)
     high = max(c[2] for c in corners), max(c[3] for c in corners)
     single = len(geometries) == 1
     geometry = geometries[0] if single else _union(geometries)
-    return Body(kinds[0] if single else "compound", geometry, low, high, float(state.radius[row]))
+    return Body(
+        {"room": "linestring"}.get(kinds[0], kinds[0]) if single else "compound",
+        geometry,
+        low,
+        high,
+        float(state.radius[row]),
+    )
 
 
 def place(geometry: Geometry, pose: Pose) -> Geometry:

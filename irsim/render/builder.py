@@ -17,6 +17,7 @@ from irsim.render.scene import (
     Floats,
     Fog,
     Geometry,
+    GridImage,
     Label,
     Line,
     Mark,
@@ -40,6 +41,7 @@ MODES = ("dynamic", "static", "all")
 """Which objects the overrides of a frame apply to."""
 
 _FOG_ZORDER = 2
+_GRID_ZORDER = 0.0
 _FULL_TURN = 2 * math.pi - 0.01
 _MOVING = 1e-9
 
@@ -98,6 +100,7 @@ class SceneBuilder:
         self._drawn: dict[int, _Drawn] = {}
         self._trails: dict[int, _Trail] = {}
         self._known: tuple[int, int] | None = None  # scene and revision
+        self._grids: dict[int, GridImage] = {}
 
     def build(
         self,
@@ -177,6 +180,9 @@ class SceneBuilder:
         return style
 
     def _add(self, scene: Scene, view: ObjectView, pose: Pose, goal: list[float], overrides: Mapping[str, Any]) -> None:
+        if view.shape == "map":
+            scene.grids.append(self._grid(view))
+            return
         style = self.style(view, overrides)
         heading = self._heading(view, pose) if style.show_arrow else pose[2]
         body = self.body(view)
@@ -195,6 +201,19 @@ class SceneBuilder:
             if style.show_trail:
                 start = self.simulation.state.initial_state(view.row)[None, :3]
                 scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
+
+    def _grid(self, view: ObjectView) -> GridImage:
+        """The image of a map, made once per scene."""
+        if view.id not in self._grids:
+            grid = self.simulation.scenario.grid
+            cells = self.simulation.state.cells(view.row)
+            assert grid is not None
+            assert cells is not None
+            drawn = grid.raster is None
+            levels = cells.occupied * np.uint8(100) if drawn else np.clip(grid.values(), 0, 100).astype(np.uint8)
+            (x, y), (nx, ny), (dx, dy) = cells.origin, cells.shape, cells.cell
+            self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
+        return self._grids[view.id]
 
     def _heading(self, view: ObjectView, pose: Pose) -> float:
         if view.kinematics != "omni":

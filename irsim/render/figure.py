@@ -14,10 +14,11 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D, Bbox
 
 from irsim.render.canvas import Compositor
+from irsim.render.grids import GridLayer
 from irsim.render.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels
-from irsim.render.scene import Label, Picture, Scene
+from irsim.render.scene import GridImage, Label, Picture, Scene
 from irsim.render.text import Glyphs, QuickText
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
@@ -83,6 +84,7 @@ class SceneFigure:
         self._marks: dict[tuple[Any, ...], MarkLayer] = {}
         self._beams: dict[tuple[int, int], BeamLayer] = {}
         self._fog: FogLayer | None = None
+        self._grids: dict[int, GridLayer] = {}
         self._labels: dict[tuple[int, str], Text] = {}
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
@@ -147,12 +149,14 @@ class SceneFigure:
         if scene.fog is not None:
             self._fog = self._fog or FogLayer(self.ax, scene.fog.zorder)
             self._fog.show(scene.fog)
+        self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
         self._show_labels(scene.labels)
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
-        self.compositor.draw({layer.artist: (layer.version, layer.rested) for layer in self._marks.values()})
+        layers: list[GridLayer | MarkLayer] = [*self._grids.values(), *self._marks.values()]
+        self.compositor.draw({layer.artist: (layer.version, layer.rested) for layer in layers})
 
     def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
         """Draw and read the pixels.
@@ -217,6 +221,16 @@ class SceneFigure:
 
     def _renderer(self) -> Any:
         return self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+
+    def _show_grids(self, grids: Sequence[GridImage]) -> None:
+        for number, layer in self._grids.items():
+            if not any(grid.object == number for grid in grids):
+                layer.show(None)
+        for grid in grids:
+            if grid.object not in self._grids:
+                self._grids[grid.object] = GridLayer(self.ax, grid.zorder)
+                self.compositor.forget()
+            self._grids[grid.object].show(grid)
 
     def _show_pictures(self, pictures: Sequence[Picture]) -> None:
         shown = {picture.object for picture in pictures}

@@ -22,6 +22,7 @@ __all__ = [
     "Dots",
     "Fog",
     "Geometry",
+    "GridImage",
     "Label",
     "Line",
     "Mark",
@@ -70,6 +71,8 @@ class Sector:
 
 
 Geometry = Circle | Region | Line | Sector
+
+_OCCUPIED = 50
 
 
 @dataclass(slots=True, eq=False)
@@ -176,6 +179,16 @@ class Picture:
 
 
 @dataclass(slots=True, eq=False)
+class GridImage:
+    """A map: ``levels`` (nx, ny) occupancy 0 to 100, i along +x, over ``extent`` (x from, x to, y from, y to)."""
+
+    object: int
+    levels: NDArray[np.uint8]
+    extent: tuple[float, float, float, float]
+    zorder: float
+
+
+@dataclass(slots=True, eq=False)
 class Scene:
     """One frame.
 
@@ -196,6 +209,7 @@ class Scene:
     labels: list[Label]
     pictures: list[Picture]
     fog: Fog | None = None
+    grids: list[GridImage] = field(default_factory=list)
 
     def of(self, object_id: int, part: str) -> Iterator[Mark]:
         """The marks that show ``part`` of one object."""
@@ -208,6 +222,8 @@ class Scene:
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, GridImage):
+        return _plain_grid(value)
     if isinstance(value, np.ndarray):
         return value.tolist()
     if is_dataclass(value) and not isinstance(value, type):
@@ -220,3 +236,18 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         return value.item()
     return value
+
+
+def _plain_grid(grid: GridImage) -> dict[str, Any]:
+    """Occupied cells as run lengths: row by row from the lowest, free and occupied in turn, free first."""
+    full = (grid.levels.T > _OCCUPIED).ravel()
+    ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
+    runs = np.diff(np.concatenate([[0], ends, [full.size]])).tolist()
+    extent = [float(value) for value in grid.extent]
+    return {
+        "object": grid.object,
+        "cells": list(grid.levels.shape),
+        "extent": extent,
+        "zorder": grid.zorder,
+        "runs": runs,
+    }

@@ -11,9 +11,11 @@ from pydantic import BaseModel
 from irsim.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
 from irsim.diagnostics import Path
 from irsim.kinematics._options import KinematicsOptions
+from irsim.maps._grid import MapCells, MapGrid, Walls
 from irsim.registry import DISTRIBUTIONS
 from irsim.scenario.model import Entry, Scenario, WorldModel
 from irsim.scenario.objects import ObjectRecord, Placement, ResolvedScenario
+from irsim.scenario.plot import ObjectPlot
 from irsim.scenario.spread import kind_of, spread
 
 __all__ = ["resolve"]
@@ -22,6 +24,8 @@ Role = Literal["robot", "obstacle"]
 DEFAULT_STATE = [1.0, 1.0, 0.0]
 DEFAULT_GOAL = [1.0, 9.0, 0.0]
 DEFAULT_RADIUS = 1.0
+NO_GROUP = -1
+"""Group of what the world brings along: its map, its walls."""
 _STATIC_CONTROLS = 3  # rows of the control of an object that never moves, as in IR-SIM
 _MARGIN = 0.5  # of random placement and the circle distribution, from the world's edge [m]
 
@@ -33,10 +37,12 @@ def resolve(
     document: dict[str, Any] | None = None,
     source: str | None = None,
     text: str | None = None,
+    grid: MapGrid | None = None,
 ) -> ResolvedScenario:
     """Every object of a scenario with its own value of every key.
 
-    Robots get their ids first, in file order, then obstacles.
+    Robots get their ids first, in file order, then obstacles, then the map if any of its cells is occupied, then the
+    walls round the world.
 
     Args:
         scenario: A validated scenario.
@@ -44,6 +50,7 @@ def resolve(
         document: The scenario as parsed, kept for ``env.config``.
         source: Path of the file, kept.
         text: Text of the file, kept.
+        grid: The map.
     """
     objects: list[ObjectRecord] = []
     placements: list[Placement] = []
@@ -59,6 +66,10 @@ def resolve(
                 placements.append(placement)
         if objects:
             first_group = max(record.group for record in objects) + 1
+    if grid is not None and grid.occupied != 0:
+        objects.append(_scenery(scenario.world, len(objects), MapCells(grid), f"obstacle_{len(objects)}"))
+    if scenario.world.boundary == "walls":
+        objects.append(_scenery(scenario.world, len(objects), Walls(scenario.world.bounds), "boundary"))
     return ResolvedScenario(
         name=scenario.world.name or name,
         world=scenario.world,
@@ -69,6 +80,54 @@ def resolve(
         document=document if document is not None else {},
         source=source,
         text=text,
+        grid=grid,
+    )
+
+
+def _scenery(world: WorldModel, object_id: int, shape: MapCells | Walls, name: str) -> ObjectRecord:
+    """The record of something that stands still and that no entry made; it is in no group."""
+    return ObjectRecord(
+        id=object_id,
+        role="obstacle",
+        name=name,
+        group=NO_GROUP,
+        group_name=shape.name,
+        path=("world", "obstacle_map" if isinstance(shape, MapCells) else "boundary"),
+        index=0,
+        kinematics=None,
+        shape=shape,
+        state=[0.0, 0.0, 0.0],
+        goals=[],
+        velocity=[0.0] * _STATIC_CONTROLS,
+        vel_min=[-1.0] * _STATIC_CONTROLS,
+        vel_max=[1.0] * _STATIC_CONTROLS,
+        acce=[math.inf] * _STATIC_CONTROLS,
+        state_dim=3,
+        vel_dim=_STATIC_CONTROLS,
+        angle_range=(-math.pi, math.pi),
+        goal_threshold=0.1,
+        arrive_mode="position",
+        static=True,
+        unobstructed=False,
+        behavior=None,
+        group_behavior=None,
+        wander=False,
+        loop=False,
+        range_low=[*world.bounds[:2], -math.pi],
+        range_high=[*world.bounds[2:], math.pi],
+        target_roles="all",
+        sensors=[],
+        plot=ObjectPlot(),
+        color=OBSTACLE_COLOR,
+        description=None,
+        fov=None,
+        fov_radius=None,
+        fov_occlusion=False,
+        wheelbase=None,
+        mass=math.inf,
+        friction=world.friction,
+        inertia=None,
+        restitution=world.restitution,
     )
 
 

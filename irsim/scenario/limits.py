@@ -23,6 +23,8 @@ class Limits:
         root: Folder that files named by the scenario must lie in; None: they may lie anywhere.
         steps: Steps of one run; None: any number. A run whose horizon is farther away ends there.
         work: Steps times objects of one run; None: any number.
+        cells: Cells of a map.
+        map_bytes: Size of a map file.
     """
 
     bytes: int = 16 * 1024 * 1024
@@ -36,6 +38,8 @@ class Limits:
     root: str | None = None
     steps: int | None = None
     work: int | None = None
+    cells: int = 64_000_000
+    map_bytes: int = 256 * 1024 * 1024
 
 
 DEFAULT_LIMITS = Limits()

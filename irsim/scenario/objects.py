@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
     from irsim.diagnostics import Path
+    from irsim.maps._grid import MapGrid
     from irsim.scenario.model import Gui, ObjectPlot, WorldModel
 
 __all__ = ["ObjectRecord", "Placement", "ResolvedScenario"]
@@ -29,10 +30,10 @@ class ObjectRecord:
     name: str
     group: int
     group_name: str
-    path: Path  # of the entry: ("robot", 0) or ("robot",)
+    path: Path  # of the entry: ("robot", 0) or ("robot",); ("world", key) of the map and the walls round the world
     index: int  # among the objects of its entry
     kinematics: BaseModel | None
-    shape: BaseModel
+    shape: Any  # options model; for the map and the walls round the world what stands in for one
     state: list[float]
     goals: list[list[float]]
     velocity: list[float]
@@ -97,6 +98,7 @@ class ResolvedScenario:
     document: dict[str, Any] = field(default_factory=dict)  # as parsed, for env.config
     source: str | None = None  # path of the file
     text: str | None = None
+    grid: MapGrid | None = None  # the map, whether or not any cell is occupied
 
     def robots(self) -> Sequence[ObjectRecord]:
         """The robots, in id order."""

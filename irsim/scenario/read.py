@@ -15,7 +15,8 @@ from irsim.scenario.expand import resolve
 from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_data, load_path, load_text
-from irsim.scenario.model import Scenario
+from irsim.scenario.maps import LoadedMap, load_map
+from irsim.scenario.model import Scenario, WorldModel
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.repair import applied, removal
 from irsim.scenario.translate import translate
@@ -88,6 +89,7 @@ class _Reader:
         self.document, self.limits, self.findings = document, limits, findings
         self.data = document.data
         self.touched: list[Path] = []
+        self._map: tuple[Any, LoadedMap] | None = None
 
     def resolved(self) -> ResolvedScenario | None:
         """The scenario with every tolerated problem carried on with; meaningless if a finding is blocking."""
@@ -102,7 +104,9 @@ class _Reader:
         if scenario is None:
             return None
         resolved = self._resolve(scenario)
-        found = run_checks(Context(scenario, resolved, self.data, self.document))
+        scenario = scenario.model_copy(update={"world": resolved.world})
+        map_findings = self._map[1].findings if self._map is not None else []
+        found = run_checks(Context(scenario, resolved, self.data, self.document, map_findings))
         found = [f for f in found if not self._under_repair(f.diagnostic.path)]
         self._add(found)
         edits = [f.carry_on for f in found if f.carry_on is not None]
@@ -146,7 +150,19 @@ class _Reader:
         document = self.document
         stem = os.path.basename(document.path or document.name or "world").split(".")[0] or "world"
         data = dict(document.data) if isinstance(document.data, Mapping) else {}
-        return resolve(scenario, name=stem, document=data, source=document.path, text=document.text)
+        loaded = self._loaded_map(scenario.world)
+        if loaded.world is not scenario.world:
+            scenario = scenario.model_copy(update={"world": loaded.world})
+        return resolve(scenario, name=stem, document=data, source=document.path, text=document.text, grid=loaded.grid)
+
+    def _loaded_map(self, world: WorldModel) -> LoadedMap:
+        """The map, loaded again only where its options or the extent of the world changed."""
+        key = (world.obstacle_map, world.mdownsample, world.width, world.height, tuple(world.offset))
+        if self._map is None or not _same(self._map[0], key):
+            section = self.data.get("world") if isinstance(self.data, Mapping) else None
+            written = section.get("obstacle_map") if isinstance(section, Mapping) else None
+            self._map = key, load_map(world, written, self.document.path, self.limits)
+        return self._map[1]
 
     def _under_repair(self, path: Path) -> bool:
         return any(path[: len(other)] == other or other[: len(path)] == path for other in self.touched)
@@ -158,6 +174,11 @@ class _Reader:
             if key not in known:
                 known.add(key)
                 self.findings.append(finding)
+
+
+def _same(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
+    """Equal options and numbers; an array only if it is the same one."""
+    return a[1:] == b[1:] and (a[0] is b[0] or (not hasattr(a[0], "__array__") and a[0] == b[0]))
 
 
 def _no_mapping(data: Any) -> Finding:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
+from irsim.maps._grid import MapCells, Walls
 from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
 from irsim.world.fog import build_fog
 
@@ -77,9 +78,13 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
         record: The object.
         group_behavior: What drives its group (:func:`group_behaviors`); wins over its own behavior.
     """
-    shape = feature_of(SHAPES, record.shape)
-    if shape.function is None:
-        raise LookupError(f"shape {shape.name!r} has no geometry")
+    if isinstance(record.shape, (MapCells, Walls)):
+        parts = record.shape.parts()
+    else:
+        shape = feature_of(SHAPES, record.shape)
+        if shape.function is None:
+            raise LookupError(f"shape {shape.name!r} has no geometry")
+        parts = shape.function(record.shape)
     drive = None
     if record.kinematics is not None:
         psi_max = getattr(record.kinematics, "psi_max", None)
@@ -98,7 +103,7 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
         role=_ROLES[record.role],
         group=record.group if record.joined else -1 - record.id,
         drive=drive,
-        parts=shape.function(record.shape),
+        parts=parts,
         static=record.static,
         unobstructed=record.unobstructed,
         wander=record.wander,

@@ -24,12 +24,17 @@ def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> 
 
     state = simulation.state
     parts: list[Any] = []
+    cells = state.cells(row)
+    if cells is not None:
+        return shapely.MultiLineString([shapely.LinearRing(ring) for ring in cells.outline()])
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":
             x, y, radius = state.circle(row, part, world_frame)
             parts.append(shapely.Point(x, y).buffer(radius, quad_segs=_QUADRANT_SEGMENTS))
         elif kind == "polygon":
             parts.append(shapely.Polygon(state.vertices(row, part, world_frame)))
+        elif kind == "room":
+            parts.append(shapely.LinearRing(state.vertices(row, part, world_frame)))
         else:
             parts.append(shapely.LineString(state.vertices(row, part, world_frame)))
     return parts[0] if len(parts) == 1 else shapely.union_all(parts)

@@ -31,6 +31,8 @@ class ServerLimits:
         check_seconds: Wall-clock time of checking a scenario.
         draw_seconds: Wall-clock time of a picture.
         memory: Address space of a worker [bytes].
+        cells: Cells of a map.
+        map_bytes: Size of a map file.
         written: Size of a file that a worker writes, which only caches of libraries are [bytes].
         text: Characters of text in one result, about four to a token.
     """
@@ -47,6 +49,8 @@ class ServerLimits:
     check_seconds: int = 20
     draw_seconds: int = 45
     memory: int = 2 * 1024**3
+    cells: int = 16_000_000
+    map_bytes: int = 32 * 1024**2
     written: int = 16 * 1024**2
     text: int = 24_000
 
@@ -64,4 +68,6 @@ def scenario_limits(limits: ServerLimits, workspace: Path) -> Limits:
         root=str(workspace),
         steps=STEPS,
         work=limits.work,
+        cells=limits.cells,
+        map_bytes=limits.map_bytes,
     )

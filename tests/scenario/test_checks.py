@@ -158,11 +158,9 @@ def test_finds(data: dict[str, Any], severity: str, code: str, path: tuple[str |
 
 
 LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
-    ({"world": {"obstacle_map": "cave.png"}}, ("world", "obstacle_map")),
-    ({"world": {"obstacle_map": {"name": "perlin", "resolution": 0.1}}}, ("world", "obstacle_map")),
+    ({"world": {"obstacle_map": {"name": "ros", "path": "map.yaml"}}}, ("world", "obstacle_map")),
     ({"world": {"collision_mode": "contact"}}, ("world", "collision_mode")),
     ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
-    ({"world": {"boundary": "walls"}}, ("world", "boundary")),
     (robot(behavior={"name": "rvo"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
 ]

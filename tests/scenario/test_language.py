@@ -21,7 +21,7 @@ from irsim.scenario.read import read
 
 COMPLETE = """
 world: {height: 20, width: 20, step_time: 0.1, offset: [-10, -10], collision_mode: stop,
-        obstacle_map: {name: perlin, resolution: 0.2, fill: 0.1, seed: 3}, fog_map: true}
+        obstacle_map: {name: perlin, resolution: 0.2, fill: 0.01, seed: 3}, fog_map: true}
 robot:
   - kinematics: {name: acker, mode: steer}
     shape: {name: rectangle, length: 4.6, width: 1.6, wheelbase: 3}
@@ -140,9 +140,13 @@ def test_keys_of_the_world(world: str) -> None:
 def test_a_map_as_an_array() -> None:
     import numpy as np
 
-    grid = np.zeros((4, 4))
-    reading = read({"world": {"obstacle_map": grid}})
-    assert [item.code for item in reading.diagnostics] == ["not-yet-simulated"]
+    reading = read({"world": {"obstacle_map": np.zeros((4, 4))}})
+    assert [item.code for item in reading.diagnostics] == ["map-empty"]
+    reading = read({"world": {"obstacle_map": np.eye(3) * 51, "width": 6}})
+    assert reading.diagnostics == []
+    assert reading.scenario is not None
+    assert [(o.name, o.shape.name) for o in reading.scenario.objects] == [("obstacle_0", "map")]
+    assert [item.code for item in read({"world": {"obstacle_map": np.zeros(4)}}).diagnostics] == ["map-values"]
     codes = [item.code for item in read({"world": {"obstacle_map": [[0, 100], [0, 0]]}}).diagnostics]
     assert codes == ["not-a-mapping"]
 

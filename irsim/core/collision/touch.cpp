@@ -63,7 +63,15 @@ bool edges_touch(const Piece& a, const Piece& b, Vec2& where) {
   return false;
 }
 
+bool cells_touch(const OccupancyGrid& grid, const Piece& other, Vec2& where) {
+  if (other.part.kind == Kind::circle) return disc_meets(grid, *other.begin(), other.part.radius, where);
+  if (other.part.kind == Kind::cells) return false;
+  return outline_meets(grid, other.begin(), other.edges(), other.filled(), other.box, where);
+}
+
 bool pieces_touch(const Piece& a, const Piece& b, Vec2& where) {
+  if (a.part.cells != nullptr) return cells_touch(*a.part.cells, b, where);
+  if (b.part.cells != nullptr) return cells_touch(*b.part.cells, a, where);
   const bool a_round = a.part.kind == Kind::circle, b_round = b.part.kind == Kind::circle;
   if (a_round) return b_round ? circles_touch(a, b, where) : circle_touches(a, b, where);
   return b_round ? circle_touches(b, a, where) : edges_touch(a, b, where);

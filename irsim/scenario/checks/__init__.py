@@ -10,6 +10,7 @@ from irsim.scenario.checks import (
     groups,
     kinematics,
     magnitude,
+    maps,
     names,
     overlap,
     placement,
@@ -40,6 +41,7 @@ _FAMILIES = (
     groups,
     sensors,
     files,
+    maps,
     simulated,
 )
 

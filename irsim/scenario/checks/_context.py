@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from irsim.diagnostics import Path
+from irsim.scenario.findings import Finding
 from irsim.scenario.load import Document
 from irsim.scenario.model import Entry, Scenario
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
@@ -24,12 +25,14 @@ class Context:
         resolved: One record per object.
         data: The data the models were made from.
         document: The document as written.
+        map_findings: What loading the map found.
     """
 
     scenario: Scenario
     resolved: ResolvedScenario
     data: Mapping[str, Any]
     document: Document
+    map_findings: Sequence[Finding] = ()
 
     def entries(self) -> Iterator[tuple[Path, Entry, list[ObjectRecord]]]:
         """Every entry with its path and its objects."""
@@ -39,6 +42,11 @@ class Context:
                 yield path, entry, self.resolved.objects[first : first + entry.number]
                 first += entry.number
 
+    @property
+    def written(self) -> list[ObjectRecord]:
+        """The objects of the entries, without those that the world brings along: its map, its walls."""
+        return [record for record in self.resolved.objects if record.path[0] != "world"]
+
     def entry(self, path: Path) -> Entry:
         """The entry at a path: ("robot", 0) or ("robot",)."""
         section: Any = getattr(self.scenario, str(path[0]))
@@ -47,6 +55,8 @@ class Context:
 
     def entry_path(self, record: ObjectRecord, key: str) -> Path:
         """Where an object's value of ``key`` is written: the key, or the element of its list that is the object's."""
+        if record.path[0] == "world":
+            return record.path
         value: Any = self.data
         for part in record.path:
             value = value[part]

@@ -16,7 +16,7 @@ from irsim.scenario.objects import ObjectRecord
 def check(context: Context) -> Iterator[Finding]:
     """One finding per entry and key, whatever the number of its objects."""
     seen: set[tuple[Any, ...]] = set()
-    for record in context.resolved.objects:
+    for record in context.written:
         for finding in _of_object(context, record):
             key = (finding.diagnostic.code, finding.diagnostic.path)
             if key not in seen:

@@ -17,7 +17,7 @@ from irsim.scenario.objects import ObjectRecord
 def check(context: Context) -> Iterator[Finding]:
     """By group."""
     groups: dict[int, list[ObjectRecord]] = defaultdict(list)
-    for record in context.resolved.objects:
+    for record in context.written:
         groups[record.group].append(record)
     for group, members in groups.items():
         yield from _not_for_groups(context, members)

@@ -20,7 +20,7 @@ def check(context: Context) -> Iterator[Finding]:
     for key, values in (("width", [world.width]), ("height", [world.height]), ("offset", world.offset)):
         yield from _judge(("world", key), values)
     seen: set[Path] = set()
-    for record in context.resolved.objects:
+    for record in context.written:
         goals = [value for goal in record.goals for value in goal[:2]]
         key = "waypoints" if context.given(record, "waypoints") else "goal"
         limits = [value for value in (*record.vel_max, *record.vel_min) if math.isfinite(value)]

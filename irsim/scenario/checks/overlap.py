@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim import _core as core
+from irsim.maps._grid import MapCells, Walls
 from irsim.registry import SHAPES
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, warning
@@ -40,10 +41,15 @@ def check(context: Context) -> Iterator[Finding]:
         yield warning(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts in collision with '{other.name}'"
+            f"'{mover.name}' starts in collision with {_named(other)}"
             + (f", and {count - 1} more such pairs of these entries" if count > 1 else ""),
-            fix="move one of them, or make it smaller",
+            fix="move one of them, or make it smaller" if other.path[0] != "world" else "start in free space",
         )
+
+
+def _named(record: ObjectRecord) -> str:
+    kinds = {"map": f"the map ('{record.name}')", "walls": "the walls round the world"}
+    return kinds.get(record.shape.name, f"'{record.name}'")
 
 
 def _is_told(entry: Entry) -> bool:
@@ -53,6 +59,8 @@ def _is_told(entry: Entry) -> bool:
 
 def _is_fixed(record: ObjectRecord) -> bool:
     shape: Any = record.shape
+    if isinstance(shape, (MapCells, Walls)):
+        return shape.fixed
     parts = shape.parts if shape.name == "compound" else [shape]
     return not any(getattr(part, "random_shape", False) for part in parts)
 
@@ -69,10 +77,13 @@ class _Body:
     def parts(self) -> list[Any]:
         """Geometry for the core, body frame."""
         if self._parts is None:
-            feature = SHAPES.get(self.record.shape.name)  # type: ignore[attr-defined]
+            shape = self.record.shape
+            if isinstance(shape, (MapCells, Walls)):
+                return shape.parts()
+            feature = SHAPES.get(shape.name)
             assert feature is not None
             assert feature.function is not None
-            self._parts = feature.function(self.record.shape)
+            self._parts = feature.function(shape)
         return self._parts
 
 

@@ -51,7 +51,7 @@ def _ranges(context: Context, path: Path) -> Iterator[Finding]:
 def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
     a, b = records[0].state, records[1].state
     gap = math.hypot(a[0] - b[0], a[1] - b[1])
-    widths = [2 * getattr(record.shape, "radius", 0.0) for record in records[:2] if record.shape.name == "circle"]  # type: ignore[attr-defined]
+    widths = [2 * getattr(record.shape, "radius", 0.0) for record in records[:2] if record.shape.name == "circle"]
     if len(widths) == 2 and gap < sum(widths) / 2:
         yield warning(
             "circle-overlap",

@@ -24,7 +24,7 @@ _RANGES = (
 def check(context: Context) -> Iterator[Finding]:
     """Every shape that is written once is looked at once."""
     seen: set[Path] = set()
-    for record in context.resolved.objects:
+    for record in context.written:
         if not context.given(record, "shape"):
             if record.path not in seen:
                 seen.add(record.path)

@@ -12,6 +12,7 @@ from irsim.registry import (
     CUSTOM_BEHAVIORS,
     CUSTOM_GROUP_BEHAVIORS,
     KINEMATICS,
+    MAPS,
     SENSORS,
     SHAPES,
     Registry,
@@ -23,14 +24,13 @@ from irsim.scenario.findings import Finding, error
 def check(context: Context) -> Iterator[Finding]:
     """Features without a kernel, and modes that nothing implements."""
     world = context.scenario.world
-    if world.obstacle_map is not None:
-        yield _not_yet(("world", "obstacle_map"), "grid maps")
+    name = getattr(world.obstacle_map, "name", None)
+    if name is not None and not _computed(MAPS, name):
+        yield _not_yet(("world", "obstacle_map"), f"maps of the kind '{name}'")
     if world.collision_mode == "contact":
         yield _not_yet(("world", "collision_mode"), "pushing and sliding contacts")
     if world.control_mode == "keyboard":
         yield _not_yet(("world", "control_mode"), "keyboard control")
-    if world.boundary != "none":
-        yield _not_yet(("world", "boundary"), "walls at the world's edge")
     seen: set[tuple[Any, ...]] = set()
     for path, feature in _uses(context):
         if (path, feature) not in seen:
@@ -40,7 +40,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 def _uses(context: Context) -> Iterator[tuple[Path, str]]:
     """Paths of features that are only part of the language."""
-    for record in context.resolved.objects:
+    for record in context.written:
         for key, registry in (("kinematics", KINEMATICS), ("shape", SHAPES)):
             options: Any = getattr(record, key)
             if options is not None and not _computed(registry, options.name):
@@ -56,7 +56,7 @@ def _uses(context: Context) -> Iterator[tuple[Path, str]]:
             name: str = getattr(sensor, "name", "")
             if not _computed(SENSORS, name):
                 yield (*context.entry_path(record, "sensors"), index), f"the sensor '{name}'"
-        if record.shape.name == "compound":  # type: ignore[attr-defined]
+        if record.shape.name == "compound":
             yield from _posed_random_parts(context.entry_path(record, "shape"), record.shape)
 
 

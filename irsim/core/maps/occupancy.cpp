@@ -1,0 +1,127 @@
+#include "maps/occupancy.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace irsim {
+namespace {
+
+constexpr int kFar = 255;
+
+/// Corners of the grid, counted row by row.
+using Corner = std::int64_t;
+
+/// A straight piece of the outline, the occupied side on its left. Directions: 0 +x, 1 +y, 2 -x, 3 -y.
+struct Run {
+  Corner from, to;
+  int direction;
+  bool used;
+};
+
+}  // namespace
+
+OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied)
+    : columns_(columns), rows_(rows), origin_(origin), cell_(cell) {
+  const std::size_t cells =
+      static_cast<std::size_t>(std::max(columns, 0)) * static_cast<std::size_t>(std::max(rows, 0));
+  if (columns < 1 || rows < 1 || occupied.size() != cells) throw std::invalid_argument("an occupancy grid needs cells");
+  if (!(cell.x > 0.0 && cell.y > 0.0 && std::isfinite(cell.x) && std::isfinite(cell.y)))
+    throw std::invalid_argument("cells need a size");
+  clearance_.resize(cells);
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const bool full = occupied[at(i, j)] != 0;
+      int least = kFar - 1;
+      if (full) {
+        bounds_.include(box(i, j));
+        ++count_;
+        least = -1;
+      } else {
+        if (i > 0) least = std::min(least, clearance(i - 1, j));
+        if (j > 0) {
+          least = std::min(least, clearance(i, j - 1));
+          if (i > 0) least = std::min(least, clearance(i - 1, j - 1));
+          if (i + 1 < columns) least = std::min(least, clearance(i + 1, j - 1));
+        }
+        least = std::min(least, kFar - 1);
+      }
+      clearance_[at(i, j)] = static_cast<std::uint8_t>(least + 1);
+    }
+  }
+  for (int j = rows - 1; j >= 0; --j) {
+    for (int i = columns - 1; i >= 0; --i) {
+      int least = clearance(i, j) - 1;
+      if (least < 0) continue;
+      if (i + 1 < columns) least = std::min(least, clearance(i + 1, j));
+      if (j + 1 < rows) {
+        least = std::min(least, clearance(i, j + 1));
+        if (i > 0) least = std::min(least, clearance(i - 1, j + 1));
+        if (i + 1 < columns) least = std::min(least, clearance(i + 1, j + 1));
+      }
+      clearance_[at(i, j)] = static_cast<std::uint8_t>(std::min(least, kFar - 1) + 1);
+    }
+  }
+}
+
+bool OccupancyGrid::clear_of(Vec2 point, double reach) const {
+  const double x = (point.x - origin_.x) / cell_.x, y = (point.y - origin_.y) / cell_.y;
+  if (!(x >= 0.0 && y >= 0.0 && x < columns_ && y < rows_)) return false;
+  // cells up to one less than the clearance away are free, and the point may be at the edge of its own
+  return reach < (clearance(static_cast<int>(x), static_cast<int>(y)) - 1) * std::min(cell_.x, cell_.y) * (1.0 - 1e-9);
+}
+
+std::vector<std::vector<Vec2>> OccupancyGrid::outline() const {
+  const Corner width = columns_ + 1;
+  std::vector<Run> runs;
+  const auto add = [&](Corner low, Corner high, bool forward, int axis) {
+    runs.push_back({forward ? low : high, forward ? high : low, forward ? axis : axis + 2, false});
+  };
+  // side: 1 occupied on the left of the increasing direction only, -1 on the right only, 0 both or neither
+  const auto trace = [&](int lines, int length, int axis, auto&& side, auto&& corner) {
+    for (int line = 0; line <= lines; ++line) {
+      int began = 0, last = 0;
+      for (int k = 0; k <= length; ++k) {
+        const int now = k < length ? side(line, k) : 0;
+        if (now == last) continue;
+        if (last != 0) add(corner(line, began), corner(line, k), last > 0, axis);
+        began = k, last = now;
+      }
+    }
+  };
+  trace(
+      rows_, columns_, 0,
+      [&](int j, int i) { return static_cast<int>(occupied(i, j)) - static_cast<int>(occupied(i, j - 1)); },
+      [&](int j, int i) { return j * width + i; });
+  trace(
+      columns_, rows_, 1,
+      [&](int i, int j) { return static_cast<int>(occupied(i - 1, j)) - static_cast<int>(occupied(i, j)); },
+      [&](int i, int j) { return j * width + i; });
+
+  std::vector<std::pair<Corner, int>> starts;
+  starts.reserve(runs.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) starts.emplace_back(runs[k].from, static_cast<int>(k));
+  std::sort(starts.begin(), starts.end());
+  // of the runs that leave a corner the one that keeps to the same cell: the left turn
+  const auto next = [&](const Run& run) {
+    int found = -1;
+    for (auto s = std::lower_bound(starts.begin(), starts.end(), std::make_pair(run.to, 0));
+         s != starts.end() && s->first == run.to; ++s) {
+      if (runs[s->second].used) continue;
+      if (found < 0 || runs[s->second].direction == (run.direction + 1) % 4) found = s->second;
+    }
+    return found;
+  };
+  std::vector<std::vector<Vec2>> rings;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (runs[k].used) continue;
+    std::vector<Vec2> ring;
+    for (int r = static_cast<int>(k); r >= 0; r = next(runs[r])) {
+      runs[r].used = true;
+      ring.push_back(corner(static_cast<int>(runs[r].from % width), static_cast<int>(runs[r].from / width)));
+    }
+    rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+}  // namespace irsim

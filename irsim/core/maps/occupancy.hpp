@@ -1,0 +1,69 @@
+// A grid of square or oblong cells, some of them occupied: what a map is to the core.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "vec.hpp"
+
+namespace irsim {
+
+/// Occupied cells are closed boxes; cell (i, j), i along x, lies between corners (i, j) and (i + 1, j + 1). Never
+/// changes once made, shared by all worlds that have the map. One byte per cell.
+class OccupancyGrid {
+ public:
+  /// `occupied`: (columns * rows,) row by row from the lowest, non-zero where occupied.
+  OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, const std::vector<std::uint8_t>& occupied);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  Vec2 origin() const { return origin_; }
+  Vec2 cell() const { return cell_; }
+  Vec2 corner(int i, int j) const { return {origin_.x + i * cell_.x, origin_.y + j * cell_.y}; }
+  Box box(int i, int j) const {
+    const Vec2 low = corner(i, j), high = corner(i + 1, j + 1);
+    return {low.x, low.y, high.x, high.y};
+  }
+  /// Of all occupied cells; not finite without any.
+  const Box& bounds() const { return bounds_; }
+  std::int64_t count() const { return count_; }
+
+  /// How many cells away, counting diagonally too, the nearest occupied cell is: 0 is occupied, 255 is far.
+  int clearance(int i, int j) const { return clearance_[at(i, j)]; }
+  bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < columns_ && j < rows_; }
+  /// Whether a cell is occupied; nothing outside the grid is.
+  bool occupied(int i, int j) const { return inside(i, j) && clearance(i, j) == 0; }
+  /// The first occupied column in [from, to] of row j, or -1. The interval must lie inside the grid.
+  int next_occupied(int j, int from, int to) const {
+    if (from > to) return -1;
+    const std::uint8_t* row = clearance_.data() + at(0, j);
+    const void* found = std::memchr(row + from, 0, static_cast<std::size_t>(to - from + 1));
+    return found == nullptr ? -1 : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
+  }
+  /// Whether everything within `reach` [m] of a point is certainly free (false: it may be).
+  bool clear_of(Vec2 point, double reach) const;
+
+  /// Corners of the outline of the occupied cells, one list per ring, straight runs merged. The occupied side is on the
+  /// left, so outer rings go counter-clockwise and holes clockwise. Cells that share only a corner have rings of their
+  /// own.
+  std::vector<std::vector<Vec2>> outline() const;
+
+ private:
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + i; }
+
+  int columns_, rows_;
+  Vec2 origin_, cell_;
+  Box bounds_;
+  std::int64_t count_ = 0;
+  std::vector<std::uint8_t> clearance_;  // by row
+};
+
+/// Where a closed disc meets an occupied cell, if it does: the point of such a cell nearest to the centre.
+bool disc_meets(const OccupancyGrid& grid, Vec2 centre, double radius, Vec2& where);
+/// Where a polyline of `edges` edges, or the closed area within it if `filled` (then vertices[edges] repeats
+/// vertices[0]), meets an occupied cell, if it does.
+bool outline_meets(const OccupancyGrid& grid, const Vec2* vertices, int edges, bool filled, const Box& box,
+                   Vec2& where);
+
+}  // namespace irsim

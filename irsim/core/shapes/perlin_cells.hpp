@@ -1,0 +1,44 @@
+// The cells of a map of gradient noise that is drawn per scene.
+#pragma once
+
+#include "maps/perlin.hpp"
+#include "shapes/grid_cells.hpp"
+
+namespace irsim {
+
+struct PerlinCells {
+  std::array<int, 2> size;          // of the noise, along x and y
+  int every;                        // of so many cells one is kept, along both axes, from the first
+  std::array<double, 2> origin;     // of the map, world frame [m]
+  std::array<double, 2> cell_size;  // [m]
+  double complexity, fill;
+  int fractal;
+  double attenuation;
+  static constexpr auto fields() {
+    using P = PerlinCells;
+    return std::make_tuple(field("size", &P::size), field("every", &P::every), field("origin", &P::origin),
+                           field("cell_size", &P::cell_size), field("complexity", &P::complexity),
+                           field("fill", &P::fill), field("fractal", &P::fractal),
+                           field("attenuation", &P::attenuation));
+  }
+};
+
+constexpr bool is_drawn(const PerlinCells&) { return true; }
+
+inline Outline outline(const PerlinCells& p, const Draws& draws, std::uint64_t) {
+  Draws own = draws;
+  own.stream = static_cast<std::uint64_t>(Stream::map);
+  const PerlinNoise noise{p.size[0], p.size[1], p.complexity, p.fill, p.fractal, p.attenuation};
+  std::vector<std::uint8_t> cells = perlin_cells(noise, draw_permutation(own));
+  const int step = std::max(1, p.every), columns = (p.size[0] + step - 1) / step, rows = (p.size[1] + step - 1) / step;
+  if (step > 1) {
+    std::vector<std::uint8_t> kept;
+    for (int j = 0; j < p.size[1]; j += step)
+      for (int i = 0; i < p.size[0]; i += step) kept.push_back(cells[static_cast<std::size_t>(j) * p.size[0] + i]);
+    cells = std::move(kept);
+  }
+  return cells_outline(std::make_shared<OccupancyGrid>(columns, rows, Vec2{p.origin[0], p.origin[1]},
+                                                       Vec2{p.cell_size[0], p.cell_size[1]}, cells));
+}
+
+}  // namespace irsim

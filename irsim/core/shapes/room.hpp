@@ -1,0 +1,15 @@
+// The outline of a room, seen from inside: what is solid is outside.
+#pragma once
+
+#include "shapes/polygon.hpp"
+
+namespace irsim {
+
+struct Room {
+  Corners vertices;  // body frame [m], in either order
+  static constexpr auto fields() { return std::make_tuple(field("vertices", &Room::vertices)); }
+};
+
+inline Outline outline(const Room& r, const Draws&, std::uint64_t) { return {Kind::room, points(r.vertices)}; }
+
+}  // namespace irsim

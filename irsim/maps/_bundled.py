@@ -1,0 +1,27 @@
+"""The maps that come along, by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+__all__ = ["bundled_map", "bundled_names", "stand_in"]
+
+_FOLDER = Path(__file__).parent / "_data"
+_STAND_INS = {f"hm3d_{number}.png": f"flat_{1 + (number - 1) % 2}.png" for number in range(1, 10)}
+"""Indoor scans of IR-SIM that cannot be handed on, and the flats of our own that take their place."""
+
+
+def bundled_names() -> list[str]:
+    """File names, sorted; names that only stand for another one are left out."""
+    return sorted(path.name for path in _FOLDER.glob("*.png"))
+
+
+def stand_in(name: str) -> str | None:
+    """The map loaded in place of one that does not come along."""
+    return _STAND_INS.get(name)
+
+
+def bundled_map(name: str) -> Path | None:
+    """The file of a bundled map; None if there is none of that name."""
+    path = _FOLDER / _STAND_INS.get(name, name)
+    return path if path.parent == _FOLDER and path.name in bundled_names() else None
