@@ -56,7 +56,7 @@ class PythonSensor:
 
     @property
     def rng(self) -> np.random.Generator:
-        """The random stream of this sensor at the present step: the same draws in any batch, and when repeated."""
+        """The random stream of this measurement: the same draws in any batch, and when it is repeated."""
         simulation, world = self.parent._simulation, self.parent.world
         key = (*simulation.key(world), int(simulation.count[world]))
         if self._rng is None or self._rng[0] != key:
@@ -71,6 +71,7 @@ class PythonSensor:
         Args:
             state: State of the carrier, handed to ``step`` of a class; by default the present one.
         """
+        self._rng = None  # measuring again repeats the draws
         if self.instance is None:
             self.data = self._function(self.parent, self.options, self.rng)
             return

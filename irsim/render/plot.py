@@ -24,6 +24,8 @@ from irsim.render.png import png_bytes
 from irsim.render.recording import Pictured, Recording
 from irsim.render.scene import Scene
 from irsim.render.style import STYLE_KEYS
+from irsim.render.user_sensors import UserSensors
+from irsim.views import views
 
 if TYPE_CHECKING:
     from irsim.render.window import Window
@@ -84,6 +86,7 @@ class EnvPlot:
         self._size = float(width), float(height)
         self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._overlay = Overlay(self.palette)
+        self._user_sensors = UserSensors()
         self._figure: SceneFigure | None = None
         self._window: Window | None = None
         self._recording = Recording(env)
@@ -143,8 +146,15 @@ class EnvPlot:
                 figure=None if self._window is None else self._window.figure,
                 pictures=self._pictures,
             )
-            self._figure.show(self.scene(), self._title())
+            self._show(self._figure)
         return self._figure
+
+    def _show(self, figure: SceneFigure) -> None:
+        figure.show(self.scene(), self._title())
+        if self.env.simulation.measurements:
+            objects = views(self.env.simulation)
+            shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
+            self._user_sensors.show(figure.ax, shown)
 
     def scene(self) -> Scene:
         """What the picture shows, as data."""
@@ -163,7 +173,7 @@ class EnvPlot:
 
     def _synced(self) -> SceneFigure:
         figure = self._made()
-        figure.show(self.scene(), self._title())
+        self._show(figure)
         return figure
 
     # per step --------------------------------------------------------------------------------------------------------
@@ -320,6 +330,7 @@ class EnvPlot:
         self._begin()
         self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._pictures.has)
         self._overlay.forget()
+        self._user_sensors.forget()
         if self._figure is not None:
             self._figure.clear()
 
@@ -329,6 +340,7 @@ class EnvPlot:
             self._window.close()
             self._window = None
         self._overlay.forget()
+        self._user_sensors.forget()
         if self._figure is not None:
             self._figure.compositor.forget()
         self._figure = None

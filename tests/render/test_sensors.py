@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 
+from irsim.registry import SENSORS
 from irsim.render.builder import SceneBuilder
+from irsim.sensors._options import SensorOptions
 
 WORLD = """
 world: {width: 10, height: 10%s}
@@ -91,3 +93,44 @@ def test_a_lidar_draws_itself_into_any_axes(make: Make) -> None:
     lidar.plot_clear()
     assert len(ax.collections) == 0
     lidar.step_plot()
+
+
+class Flag(SensorOptions):
+    """Draws a square ahead of its carrier."""
+
+    name: Literal["flag"] = "flag"
+
+
+class DrawnFlag:
+    def __init__(self, parent: Any, options: Any) -> None:
+        self.parent, self.line = parent, None
+
+    def step(self, state: np.ndarray) -> None:
+        pass
+
+    def plot(self, ax: Any, state: np.ndarray, **kwargs: Any) -> None:
+        (self.line,) = ax.plot([float(state[0, 0]) + 0.5], [float(state[1, 0])], "s", color="m", markersize=12)
+
+    def step_plot(self) -> None:
+        self.line.set_data([self.parent.position[0, 0] + 0.5], [self.parent.position[1, 0]])
+
+    def plot_clear(self) -> None:
+        self.line.remove()
+
+
+def test_a_sensor_of_user_code_draws_itself(make: Make, color_at: Callable[..., tuple[int, ...]]) -> None:
+    SENSORS.register(Flag)(DrawnFlag)
+    env = make(
+        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [9, 5],"
+        " behavior: {name: dash}, sensors: [{name: flag}], plot: {show_arrow: false}}"
+    )
+    magenta = (191, 0, 191)
+    assert color_at(env, 2.5, 5.0) == magenta
+    for _ in range(20):
+        env.step()
+    assert color_at(env, 4.5, 5.0) == magenta
+    assert color_at(env, 2.5, 5.0) == (255, 255, 255)
+    env.reset()
+    assert color_at(env, 2.5, 5.0) == magenta
+    env.delete_object(0)
+    assert color_at(env, 2.5, 5.0) == (255, 255, 255)
