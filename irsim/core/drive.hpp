@@ -26,6 +26,7 @@ struct Turning {
   double tolerance = 0.1;       // heading errors that are left alone [rad]
   double guarantee_time = 0.2;  // time in which an error should be gone [s]
   double max_rate = 1.5;        // [rad/s]
+  double max_forward = kInfinity;  // no faster along the present heading [m/s]
 };
 
 /// A wanted world-frame velocity [m/s] and what a drive needs to know to realise it.
@@ -65,7 +66,8 @@ inline ForwardWish forward_wish(const Wish& wish) {
   const double speed = norm(wish.velocity);
   if (!(speed > wish.turning.min_speed)) return {0.0, 0.0};
   const double error = -wrap(wish.pose.theta - std::atan2(wish.velocity.y, wish.velocity.x));
-  return {std::max(0.0, speed * std::cos(error)), std::fabs(error) < wish.turning.tolerance ? 0.0 : error};
+  const double ahead = std::min(std::max(0.0, speed * std::cos(error)), wish.turning.max_forward);
+  return {ahead, std::fabs(error) < wish.turning.tolerance ? 0.0 : error};
 }
 
 /// The turn rate that removes a heading error in `guarantee_time`, capped.

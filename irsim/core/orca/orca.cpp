@@ -11,6 +11,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kLeastSpeed = 1e-6;  // slower wishes are rounding [m/s]
+
 /// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
 double top_speed(const OrcaOptions& options, const World& world, int object) {
   const Vec3& top = world.vel_max[object];
@@ -27,6 +29,26 @@ Vec2 preferred_velocity(const World& world, const State& state, int row, int obj
   const Vec2 way = goal.position() - state.pose[row].position();
   const double distance = norm(way);
   return distance > 0.0 && distance >= world.goal_threshold[object] ? way * (speed / distance) : Vec2{};
+}
+
+/// How a drive that cannot move sideways turns. Small changes of direction and slow wishes are left out, as in IR-SIM,
+/// but for those that avoid somebody: the next step starts from the true velocity and would ask for the same again.
+Turning turning_for(const World& world, int object, bool avoiding) {
+  Turning turning;
+  turning.guarantee_time = world.step_time;
+  turning.max_rate = world.vel_max[object][1];
+  if (avoiding) turning.min_speed = kLeastSpeed, turning.tolerance = 0.0;
+  return turning;
+}
+
+/// Fastest speed along `direction` that stays within planes that zero is in [m/s].
+double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
+  double most = kInfinity;
+  for (int k = 0; k < count; ++k) {
+    const double rate = cross(planes[k].direction, direction);
+    if (rate < 0.0) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
+  }
+  return most;
 }
 
 /// Whether `viewer` is shown an object of another group.
@@ -113,11 +135,12 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const int hard = static_cast<int>(all.planes.size());
     avoid_movers(options, world, self, all);
     Vec2 velocity;
-    const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed,
-                                      preferred_velocity(world, state, row, i, speed), all.scratch, velocity);
-    Turning turning;
-    turning.guarantee_time = world.step_time;
-    turning.max_rate = world.vel_max[i][1];
+    const Vec2 preferred = preferred_velocity(world, state, row, i, speed);
+    const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
+                                      all.scratch, velocity);
+    Turning turning = turning_for(world, i, squared(velocity - preferred) > 0.0);
+    // the way it faces may lead into a wall even if the way it wants to go does not
+    if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
     intents[k] = Intent::of_velocity(velocity, turning);
     intents[k].infeasible = !free;
   }
