@@ -22,10 +22,10 @@ struct Motion {
 
 /// How sharply a drive that cannot move sideways turns toward a wanted velocity (reference: 5.4).
 struct Turning {
-  double min_speed = 0.02;      // slower wishes are a stop [m/s]
-  double tolerance = 0.1;       // heading errors that are left alone [rad]
-  double guarantee_time = 0.2;  // time in which an error should be gone [s]
-  double max_rate = 1.5;        // [rad/s]
+  double min_speed = 0.02;         // slower wishes are a stop [m/s]
+  double tolerance = 0.1;          // heading errors that are left alone [rad]
+  double guarantee_time = 0.2;     // time in which an error should be gone [s]
+  double max_rate = 1.5;           // [rad/s]
   double max_forward = kInfinity;  // no faster along the present heading [m/s]
 };
 

@@ -43,7 +43,8 @@ inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
 inline Vec3 follow(const AckerOptions& options, const Wish& wish) {
   constexpr double kCreep = 0.2;  // of the wanted speed
   ForwardWish forward = forward_wish(wish);
-  if (forward.error != 0.0) forward.speed = std::max(forward.speed, std::min(kCreep * norm(wish.velocity), wish.turning.max_forward));
+  if (forward.error != 0.0)
+    forward.speed = std::max(forward.speed, std::min(kCreep * norm(wish.velocity), wish.turning.max_forward));
   if (options.mode == Steering::steer) return {{forward.speed, forward.error, 0.0}};
   const double psi = clip(forward.error, -0.25 * kPi, 0.25 * kPi);
   return {{forward.speed, turn_rate(psi - wish.extra[0], wish.turning), 0.0}};

@@ -12,6 +12,8 @@ namespace irsim {
 namespace {
 
 constexpr double kLeastSpeed = 1e-6;  // slower wishes are rounding [m/s]
+constexpr double kCarAngle = 1.2;     // farther off its heading a car does not look for a velocity [rad]
+constexpr double kCarCreep = 0.2;     // least share of a wanted speed at which a car drives on to be able to turn
 
 /// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
 double top_speed(const OrcaOptions& options, const World& world, int object) {
@@ -39,6 +41,34 @@ Turning turning_for(const World& world, int object, bool avoiding) {
   turning.max_rate = world.vel_max[object][1];
   if (avoiding) turning.min_speed = kLeastSpeed, turning.tolerance = 0.0;
   return turning;
+}
+
+/// A car, which turns only while it rolls: it looks for velocities on either side of its heading only, and wants to go
+/// as far to the side of the goal as that allows. `planes` is empty before; zero is in both.
+void face_ahead(Vec2 heading, std::vector<HalfPlane>& planes, Vec2& preferred) {
+  const Vec2 most = unit(kCarAngle), left = rotate(heading, most), right = rotate(heading, {most.x, -most.y});
+  planes.push_back({{}, right});
+  planes.push_back({{}, left * -1.0});
+  const bool ahead = planes[0].depth(preferred) >= 0.0 && planes[1].depth(preferred) >= 0.0;
+  if (!ahead) preferred = (cross(heading, preferred) > 0.0 ? left : right) * norm(preferred);
+}
+
+/// Controls of a car that shall go with `velocity`: steering acts from the next period on, and is then set such that
+/// the heading is right at its end.
+Vec3 car_control(const AckerOptions& car, const World& world, const State& state, int row, Vec2 velocity, double most) {
+  const double speed = norm(velocity), dt = world.step_time, psi = state.extra[std::size_t(row) * state.extra_rows];
+  const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0;
+  Vec3 control;
+  double target = psi;
+  if (speed > kLeastSpeed) {
+    const Vec2 heading = state.heading(row);
+    control[0] = std::min(std::max(dot(heading, velocity), kCarCreep * speed), most);
+    const double rolling = std::max(control[0], kCarCreep * kCarCreep);
+    const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
+    target = std::atan(error * wheelbase / (rolling * dt) - std::tan(psi) * control[0] / rolling);
+  }
+  control[1] = car.mode == Steering::steer ? target : (target - psi) / dt;
+  return control;
 }
 
 /// Fastest speed along `direction` that stays within planes that zero is in [m/s].
@@ -131,17 +161,21 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, i);
     all.planes.clear();
+    Vec2 preferred = preferred_velocity(world, state, row, i, speed);
+    const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
+    if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     avoid_obstacles(options, world, obstacles, agent, i, speed, all);
     const int hard = static_cast<int>(all.planes.size());
     avoid_movers(options, world, self, all);
     Vec2 velocity;
-    const Vec2 preferred = preferred_velocity(world, state, row, i, speed);
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                       all.scratch, velocity);
     Turning turning = turning_for(world, i, squared(velocity - preferred) > 0.0);
     // the way it faces may lead into a wall even if the way it wants to go does not
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
-    intents[k] = Intent::of_velocity(velocity, turning);
+    intents[k] = car != nullptr
+                     ? Intent::of_control(car_control(*car, world, state, row, velocity, turning.max_forward))
+                     : Intent::of_velocity(velocity, turning);
     intents[k].infeasible = !free;
   }
 }
