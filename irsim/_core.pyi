@@ -529,6 +529,19 @@ def walls(
 def intersects(
     parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
 ) -> bool: ...
+def best_velocity(
+    planes: Sequence[Sequence[float]], hard: int, max_speed: float, preferred: tuple[float, float]
+) -> tuple[float, float, bool]:
+    """The velocity nearest to `preferred` within half-planes (point x, y, direction x, y; allowed: on the left).
+
+    Where there is none (last value False), the one that is least outside, the first `hard` of them kept.
+    """
+
+def nearest_points(
+    points: Sequence[tuple[float, float]], centre: tuple[float, float], reach: float, most: int
+) -> list[int]:
+    """Indices of the points less than `reach` away, nearest first, at most `most`."""
+
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of a key: key (seed, scene << 32 | noise), counter (draw, object, stream, 0)."""
 

@@ -161,16 +161,19 @@ def table_row(name: str, drive: str, out: Outcome) -> str:
     """One line of the table."""
     good = out.success
     seconds = f"{out.steps[good].mean() * STEP_TIME:.1f}" if good.any() else "-"
-    share = 100 * out.infeasible.sum() / (out.steps.sum() * out.robots)
-    return (
-        f"| {name} | {drive} | {out.robots} | {100 * good.mean():.0f} % | {100 * out.arrived.mean() / out.robots:.1f} % "
-        f"| {out.collided.sum()} | {out.collided_freely.sum()} | {seconds} | {share:.2f} % |"
-    )
+    stuck = out.infeasible.sum() / (out.steps.sum() * out.robots)
+    cells = [name, drive, str(out.robots), f"{good.mean():.0%}", f"{out.arrived.mean() / out.robots:.1%}"]
+    cells += [str(out.collided.sum()), str(out.collided_freely.sum()), seconds, f"{stuck:.2%}", f"{out.wall:.1f}"]
+    return f"| {' | '.join(cells)} |"
 
 
 HEADER = """\
-| behavior | drive | robots | all arrived | robots arrived | collided | of these, always feasible | time [s] | infeasible |
-|---|---|---|---|---|---|---|---|---|"""
+| behavior | drive | robots | all arrived | robots arrived | collided | freely | time [s] | infeasible | run [s] |
+|---|---|---|---|---|---|---|---|---|---|"""
+LEGEND = """
+all arrived: episodes in which every robot reached its goal; collided: robots that touched another, in all episodes;
+freely: those for which no infeasible step was reported before; time: mean length of episodes in which all arrived; infeasible:
+share of robot steps in which the behavior found no velocity that avoids everybody (only orca says so)."""
 
 
 def main() -> None:
@@ -180,7 +183,9 @@ def main() -> None:
     parser.add_argument("--drives", nargs="+", choices=DRIVES, default=list(DRIVES))
     parser.add_argument("--seeds", type=int, default=100, help="seeds 0, 1, …")
     parser.add_argument("--threads", type=int, default=None, help="default: one per core")
-    parser.add_argument("--options", type=json.loads, default={}, help='behavior options over ours, as JSON: {"factor": 2}')
+    parser.add_argument(
+        "--options", type=json.loads, default={}, help='behavior options over ours, as JSON: {"factor": 2}'
+    )
     arguments = parser.parse_args()
     print(HEADER)
     for behavior in arguments.behaviors:
@@ -188,6 +193,7 @@ def main() -> None:
             for robots in arguments.robots:
                 out = swap(robots, behavior, drive, range(arguments.seeds), arguments.options, arguments.threads)
                 print(table_row(behavior, drive, out), flush=True)
+    print(LEGEND)
 
 
 if __name__ == "__main__":

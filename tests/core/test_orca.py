@@ -1,0 +1,294 @@
+"""`orca`: its programs against plain enumeration, its law in small worlds, and that it keeps its promises."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core import oracle
+from tests.core.worlds import (
+    DRIVES,
+    assert_identical,
+    circle,
+    everything,
+    line,
+    obstacle,
+    rectangle,
+    robot,
+    rows_of,
+    scene,
+)
+
+ANGLE = st.floats(-math.pi, math.pi)
+PLANE = st.tuples(st.floats(-2, 2), st.floats(-2, 2), ANGLE).map(lambda p: (p[0], p[1], math.cos(p[2]), math.sin(p[2])))
+
+
+def options(**overrides: Any) -> core.OrcaOptions:
+    default: dict[str, Any] = {
+        "neighborDist": 10.0,
+        "maxNeighbors": 10,
+        "timeHorizon": 5.0,
+        "timeHorizonObst": 5.0,
+        "safe_radius": 0.05,
+        "maxSpeed": None,
+    }
+    return core.OrcaOptions(**{**default, **overrides})
+
+
+def agent(pose: Any, goal: Any, drive: str = "omni", **overrides: Any) -> core.ObjectSpec:
+    keys: dict[str, Any] = {
+        "drive": DRIVES[drive],
+        "pose": [*pose, 0.0][:3],
+        "goals": [list(goal)],
+        "behavior": options(),
+        "grouped": True,
+    }
+    return robot(**{**keys, **overrides})
+
+
+# the programs
+
+
+def depths(planes: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(planes,) how far `v` is inside each."""
+    offset = v - planes[:, :2]
+    return planes[:, 2] * offset[:, 1] - planes[:, 3] * offset[:, 0]
+
+
+def corners(planes: np.ndarray, max_speed: float, preferred: np.ndarray) -> np.ndarray:
+    """(K, 2) every velocity that can be the answer: the preferred one, its feet, and where borders meet."""
+    found = [preferred, preferred * min(1.0, max_speed / max(np.linalg.norm(preferred), 1e-12))]
+    for x, y, dx, dy in planes:
+        p, d = np.array([x, y]), np.array([dx, dy])
+        found.append(p + d * (d @ (preferred - p)))
+        chord = max_speed**2 - (p @ np.array([-dy, dx])) ** 2
+        if chord >= 0:
+            found += [p + d * (-(p @ d) + sign * math.sqrt(chord)) for sign in (-1, 1)]
+    for a, b in itertools.combinations(planes, 2):
+        sine = a[2] * b[3] - a[3] * b[2]
+        if abs(sine) > 1e-12:
+            gap = a[:2] - b[:2]
+            found.append(a[:2] + a[2:] * ((b[2] * gap[1] - b[3] * gap[0]) / sine))
+    return np.array(found)
+
+
+def allowed(planes: np.ndarray, max_speed: float, preferred: np.ndarray, slack: float = 1e-9) -> np.ndarray:
+    """(K, 2) those within every plane."""
+    v = corners(planes, max_speed, preferred)
+    inside = np.array([np.linalg.norm(w) <= max_speed + slack and (depths(planes, w) >= -slack).all() for w in v])
+    return v[inside]
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(PLANE, min_size=1, max_size=7), st.floats(0.1, 2), st.tuples(st.floats(-2, 2), st.floats(-2, 2)))
+def test_best_velocity_is_the_best_corner(planes: Any, max_speed: float, preferred: tuple[float, float]) -> None:
+    lines, wanted = np.array(planes), np.array(preferred)
+    tight = allowed(lines, max_speed, wanted, -1e-6)
+    loose = allowed(lines, max_speed, wanted, 1e-6)
+    assume(len(loose) == 0 or len(allowed(lines, max_speed, wanted)) > 0)
+    x, y, free = core.best_velocity(planes, 0, max_speed, preferred)
+    v = np.array([x, y])
+    assert np.linalg.norm(v) <= max_speed + 1e-9
+    if free:
+        assert (depths(lines, v) >= -1e-7).all()
+        best = min(np.linalg.norm(w - wanted) for w in loose)
+        assert np.linalg.norm(v - wanted) <= best + 1e-4
+    else:
+        assert len(tight) == 0
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(PLANE, min_size=2, max_size=6), st.lists(ANGLE, max_size=2), st.floats(0.3, 2))
+def test_where_nothing_is_free_the_largest_violation_is_least(planes: Any, walls: Any, max_speed: float) -> None:
+    hard = [(0.0, 0.0, math.cos(a), math.sin(a)) for a in walls]
+    x, y, free = core.best_velocity(hard + planes, len(hard), max_speed, (1.0, 0.0))
+    assume(not free)
+    v, soft = np.array([x, y]), np.array(planes)
+    assert np.linalg.norm(v) <= max_speed + 1e-9
+    assert all((depths(np.array([h]), v) >= -1e-7).all() for h in hard)
+    found = -depths(soft, v).min()
+    # nothing in a fine fan of velocities is better
+    angle, speed = np.meshgrid(np.linspace(-math.pi, math.pi, 73), np.linspace(0, max_speed, 21))
+    for w in np.stack([speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 2):
+        if all((depths(np.array([h]), w) >= 0).all() for h in hard):
+            assert found <= -depths(soft, w).min() + 1e-6
+
+
+def test_the_nearest_of_many() -> None:
+    rng = np.random.default_rng(3)
+    for count, shape in ((40, 1.0), (300, 1.0), (300, 0.0), (900, 0.02)):
+        points = rng.uniform(-20, 20, (count, 2)) * (1.0, shape)
+        points[::17] = points[1]  # equally far ones: the lower index first
+        for centre in points[:20]:
+            for reach, most in ((3.0, 5), (100.0, 12), (8.0, 1000)):
+                distance2 = ((points - centre) ** 2).sum(axis=1)
+                order = [int(i) for i in np.lexsort((np.arange(count), distance2)) if distance2[i] < reach**2]
+                assert core.nearest_points(points.tolist(), tuple(centre), reach, most) == order[:most]
+
+
+# the law
+
+
+def test_alone_it_goes_straight_to_the_goal_at_its_own_speed() -> None:
+    for drive, speed in (("omni", 0.6), ("omni_angular", 0.6), ("diff", 1.0), ("steer", 1.0)):
+        world, state = scene(agent((1, 1, 0.0), (5, 1), drive, vel_max=[1.0, 0.6, 2.0]))
+        core.decide(world, state)
+        np.testing.assert_allclose(state.command[0, 0], speed, atol=1e-12)
+        np.testing.assert_allclose(state.command[0, 1:], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("drive", ["omni", "diff", "omni_angular", "steer"])
+def test_inside_the_threshold_it_rests(drive: str) -> None:
+    world, state = scene(agent((1, 1), (1.05, 1.0), drive, goal_threshold=0.2))
+    core.decide(world, state)
+    np.testing.assert_array_equal(state.command[0, 0], 0.0)
+
+
+def test_two_share_the_change_and_others_leave_it_to_it() -> None:
+    def sideways(*others: core.ObjectSpec) -> float:
+        world, state = scene(agent((0, 0), (10, 0), control=[1.0, 0.0, 0.0]), *others)
+        core.decide(world, state)
+        return float(state.command[0, 1])
+
+    oncoming = {"pose": (4, 0.1, math.pi), "goal": (-10, 0.1)}
+    drive: dict[str, Any] = {"control": [1.0, 0.0, 0.0]}
+    omni = {**drive, "drive": DRIVES["omni"], "behavior": None}
+    shared = sideways(agent(**oncoming, **drive))
+    alone = sideways(robot(pose=[4, 0.1, math.pi], group=1, **omni))
+    other_group = sideways(agent(**oncoming, **drive, group=1))
+    assert shared < -1e-3
+    assert alone == pytest.approx(2 * shared, rel=0.35)
+    assert other_group == shared, "who avoids by orca gives way too, in whatever group"
+    assert sideways(robot(role=1, pose=[4, 0.1, math.pi], group=1, **omni)) == alone
+    world, state = scene(
+        agent((0, 0), (10, 0), control=[1.0, 0.0, 0.0], target_roles=1),
+        robot(role=1, pose=[4, 0.1, math.pi], group=1, **omni),
+    )
+    core.decide(world, state)
+    assert state.command[0, 1] == 0.0, "target_roles: robot does not show obstacles"
+
+
+def test_unobstructed_things_that_stand_are_no_obstacle() -> None:
+    def forward(**keys: Any) -> float:
+        world, state = scene(agent((0, 0), (10, 0)), obstacle(**{"pose": [1.0, 0.0, 0.0], **keys}))
+        core.decide(world, state)
+        return float(state.command[0, 0])
+
+    for parts in ([circle(0.3)], [rectangle(0.4, 1.0)], [line((0, -1), (0, 1))]):
+        assert forward(parts=parts) < 0.4
+        assert forward(parts=parts, unobstructed=True) == 1.0
+
+
+def test_a_line_is_a_wall_from_both_sides() -> None:
+    for side in (-1.0, 1.0):
+        for ends in (((0, -2), (0, 0), (0, 2)), ((0, 2), (0, 0), (0, -2))):
+            world, state = scene(agent((side, 0.3), (-side * 5, 0.3)), obstacle(parts=[line(*ends)]))
+            core.decide(world, state)
+            assert abs(state.command[0, 0]) < 0.3
+
+
+def test_who_cannot_move_sideways_brakes_where_it_faces_a_wall() -> None:
+    for drive in ("diff", "steer", "angular"):
+        world, state = scene(
+            agent((0.0, 0.0, 0.4), (10, 0), drive, control=[1.0, 0.0, 0.0], vel_max=[1.0, 0.7, 0.0]),
+            obstacle(parts=[rectangle(20.0, 0.2)], pose=[0.0, 0.7, 0.0]),
+            mode=1,
+        )
+        for _ in range(150):
+            core.advance(world, state, 1)
+            assert not state.collided[0], drive
+        assert state.pose[0, 0] > 5.0, "and goes on along it"
+
+
+def test_a_batch_decides_like_its_worlds_alone() -> None:
+    rng = np.random.default_rng(5)
+    places = rng.uniform(0, 12, (90, 2))
+    goals = rng.uniform(0, 12, (90, 2))
+    objects = [agent(p, g, list(DRIVES)[k % 5]) for k, (p, g) in enumerate(zip(places, goals, strict=True))]
+    objects += [obstacle(parts=[rectangle(1.0, 2.0)], pose=[6.0, 6.0, 0.5]), obstacle(pose=[3.0, 6.0, 0.0])]
+    world, state = scene(*objects, seeds=(4, 5, 6), mode=1)
+    core.advance(world, state, 25, threads=3)
+    for w, seed in enumerate((4, 5, 6)):
+        alone_world, alone = scene(*objects, seeds=(seed,), mode=1)
+        core.advance(alone_world, alone, 25)
+        assert_identical(rows_of(everything(state), w, 3), everything(alone))
+
+
+# what it promises
+
+
+def crowd(rng: np.random.Generator, count: int, size: float, **keys: Any) -> list[core.ObjectSpec]:
+    """Agents that do not touch at the start, with goals across the place."""
+    places: list[np.ndarray] = []
+    while len(places) < count:
+        p = rng.uniform(0, size, 2)
+        if all(np.hypot(*(p - q)) > 0.55 for q in places):
+            places.append(p)
+    return [agent(p, rng.uniform(0, size, 2), **keys) for p in places]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_omni_agents_collide_only_after_an_infeasible_step(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(6, 40))
+    limits = {"vel_max": [1.0, 1.0, 0.0], "behavior": options(maxNeighbors=count, safe_radius=0.0)}
+    world, state = scene(*crowd(rng, count, 0.9 * math.sqrt(count), **limits), mode=1)
+    for _ in range(200):
+        before = state.infeasible.copy()
+        touching = {tuple(p) for p in core.State.collision_pairs(state, 0)}
+        core.advance(world, state, 1)
+        for i, j in state.collision_pairs(0):
+            if (i, j) not in touching:
+                assert (state.infeasible > before)[[i, j]].any(), (i, j)
+    mask = np.ones(1, dtype=np.uint8)
+    state.reset(mask, False)
+    assert not state.infeasible.any()
+
+
+WALLS = {
+    "corridor": [((6, 1.1), (12, 0.2)), ((6, -1.1), (12, 0.2))],
+    "doorway": [((6, 2.6), (0.2, 4.0)), ((6, -2.6), (0.2, 4.0)), ((6, 4.7), (14, 0.2)), ((6, -4.7), (14, 0.2))],
+}
+
+
+@pytest.mark.parametrize("kind", WALLS)
+@pytest.mark.parametrize("drive", DRIVES)
+def test_walls_are_never_crossed(kind: str, drive: str) -> None:
+    rng = np.random.default_rng(8)
+    walls = [obstacle(parts=[rectangle(*size)], pose=[*place, 0.0]) for place, size in WALLS[kind]]
+    agents = []
+    for k in range(8):
+        side = 1 if k % 2 else -1
+        start = (6 + side * (2 + 0.5 * k), rng.uniform(-0.5, 0.5), 0.0 if side < 0 else math.pi)
+        car = {"parts": [circle(0.2, (0.1, 0.0))]} if drive in ("steer", "angular") else {}
+        agents.append(agent(start, (6 - side * 5, rng.uniform(-0.5, 0.5)), drive, goal_threshold=0.3, **car))
+    world, state = scene(*agents, *walls, mode=1)
+    for step in range(500):
+        core.advance(world, state, 1)
+        for i, j in state.collision_pairs(0):
+            assert j < 8, f"step {step}: agent {i} meets wall {j}"
+
+
+def test_turning_and_shifting_the_world_turns_and_shifts_the_answer() -> None:
+    rng = np.random.default_rng(1)
+    places, goals = rng.uniform(0, 4, (6, 2)), rng.uniform(0, 4, (6, 2))
+    angle, shift = 0.8, np.array([3.0, -1.0])
+    turn = oracle.rotation(angle)
+
+    def answer(turned: bool) -> np.ndarray:
+        move = (lambda p: turn @ p + shift) if turned else (lambda p: p)
+        heading = angle if turned else 0.0
+        box = obstacle(parts=[rectangle(0.5, 1.5)], pose=[*move(np.array([-0.7, 1.0])), heading])
+        objects = [agent((*move(p), heading), move(g)) for p, g in zip(places, goals, strict=True)]
+        world, state = scene(*objects, box, mode=1)
+        core.advance(world, state, 3)
+        return np.asarray(state.command[:6, :2].copy())
+
+    np.testing.assert_allclose(answer(True), answer(False), atol=1e-9)
