@@ -71,6 +71,84 @@ class SfmOptions(_Options):
         gaze_vision_angle: float,
     ) -> None: ...
 
+# planners (core/planners/)
+class AstarOptions(_Options):
+    def __init__(self, *, resolution: float) -> None: ...
+
+class JpsOptions(_Options):
+    def __init__(self, *, resolution: float) -> None: ...
+
+class RrtOptions(_Options):
+    def __init__(
+        self, *, expand_dis: float, path_resolution: float, goal_sample_rate: float, max_iter: int
+    ) -> None: ...
+
+class RrtStarOptions(_Options):
+    def __init__(
+        self,
+        *,
+        expand_dis: float,
+        path_resolution: float,
+        goal_sample_rate: float,
+        max_iter: int,
+        connect_circle_dist: float,
+        search_until_max_iter: bool,
+    ) -> None: ...
+
+class InformedRrtStarOptions(_Options):
+    def __init__(
+        self,
+        *,
+        expand_dis: float,
+        path_resolution: float,
+        goal_sample_rate: float,
+        max_iter: int,
+        connect_circle_dist: float,
+        search_until_max_iter: bool,
+    ) -> None: ...
+
+class PrmOptions(_Options):
+    def __init__(self, *, n_sample: int, n_knn: int, max_edge_len: float) -> None: ...
+
+Cells = tuple[tuple[float, float], tuple[float, float], int, int]
+"""Origin, cell size [m], columns, rows."""
+
+class Terrain:
+    """What stands in the way of planning, within a rectangle that footprints must not leave.
+
+    Args:
+        bounds: x0, y0, x1, y1 [m].
+        things: Parts and pose of each obstacle.
+    """
+
+    def __init__(self, bounds: Sequence[float], things: Sequence[tuple[Sequence[object], Sequence[float]]]) -> None: ...
+    def plan(
+        self,
+        planner: object,
+        *,
+        parts: Sequence[object],
+        heading: float,
+        start: Sequence[float],
+        goal: Sequence[float],
+        cells: Cells,
+        key: tuple[int, int, int],
+        object: int,
+        first_draw: int,
+        smooth: bool,
+    ) -> tuple[Floats | None, float, Floats, NDArray[np.int32], Floats]:
+        """A path for a body of these parts at a heading (no parts: that of a cell).
+
+        Returns:
+            (N, 2) points from start to goal, or None; its length; (K, 2) points looked at; (K,) the index of the point
+            each was reached from, or -1; (K,) length of the way there.
+        """
+    def open_cells(self, parts: Sequence[object], heading: float, cells: Cells) -> Flags:
+        """(nx, ny) where grid planners may go."""
+    def collides(self, parts: Sequence[object], pose: Sequence[float]) -> bool:
+        """Whether a body touches an obstacle or leaves the rectangle."""
+    def clear(self, parts: Sequence[object], heading: float, start: Sequence[float], goal: Sequence[float]) -> bool:
+        """Whether a body of fixed heading can move straight from start to goal."""
+
 # sensors (core/sensors/)
 class Lidar2dOptions(_Options):
     def __init__(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from irsim.actions import assign_actions
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_custom import EnvCustom
+from irsim.env_maps import EnvMaps
 from irsim.env_objects import EnvObjects
 from irsim.errors import NotSimulatedError
 from irsim.log import LEVELS, Logger
@@ -63,7 +64,7 @@ def make(
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvObjects, EnvCustom):
+class Env(EnvObjects, EnvMaps, EnvCustom):
     """One world, stepped from Python.
 
     Args:

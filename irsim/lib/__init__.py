@@ -12,9 +12,16 @@ from irsim.lib.behavior.behavior_registry import (
     register_group_behavior_class,
 )
 
+_PLANNERS = "irsim.lib.path_planners"
 _HOMES = {
+    "AStarPlanner": _PLANNERS,
+    "InformedRRTStar": _PLANNERS,
+    "JPSPlanner": _PLANNERS,
     "KinematicsFactory": "irsim.lib.handler.kinematics_handler",
     "KinematicsHandler": "irsim.kinematics._handler",
+    "PRMPlanner": _PLANNERS,
+    "RRT": _PLANNERS,
+    "RRTStar": _PLANNERS,
     "ackermann_kinematics": "irsim.lib.algorithm.kinematics",
     "differential_kinematics": "irsim.lib.algorithm.kinematics",
     "omni_kinematics": "irsim.lib.algorithm.kinematics",
@@ -22,8 +29,14 @@ _HOMES = {
 }
 
 __all__ = [
+    "RRT",
+    "AStarPlanner",
+    "InformedRRTStar",
+    "JPSPlanner",
     "KinematicsFactory",
     "KinematicsHandler",
+    "PRMPlanner",
+    "RRTStar",
     "ackermann_kinematics",
     "differential_kinematics",
     "kinematics_factory",

@@ -32,7 +32,7 @@ class SamplingPlanner(PlannerOptions):
     expand_dis: Annotated[Meters, Field(gt=0)] = 1.0
     """Longest extension of the tree."""
     path_resolution: Annotated[Meters, Field(gt=0)] = 0.25
-    """Spacing of the checks along an extension."""
+    """Extensions end on multiples of this length; they are checked along their whole length."""
     goal_sample_rate: Annotated[Number, Field(ge=0, le=100)] = 5.0
     """Share of samples that are the goal, in percent."""
     max_iter: Count = 500

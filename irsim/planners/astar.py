@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
+from irsim import _core as core
 from irsim.planners._options import GridPlanner
 from irsim.registry import PLANNERS
 
@@ -16,4 +17,4 @@ class AStar(GridPlanner):
     name: Literal["astar"] = "astar"
 
 
-PLANNERS.register(AStar)
+PLANNERS.register(AStar, kernel=core.AstarOptions)

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.planners.rrt_star import RrtStar
 from irsim.registry import PLANNERS
 from irsim.units import Bool, Meters, Number
@@ -25,4 +26,4 @@ class InformedRrtStar(RrtStar):
     """Keep improving until all samples are drawn, instead of stopping at the first path."""
 
 
-PLANNERS.register(InformedRrtStar)
+PLANNERS.register(InformedRrtStar, kernel=core.InformedRrtStarOptions)

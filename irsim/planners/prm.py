@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.planners._options import PlannerOptions
 from irsim.registry import PLANNERS
 from irsim.units import Integer, Meters
@@ -25,4 +26,4 @@ class Prm(PlannerOptions):
     """Longest edge."""
 
 
-PLANNERS.register(Prm)
+PLANNERS.register(Prm, kernel=core.PrmOptions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
+from irsim import _core as core
 from irsim.planners._options import SamplingPlanner
 from irsim.registry import PLANNERS
 
@@ -16,4 +17,4 @@ class Rrt(SamplingPlanner):
     name: Literal["rrt"] = "rrt"
 
 
-PLANNERS.register(Rrt)
+PLANNERS.register(Rrt, kernel=core.RrtOptions)

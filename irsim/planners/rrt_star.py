@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.planners._options import SamplingPlanner
 from irsim.registry import PLANNERS
 from irsim.units import Bool, Meters
@@ -25,4 +26,4 @@ class RrtStar(SamplingPlanner):
     """Keep improving until all samples are drawn, instead of stopping at the first path."""
 
 
-PLANNERS.register(RrtStar)
+PLANNERS.register(RrtStar, kernel=core.RrtStarOptions)

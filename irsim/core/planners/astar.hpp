@@ -1,0 +1,18 @@
+// astar: the shortest path over the eight neighbours of each cell.
+#pragma once
+
+#include "fields.hpp"
+#include "planning/grid_search.hpp"
+
+namespace irsim {
+
+struct AstarOptions {
+  double resolution;  // [m]; 0: that of the map
+  static constexpr auto fields() { return std::make_tuple(field("resolution", &AstarOptions::resolution)); }
+};
+
+inline Plan astar(const AstarOptions& options, const Problem& problem) {
+  return search_astar(problem, options.resolution);
+}
+
+}  // namespace irsim

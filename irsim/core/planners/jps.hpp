@@ -1,0 +1,16 @@
+// jps: the paths of astar, found by jumping over cells that need no decision.
+#pragma once
+
+#include "fields.hpp"
+#include "planning/grid_search.hpp"
+
+namespace irsim {
+
+struct JpsOptions {
+  double resolution;  // [m]; 0: that of the map
+  static constexpr auto fields() { return std::make_tuple(field("resolution", &JpsOptions::resolution)); }
+};
+
+inline Plan jps(const JpsOptions& options, const Problem& problem) { return search_jumps(problem, options.resolution); }
+
+}  // namespace irsim

@@ -1,0 +1,53 @@
+// The footprint a path is planned for: it keeps its heading and moves along straight lines.
+#pragma once
+
+#include <vector>
+
+#include "shapes.hpp"
+
+namespace irsim {
+
+/// Parts of one rigid body about its origin, ready to be put anywhere. The answers live in scratch memory of the body
+/// until the next question, so one thread uses a body at a time.
+class Body {
+ public:
+  static Body disc(double radius);
+  /// A box about the origin.
+  static Body box(double half_x, double half_y);
+  /// Body-frame parts of object `object` at a heading, larger by `margin` [m] all round.
+  static Body of(const Shapes& shapes, int object, double heading, double margin);
+
+  /// At a point.
+  const Footprint& at(Vec2 p);
+  /// What moving from a to b covers beyond the footprint at a.
+  const Footprint& swept(Vec2 a, Vec2 b);
+  /// No part of it is farther than this from its origin [m].
+  double reach() const { return reach_; }
+  /// Around the footprint at the origin.
+  const Box& box() const { return box_; }
+
+ private:
+  struct Placed {
+    std::vector<Part> parts;
+    std::vector<Vec2> vertices;
+    std::vector<Box> boxes;
+    Footprint footprint;
+    void clear();
+    void add_circle(Vec2 centre, double radius);
+    void add_ring(const Vec2* corners, int count, Kind kind, double turn);
+    const Footprint& done();
+  };
+
+  void add_circle(Vec2 centre, double radius);
+  void add_outline(Kind kind, std::vector<Vec2> vertices, double turn);
+  void finish();
+
+  std::vector<Part> parts_;
+  std::vector<Vec2> vertices_;
+  std::vector<Box> part_boxes_;
+  Box box_;
+  double reach_ = 0.0;
+  Placed there_, way_;
+};
+
+}  // namespace irsim

@@ -1,0 +1,11 @@
+// Probabilistic road maps. Kavraki, Svestka, Latombe, Overmars (1996).
+#pragma once
+
+#include "planning/problem.hpp"
+
+namespace irsim {
+
+/// `samples` free points, each joined to up to `neighbours` others nearer than `longest` [m]; the shortest path.
+Plan search_roadmap(const Problem& problem, int samples, int neighbours, double longest);
+
+}  // namespace irsim

@@ -1,0 +1,43 @@
+#include "planning/space.hpp"
+
+#include "collision/touch.hpp"
+
+namespace irsim {
+
+bool Blockers::meet(const Footprint& body) const {
+  bool met = false;
+  grid.query(body.box, [&](int id) { met = met || (counts(id) && touch(body, outlines.footprint(shapes, id))); });
+  return met;
+}
+
+void Terrain::add(const std::vector<Outline>& outlines, const Pose& pose) {
+  shapes_.add(outlines, false);
+  poses_.push_back(pose);
+}
+
+void Terrain::build() {
+  outlines_.resize(shapes_.size[0]);
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    outlines_.place(shapes_, static_cast<int>(k), poses_[k], unit(poses_[k].theta));
+    sizes.push_back(shapes_.radius[k]);
+  }
+  double cell = 1.0;
+  if (!sizes.empty()) {
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    cell = std::max(3.0 * *middle, 1e-3);
+  }
+  grid_.clear(cell);
+  for (std::size_t k = 0; k < poses_.size(); ++k) grid_.add(static_cast<int>(k), outlines_.boxes[k]);
+  grid_.build();
+}
+
+bool Space::inside(Vec2 p) const {
+  const double slack = 1e-9 * (1.0 + std::fabs(p.x) + std::fabs(p.y));
+  const Box own = enclosed ? body.box() : Box{0.0, 0.0, 0.0, 0.0};
+  return p.x + own.x0 >= bounds.x0 - slack && p.x + own.x1 <= bounds.x1 + slack && p.y + own.y0 >= bounds.y0 - slack &&
+         p.y + own.y1 <= bounds.y1 + slack;
+}
+
+}  // namespace irsim

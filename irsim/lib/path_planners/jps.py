@@ -1,0 +1,5 @@
+"""Plain re-export."""
+
+from irsim.navigation.planners import JPSPlanner
+
+__all__ = ["JPSPlanner"]

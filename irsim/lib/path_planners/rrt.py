@@ -1,0 +1,5 @@
+"""Plain re-export."""
+
+from irsim.navigation.planners import RRT
+
+__all__ = ["RRT"]

@@ -1,0 +1,1 @@
+"""Maps for planners, and the planners as classes; the searches themselves are functions of the core."""

@@ -1,0 +1,183 @@
+"""What a planner plans on: a rectangle of the world, a grid of occupied cells, things that stand in it."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Sequence
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim import _core as core
+from irsim.body import ObjectBody
+from irsim.navigation.outlines import body_parts, parts_of
+
+__all__ = ["OCCUPIED", "EnvGridMap", "Map", "terrain_of"]
+
+Floats = NDArray[np.float64]
+OCCUPIED = 50
+"""Cells with a larger value are occupied."""
+
+
+@runtime_checkable
+class EnvGridMap(Protocol):
+    """What planners need to know of a map."""
+
+    width: float
+    height: float
+    resolution: float
+    obstacle_list: list[Any]
+    grid: Any
+    world_offset: tuple[float, float]
+
+    @property
+    def grid_resolution(self) -> tuple[float, float] | None:
+        """Size of a cell of the grid along x and y [m], or None."""
+
+    def grid_occupied(
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+    ) -> bool | None:
+        """Whether a cell near (x, y) is occupied, None without a grid."""
+
+    def is_collision(self, geometry: Any) -> bool:
+        """Whether a shapely geometry has no room."""
+
+
+class Map:
+    """A rectangle of the world in which something plans.
+
+    Args:
+        width, height: Extent [m].
+        resolution: Size of the cells of grid planners where there is no grid [m].
+        obstacle_list: Things in the way: objects of an environment, shapely geometries, or anything that has one as
+            ``geometry``. What is ``unobstructed`` is in nobody's way.
+        grid: (nx, ny) occupancy 0 to 100, cell [i, j] with i along +x and j along +y from the lower left corner.
+        world_offset: Lower left corner [m].
+
+    Attributes:
+        robot: Whose footprint grid planners plan for when they are not told; None: that of a cell.
+        seed: (seed, scene, noise episode) that sampling planners draw from; None: fresh entropy.
+        canvas: Gives the axes to draw on, or None; for ``show_animation``.
+    """
+
+    def __init__(
+        self,
+        width: float = 10,
+        height: float = 10,
+        resolution: float = 0.1,
+        obstacle_list: Sequence[Any] | None = None,
+        grid: Any = None,
+        world_offset: Sequence[float] = (0.0, 0.0),
+    ) -> None:
+        self.width, self.height, self.resolution = float(width), float(height), float(resolution)
+        if not (self.width > 0 and self.height > 0 and self.resolution > 0):
+            raise ValueError("width, height and resolution of a map must be positive")
+        self.obstacle_list: list[Any] = list(obstacle_list or [])
+        self.grid: Any = None if grid is None else np.asarray(grid)
+        if self.grid is not None and (self.grid.ndim != 2 or not self.grid.size):
+            raise ValueError("the grid of a map has two dimensions: columns along x, rows along y")
+        self.world_offset = (float(world_offset[0]), float(world_offset[1]))
+        self.robot: Any = None
+        self.seed: tuple[int, int, int] | None = None
+        self.canvas: Any = None
+        self._terrain: tuple[Any, core.Terrain] | None = None
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Lower left and upper right corner [m]."""
+        x, y = self.world_offset
+        return x, y, x + self.width, y + self.height
+
+    @property
+    def grid_resolution(self) -> tuple[float, float] | None:
+        """Size of a cell of the grid along x and y [m], or None."""
+        return None if self.grid is None else (self.width / self.grid.shape[0], self.height / self.grid.shape[1])
+
+    def grid_occupied(
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+    ) -> bool | None:
+        """Whether a cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
+
+        Returns:
+            None without a grid; True outside the map.
+        """
+        if self.grid is None:
+            return None
+        x0, y0, x1, y1 = self.bounds
+        if x - margin_x < x0 or y - margin_y < y0 or x + margin_x > x1 or y + margin_y > y1:
+            return True
+        rx, ry = self.width / self.grid.shape[0], self.height / self.grid.shape[1]
+        nx, ny = self.grid.shape
+        i0, i1 = (min(max(int((v - x0) / rx), 0), nx - 1) for v in (x - margin_x, x + margin_x))
+        j0, j1 = (min(max(int((v - y0) / ry), 0), ny - 1) for v in (y - margin_y, y + margin_y))
+        return bool((self.grid[i0 : i1 + 1, j0 : j1 + 1] > threshold).any())
+
+    def is_collision(self, geometry: Any) -> bool:
+        """Whether a shapely geometry leaves the map or meets an occupied cell or an obstacle; touching counts."""
+        return terrain_of(self).collides(parts_of(geometry), (0.0, 0.0, 0.0))
+
+
+def terrain_of(env_map: Any) -> core.Terrain:
+    """The core's form of a map as it is now; kept with it until something in it has changed."""
+    signature = _signature(env_map)
+    kept = getattr(env_map, "_terrain", None)
+    if kept is not None and kept[0] == signature:
+        terrain: core.Terrain = kept[1]
+        return terrain
+    x, y = env_map.world_offset
+    things: list[tuple[list[Any], tuple[float, float, float]]] = [
+        (parts_of(thing), (0.0, 0.0, 0.0))
+        for thing in env_map.obstacle_list
+        if not getattr(thing, "unobstructed", False)
+    ]
+    things += [([run], (0.0, 0.0, 0.0)) for run in _runs(env_map)]
+    terrain = core.Terrain((x, y, x + env_map.width, y + env_map.height), things)
+    if isinstance(env_map, Map):
+        env_map._terrain = signature, terrain
+    return terrain
+
+
+def _runs(env_map: Any) -> list[Any]:
+    """Neighbouring occupied cells of each row of the grid as one rectangle."""
+    if env_map.grid is None:
+        return []
+    occupied = np.asarray(env_map.grid) > OCCUPIED
+    edges = np.diff(np.pad(occupied.astype(np.int8), ((1, 1), (0, 0))), axis=0).T
+    rows, first = np.nonzero(edges > 0)
+    last = np.nonzero(edges < 0)[1]
+    (ox, oy), (rx, ry), _, _ = cells_of(env_map)
+    runs = []
+    for j, a, b in zip(rows.tolist(), first.tolist(), last.tolist(), strict=True):
+        x0, x1, y0, y1 = ox + a * rx, ox + b * rx, oy + j * ry, oy + (j + 1) * ry
+        runs.append(core.Polygon(vertices=[(x0, y0), (x1, y0), (x1, y1), (x0, y1)]))
+    return runs
+
+
+def cells_of(env_map: Any) -> tuple[tuple[float, float], tuple[float, float], int, int]:
+    """Origin, cell size, columns and rows of the cells of grid planners: those of the grid if there is one."""
+    if env_map.grid is not None:
+        nx, ny = env_map.grid.shape
+    else:
+        nx, ny = (max(1, round(extent / env_map.resolution)) for extent in (env_map.width, env_map.height))
+    return (env_map.world_offset[0], env_map.world_offset[1]), (env_map.width / nx, env_map.height / ny), nx, ny
+
+
+def footprint_of(robot: Any) -> list[Any]:
+    """Parts of the body to plan for; none at all for that of a cell."""
+    return [] if robot is None else body_parts(robot)
+
+
+def _signature(env_map: Any) -> Any:
+    """Changes when something in the map has moved or was exchanged."""
+    things = tuple(
+        (id(thing), thing.row, thing._simulation.pose[thing.row].tobytes(), thing.record.unobstructed)
+        if isinstance(thing, ObjectBody)
+        else (id(thing), getattr(thing, "geometry", thing).wkb)
+        for thing in env_map.obstacle_list
+    )
+    grid = env_map.grid
+    written = None
+    if grid is not None:
+        written = id(grid), zlib.crc32(np.ascontiguousarray(grid).data) if grid.flags.writeable else 0
+    return things, written, env_map.width, env_map.height, tuple(env_map.world_offset)

@@ -1,0 +1,101 @@
+"""Bodies and geometries as parts of the core, world frame or body frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim import _core as core
+from irsim.body import ObjectBody
+
+__all__ = ["body_parts", "parts_of"]
+
+Floats = NDArray[np.float64]
+_SEGMENTS = 16
+
+
+def parts_of(thing: Any) -> list[Any]:
+    """What a thing occupies in the world, as parts of the core.
+
+    Args:
+        thing: An object of an environment, a shapely geometry, or anything that has one as ``geometry``.
+
+    Raises:
+        TypeError: It has no geometry.
+    """
+    if isinstance(thing, ObjectBody):
+        return _rows(thing, world_frame=True)
+    return list(_parts(_geometry(thing, "geometry")))
+
+
+def body_parts(thing: Any) -> list[Any]:
+    """The body of a thing about its origin at heading 0, as parts of the core.
+
+    Args:
+        thing: An object of an environment, a shapely geometry about the origin, or anything that has one as
+            ``original_geometry``.
+
+    Raises:
+        TypeError: It has no geometry.
+    """
+    if isinstance(thing, ObjectBody):
+        return _rows(thing, world_frame=False)
+    return list(_parts(_geometry(thing, "original_geometry")))
+
+
+def _rows(body: ObjectBody, *, world_frame: bool) -> list[Any]:
+    state, row = body._simulation.state, body.row
+    parts: list[Any] = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, world_frame)
+            parts.append(core.Circle(radius=radius, center=(x, y)))
+        else:
+            made = core.Polygon if kind == "polygon" else core.Linestring
+            parts.append(made(vertices=state.vertices(row, part, world_frame).tolist()))
+    return parts
+
+
+def _geometry(thing: Any, attribute: str) -> Any:
+    geometry = getattr(thing, attribute, thing)
+    if not hasattr(geometry, "geom_type"):
+        raise TypeError(f"{thing!r} has no geometry: an object, or a shapely geometry, is needed")
+    return geometry
+
+
+def _parts(geometry: Any) -> Iterator[Any]:
+    if geometry.is_empty:
+        return
+    kind = geometry.geom_type
+    if kind == "Polygon":
+        yield core.Polygon(vertices=_ring(geometry))
+    elif kind in ("LineString", "LinearRing"):
+        yield core.Linestring(vertices=_xy(geometry).tolist())
+    elif kind == "Point":
+        yield core.Circle(radius=0.0, center=(geometry.x, geometry.y))
+    elif hasattr(geometry, "geoms"):
+        for one in geometry.geoms:
+            yield from _parts(one)
+    else:
+        raise TypeError(f"a geometry of type {kind!r} cannot be planned with")
+
+
+def _xy(line: Any) -> Floats:
+    return np.asarray(line.coords, dtype=np.float64)[:, :2]
+
+
+def _ring(polygon: Any) -> list[list[float]]:
+    """(N, 2) corners of a polygon; a hole is joined to the outline by the shortest seam, there and back."""
+    ring = _xy(polygon.exterior)[:-1]
+    holes = [_xy(hole)[:-1] for hole in polygon.interiors]
+    while holes:
+        gaps = [((ring[:, None] - hole[None]) ** 2).sum(axis=2) for hole in holes]
+        k = int(np.argmin([gap.min() for gap in gaps]))
+        hole, gap = holes.pop(k), gaps[k]
+        i, j = np.unravel_index(int(gap.argmin()), gap.shape)
+        turned = np.roll(hole, -int(j), axis=0)
+        ring = np.vstack([ring[: i + 1], turned, turned[:1], ring[i:]])
+    return [[float(x), float(y)] for x, y in ring]

@@ -1,0 +1,328 @@
+"""Path planners under the names that IR-SIM scripts know."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim import _core as core
+from irsim.navigation.map import EnvGridMap, cells_of, footprint_of, terrain_of
+from irsim.streams import check_seed, fresh_seed
+
+__all__ = ["RRT", "AStarPlanner", "InformedRRTStar", "JPSPlanner", "PRMPlanner", "PathNode", "PathPlanner", "RRTStar"]
+
+Floats = NDArray[np.float64]
+_DRAWS_PER_CALL = 2**40
+
+
+@dataclass(eq=False, slots=True)
+class PathNode:
+    """A point that a planner has looked at.
+
+    Attributes:
+        x, y: Where [m].
+        cost: Length of the way there from the start [m].
+        parent: The node it was reached from.
+    """
+
+    x: float
+    y: float
+    cost: float = 0.0
+    parent: PathNode | None = None
+
+
+class PathPlanner:
+    """What all planners share.
+
+    Args:
+        env_map: From ``env.get_map()`` or a :class:`irsim.navigation.map.Map`.
+        robot: Whose footprint to plan for, at heading 0: an object, or a shapely geometry about the origin.
+        smooth: Leave out the points of a path that its neighbours can do without.
+        seed: For planners that draw samples; default: the environment's planner stream.
+
+    Attributes:
+        start, end: First and last node; ``end.cost`` is the length of the last path [m], infinite without one.
+        node_list: Every node of the last search.
+    """
+
+    def __init__(
+        self, env_map: EnvGridMap, robot: Any = None, *, smooth: bool = False, seed: int | None = None
+    ) -> None:
+        self.map = env_map
+        self.robot = robot
+        self.smooth = smooth
+        self.start, self.end = PathNode(0.0, 0.0), PathNode(0.0, 0.0, float("inf"))
+        self.node_list: list[PathNode] = []
+        key = getattr(env_map, "seed", None)
+        if seed is not None or key is None:
+            key = (fresh_seed() if seed is None else check_seed(seed), 0, 0)
+        self._key: tuple[int, int, int] = key
+        self._object = int(getattr(robot, "id", 0))
+        self._calls = itertools.count()
+
+    def planning(self, start_pose: Any, goal_pose: Any, show_animation: bool = True) -> Floats | None:
+        """Search a path.
+
+        Args:
+            start_pose: At least two numbers, x and y [m], in any shape.
+            goal_pose: Likewise.
+            show_animation: Draw what was searched and found, if there is a figure.
+
+        Returns:
+            (2, N) points from the goal back to the start [m], None if there is no path.
+        """
+        return self._plan(start_pose, goal_pose, self._key, show_animation)
+
+    def _plan(self, start_pose: Any, goal_pose: Any, key: tuple[int, int, int], show_animation: bool) -> Floats | None:
+        start, goal = _point(start_pose, "start"), _point(goal_pose, "goal")
+        path, cost, nodes, parents, costs = terrain_of(self.map).plan(
+            self._kernel(),
+            parts=self._footprint(),
+            heading=0.0,
+            start=start,
+            goal=goal,
+            cells=cells_of(self.map),
+            key=key,
+            object=self._object,
+            first_draw=next(self._calls) * _DRAWS_PER_CALL,
+            smooth=self.smooth,
+        )
+        self.start = PathNode(*start)
+        self.end = PathNode(*goal, cost)
+        self._nodes = nodes, parents, costs
+        self.node_list = _linked(nodes, parents, costs) if self._keeps_nodes else []
+        found = None if path is None else np.ascontiguousarray(path[::-1].T)
+        if show_animation:
+            from irsim.navigation.animation import draw_search
+
+            draw_search(self.map, nodes, parents, found, start, goal)
+        return found
+
+    _keeps_nodes = False
+
+    def _kernel(self) -> Any:
+        raise NotImplementedError
+
+    def _footprint(self) -> list[Any]:
+        return footprint_of(self.robot)
+
+
+class _GridPlanner(PathPlanner):
+    """On the cells of the map; without ``robot`` for that of the map, and without that for one as large as a cell."""
+
+    def _footprint(self) -> list[Any]:
+        return footprint_of(self.robot if self.robot is not None else getattr(self.map, "robot", None))
+
+
+class AStarPlanner(_GridPlanner):
+    """The shortest path over the eight neighbours of each cell; whether the start is free is not asked."""
+
+    def _kernel(self) -> Any:
+        return core.AstarOptions(resolution=0.0)
+
+
+class JPSPlanner(_GridPlanner):
+    """Paths as short as those of A*, found by jumping over cells that need no decision; the start must be free."""
+
+    def _kernel(self) -> Any:
+        return core.JpsOptions(resolution=0.0)
+
+
+class RRT(PathPlanner):
+    """Grow a tree of random extensions until it reaches the goal.
+
+    Args:
+        env_map: The map.
+        robot: Whose footprint to plan for, at heading 0.
+        expand_dis: Longest extension [m].
+        path_resolution: Extensions end on multiples of this length [m]; they are checked along their whole length.
+        goal_sample_rate: Share of samples that are the goal [%].
+        max_iter: Samples before giving up.
+        smooth, seed: See :class:`PathPlanner`.
+    """
+
+    _keeps_nodes = True
+
+    def __init__(
+        self,
+        env_map: EnvGridMap,
+        robot: Any,
+        expand_dis: float = 1.0,
+        path_resolution: float = 0.25,
+        goal_sample_rate: float = 5,
+        max_iter: int = 500,
+        *,
+        smooth: bool = False,
+        seed: int | None = None,
+    ) -> None:
+        super().__init__(env_map, robot, smooth=smooth, seed=seed)
+        if not (expand_dis > 0 and path_resolution > 0):
+            raise ValueError("expand_dis and path_resolution must be positive")
+        self.expand_dis, self.path_resolution = expand_dis, path_resolution
+        self.goal_sample_rate, self.max_iter = goal_sample_rate, max_iter
+
+    def _kernel(self) -> Any:
+        return core.RrtOptions(**self._tree())
+
+    def _tree(self) -> dict[str, Any]:
+        return {
+            "expand_dis": self.expand_dis,
+            "path_resolution": self.path_resolution,
+            "goal_sample_rate": self.goal_sample_rate,
+            "max_iter": self.max_iter,
+        }
+
+
+class RRTStar(RRT):
+    """RRT that rewires the tree around each new point, so that paths get shorter.
+
+    Args:
+        env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth, seed: See :class:`RRT`.
+        connect_circle_dist: Scale of the radius in which the tree is rewired [m].
+        search_until_max_iter: Keep improving until all samples are drawn, instead of stopping at the first path.
+    """
+
+    def __init__(
+        self,
+        env_map: EnvGridMap,
+        robot: Any,
+        expand_dis: float = 1.5,
+        path_resolution: float = 0.25,
+        goal_sample_rate: float = 5,
+        max_iter: int = 500,
+        connect_circle_dist: float = 0.5,
+        search_until_max_iter: bool = False,
+        *,
+        smooth: bool = False,
+        seed: int | None = None,
+    ) -> None:
+        super().__init__(
+            env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth=smooth, seed=seed
+        )
+        self.connect_circle_dist, self.search_until_max_iter = connect_circle_dist, search_until_max_iter
+
+    def _kernel(self) -> Any:
+        return core.RrtStarOptions(**self._tree())
+
+    def _tree(self) -> dict[str, Any]:
+        return {
+            **super()._tree(),
+            "connect_circle_dist": self.connect_circle_dist,
+            "search_until_max_iter": self.search_until_max_iter,
+        }
+
+
+class InformedRRTStar(RRTStar):
+    """RRT* that, once it has a path, samples only the ellipse that can hold a shorter one.
+
+    Args:
+        env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth, seed: See :class:`RRT`.
+        connect_circle_dist, search_until_max_iter: See :class:`RRTStar`.
+    """
+
+    def __init__(
+        self,
+        env_map: EnvGridMap,
+        robot: Any,
+        expand_dis: float = 1.5,
+        path_resolution: float = 0.25,
+        goal_sample_rate: float = 10,
+        max_iter: int = 500,
+        connect_circle_dist: float = 50.0,
+        search_until_max_iter: bool = True,
+        *,
+        smooth: bool = False,
+        seed: int | None = None,
+    ) -> None:
+        super().__init__(
+            env_map,
+            robot,
+            expand_dis,
+            path_resolution,
+            goal_sample_rate,
+            max_iter,
+            connect_circle_dist,
+            search_until_max_iter,
+            smooth=smooth,
+            seed=seed,
+        )
+
+    def _kernel(self) -> Any:
+        return core.InformedRrtStarOptions(**self._tree())
+
+
+class PRMPlanner(PathPlanner):
+    """Connect random free points to a graph, then take its shortest path.
+
+    Args:
+        env_map: The map.
+        robot_radius: Of the disc to plan for [m].
+        n_sample: How many free points are drawn.
+        n_knn: Most edges per point.
+        max_edge_len: Longest edge [m].
+        smooth, seed: See :class:`PathPlanner`.
+    """
+
+    _keeps_nodes = True
+
+    def __init__(
+        self,
+        env_map: EnvGridMap,
+        robot_radius: float,
+        n_sample: int = 500,
+        n_knn: int = 10,
+        max_edge_len: float = 30.0,
+        *,
+        smooth: bool = False,
+        seed: int | None = None,
+    ) -> None:
+        super().__init__(env_map, smooth=smooth, seed=seed)
+        if not robot_radius >= 0:
+            raise ValueError("robot_radius must not be negative")
+        self.robot_radius = float(robot_radius)
+        self.n_sample, self.n_knn, self.max_edge_len = n_sample, n_knn, max_edge_len
+
+    def planning(  # type: ignore[override]  # the order of arguments that scripts know
+        self,
+        start_pose: Any,
+        goal_pose: Any,
+        rng: np.random.Generator | None = None,
+        show_animation: bool = True,
+    ) -> Floats | None:
+        """Search a path.
+
+        Args:
+            start_pose: At least two numbers, x and y [m], in any shape.
+            goal_pose: Likewise.
+            rng: Where to take the seed of the samples from, instead of the planner's own.
+            show_animation: Draw what was searched and found, if there is a figure.
+
+        Returns:
+            (2, N) points from the goal back to the start [m], None if there is no path.
+        """
+        key = self._key if rng is None else (int(rng.integers(2**63)), 0, 0)
+        return self._plan(start_pose, goal_pose, key, show_animation)
+
+    def _kernel(self) -> Any:
+        return core.PrmOptions(n_sample=self.n_sample, n_knn=self.n_knn, max_edge_len=self.max_edge_len)
+
+    def _footprint(self) -> list[Any]:
+        return [core.Circle(radius=self.robot_radius, center=(0.0, 0.0))]
+
+
+def _point(pose: Any, what: str) -> tuple[float, float]:
+    numbers = np.asarray(pose, dtype=np.float64).reshape(-1)
+    if numbers.size < 2 or not np.isfinite(numbers[:2]).all():
+        raise ValueError(f"the {what} of a path needs two numbers, x and y: not {pose!r}")
+    return float(numbers[0]), float(numbers[1])
+
+
+def _linked(points: Floats, parents: NDArray[np.int32], costs: Floats) -> list[PathNode]:
+    nodes = [PathNode(x, y, cost) for (x, y), cost in zip(points.tolist(), costs.tolist(), strict=True)]
+    for node, parent in zip(nodes, parents.tolist(), strict=True):
+        node.parent = nodes[parent] if parent >= 0 else None
+    return nodes

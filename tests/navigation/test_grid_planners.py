@@ -1,0 +1,176 @@
+"""Grid planners: shortest on their cells, free of collisions, through gaps exactly where the footprint fits."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
+from irsim.navigation.map import Map, cells_of, footprint_of, terrain_of
+
+Path = NDArray[np.float64]
+DISC = shapely.Point(0, 0).buffer(0.3)
+
+
+def open_cells(env_map: Map, robot: Any = None) -> NDArray[np.bool_]:
+    return terrain_of(env_map).open_cells(footprint_of(robot), 0.0, cells_of(env_map)).astype(bool)
+
+
+def dijkstra(free: NDArray[np.bool_], start: tuple[int, int], goal: tuple[int, int], rx: float, ry: float) -> float:
+    """Cost of the shortest path over eight neighbours that cuts no corner: the law, written down plainly."""
+    cost = {start: 0.0}
+    queue = [(0.0, start)]
+    while queue:
+        spent, (i, j) = heapq.heappop(queue)
+        if (i, j) == goal:
+            return spent
+        if spent > cost[i, j]:
+            continue
+        for di, dj in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            a, b = i + di, j + dj
+            if not (0 <= a < free.shape[0] and 0 <= b < free.shape[1] and free[a, b]):
+                continue
+            if di and dj and not (free[a, j] and free[i, b]):
+                continue
+            through = spent + math.hypot(di * rx, dj * ry)
+            if through < cost.get((a, b), math.inf):
+                cost[a, b] = through
+                heapq.heappush(queue, (through, (a, b)))
+    return math.inf
+
+
+def length(path: Path) -> float:
+    return float(np.linalg.norm(np.diff(path, axis=1), axis=0).sum())
+
+
+grids = st.tuples(st.integers(3, 14), st.integers(3, 14), st.integers(0, 2**31), st.floats(0.0, 0.5)).map(
+    lambda t: (np.random.default_rng(t[2]).random((t[0], t[1])) < t[3]) * 100.0
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(grids, st.data())
+def test_shortest_on_a_grid(grid: NDArray[np.float64], data: st.DataObject) -> None:
+    nx, ny = grid.shape
+    env_map = Map(nx * 0.5, ny * 0.4, 0.5, grid=grid, world_offset=(-1.0, 2.0))
+    cells = st.tuples(st.integers(0, nx - 1), st.integers(0, ny - 1))
+    start, goal = data.draw(cells), data.draw(cells)
+    free = open_cells(env_map)
+    assert (free == (grid <= 50)).all(), "a cell is in nobody's way but its own"
+    rx, ry = 0.5, 0.4
+    a, b = (np.array([-1.0 + (i + 0.5) * rx, 2.0 + (j + 0.5) * ry]) for i, j in (start, goal))
+    astar, jps = AStarPlanner(env_map), JPSPlanner(env_map)
+    path, jumped = astar.planning(a, b, show_animation=False), jps.planning(a, b, show_animation=False)
+    expected = dijkstra(free, start, goal, rx, ry) if free[goal] else math.inf
+    assert (path is None) == math.isinf(expected)
+    assert (jumped is None) == (math.isinf(expected) or not free[start])
+    for found, planner in ((path, astar), (jumped, jps)):
+        if found is None:
+            continue
+        assert np.allclose(found[:, [0, -1]], np.column_stack([b, a])), "paths run from the goal to the start"
+        assert length(found) == pytest.approx(expected, abs=1e-9) == planner.end.cost
+        steps = np.abs(np.diff(found, axis=1)) / [[rx], [ry]]
+        assert (steps.round(6).max(axis=0, initial=0) <= 1).all(), "cell by cell"
+
+
+shapes = st.one_of(
+    st.floats(0.1, 0.6).map(lambda r: shapely.Point(0, 0).buffer(r)),
+    st.tuples(st.floats(0.2, 1.2), st.floats(0.1, 0.6)).map(
+        lambda s: shapely.box(-s[0] / 2, -s[1] / 2, s[0] / 2, s[1] / 2)
+    ),
+    st.just(shapely.Polygon([(-0.3, -0.3), (0.5, -0.3), (0.5, 0.0), (0.0, 0.0), (0.0, 0.4), (-0.3, 0.4)])),
+)
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> list[Any]:
+    things: list[Any] = []
+    for _ in range(draw(st.integers(0, 8))):
+        x, y = draw(st.floats(0, 6)), draw(st.floats(0, 6))
+        kind = draw(st.integers(0, 2))
+        if kind == 0:
+            things.append(shapely.Point(x, y).buffer(draw(st.floats(0.02, 0.8))))
+        elif kind == 1:
+            w, h, turn = draw(st.floats(0.05, 2.0)), draw(st.floats(0.05, 2.0)), draw(st.floats(0, 180))
+            things.append(shapely.affinity.rotate(shapely.box(x - w, y - h, x + w, y + h), turn))
+        else:
+            things.append(shapely.LineString([(x, y), (draw(st.floats(0, 6)), draw(st.floats(0, 6)))]))
+    return things
+
+
+@settings(max_examples=80, deadline=None)
+@given(scenes(), shapes, st.booleans())
+def test_paths_are_free_of_collisions(things: list[Any], robot: Any, smooth: bool) -> None:
+    env_map = Map(6, 6, 0.25, things)
+    free = open_cells(env_map, robot)
+    start, goal = (0.9, 0.8), (5.1, 5.2)
+    ends = [tuple(int(v / 0.25) for v in p) for p in (start, goal)]
+    costs = []
+    for cls in (AStarPlanner, JPSPlanner):
+        planner = cls(env_map, robot, smooth=smooth)
+        path = planner.planning(start, goal, show_animation=False)
+        if path is None:
+            assert not free[ends[0]] or math.isinf(dijkstra(free, ends[0], ends[1], 0.25, 0.25)) or not free[ends[1]]
+            continue
+        if not smooth:
+            assert planner.end.cost == pytest.approx(dijkstra(free, ends[0], ends[1], 0.25, 0.25), abs=1e-9)
+        costs.append(planner.end.cost)
+        if not free[ends[0]]:
+            continue
+        blocked = shapely.union_all([thing.buffer(-1e-9) if thing.area else thing for thing in things])
+        for a, b in zip(path.T[:-1], path.T[1:], strict=True):
+            for t in np.linspace(0, 1, 5):
+                x, y = a + (b - a) * t
+                assert not shapely.affinity.translate(robot, x, y).buffer(-1e-7).intersects(blocked)
+    if len(costs) == 2 and not smooth:
+        assert costs[0] == pytest.approx(costs[1], abs=1e-9)
+
+
+@pytest.mark.parametrize(("gap", "fits"), [(0.62, True), (0.59, False)])
+def test_a_gap_is_passed_exactly_if_the_footprint_fits(gap: float, fits: bool) -> None:
+    # the middle of the gap is the middle of a row of cells
+    middle = 2.55
+    walls = [shapely.box(2.4, 0, 2.6, middle - gap / 2), shapely.box(2.4, middle + gap / 2, 2.6, 5)]
+    env_map = Map(5, 5, 0.1, walls)
+    for cls in (AStarPlanner, JPSPlanner):
+        path = cls(env_map, DISC).planning((1, 1), (4, 4), show_animation=False)
+        assert (path is not None) == fits
+
+
+def test_no_path() -> None:
+    env_map = Map(5, 5, 0.1, [shapely.box(2, -1, 3, 6)])
+    for cls in (AStarPlanner, JPSPlanner):
+        planner = cls(env_map)
+        assert planner.planning((1, 1), (4, 4), show_animation=False) is None
+        assert math.isinf(planner.end.cost)
+
+
+def test_smoothing_shortens() -> None:
+    env_map = Map(10, 10, 0.1, [shapely.box(4, 0, 5, 6)])
+    plain = AStarPlanner(env_map, DISC).planning((1, 1), (9, 2), show_animation=False)
+    smooth = AStarPlanner(env_map, DISC, smooth=True).planning((1, 1), (9, 2), show_animation=False)
+    assert plain is not None
+    assert smooth is not None
+    assert smooth.shape[1] < 12 < plain.shape[1]
+    assert length(smooth) < length(plain)
+    assert np.allclose(smooth[:, [0, -1]], plain[:, [0, -1]])
+
+
+def test_starts_and_goals_of_any_form() -> None:
+    env_map = Map(5, 5, 0.5)
+    paths = [
+        AStarPlanner(env_map).planning(start, goal, show_animation=False)
+        for start, goal in (([1, 1], (4, 4)), (np.array([[1.0], [1.0], [0.3]]), np.array([4.0, 4.0, 1.0])))
+    ]
+    assert paths[0] is not None
+    assert np.array_equal(paths[0], paths[1])
+    with pytest.raises(ValueError, match="two numbers"):
+        AStarPlanner(env_map).planning([1], [4, 4])
