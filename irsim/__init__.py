@@ -14,7 +14,7 @@ refuse_conflicts()
 if TYPE_CHECKING:
     from irsim.api import render, run, validate
     from irsim.batch import Batch, batch
-    from irsim.env import Env, EnvBase, make
+    from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.errors import IrsimError, NotSimulatedError, PlacementError, ScenarioError, ScenarioNotFoundError
     from irsim.lib import register_behavior
 
@@ -24,6 +24,7 @@ _HOMES = {
     "Batch": "irsim.batch",
     "Env": "irsim.env",
     "EnvBase": "irsim.env",
+    "EnvBase3D": "irsim.env",
     "IrsimError": "irsim.errors",
     "NotSimulatedError": "irsim.errors",
     "PlacementError": "irsim.errors",
@@ -41,6 +42,7 @@ __all__ = [
     "Batch",
     "Env",
     "EnvBase",
+    "EnvBase3D",
     "IrsimError",
     "NotSimulatedError",
     "PlacementError",

@@ -29,6 +29,10 @@ class EnvDrawing(EnvAccess):
     world_param: WorldParam
     pause_flag: bool
     debug_flag: bool
+    quit_flag: bool
+    reset_flag: bool
+    reload_flag: bool
+    save_figure_flag: bool
     _label: str | None
 
     def _start_drawing(self) -> None:
@@ -48,6 +52,9 @@ class EnvDrawing(EnvAccess):
                 return "Collision"
         if self._label is not None:
             return self._label
+        for word in ("Reset", "Reload", "Save Figure", "Quit"):
+            if getattr(self, f"{word.lower().replace(' ', '_')}_flag"):
+                return word
         if self.debug_flag:
             return "Pause (Debugging)"
         return "Running (keyboard)" if self.world_param.control_mode == "keyboard" else "Running"
@@ -65,12 +72,24 @@ class EnvDrawing(EnvAccess):
     def _env_plot(self) -> EnvPlot:
         """The figure, made when first asked for."""
         if self._plot is None:
-            from irsim.render.plot import EnvPlot
-
-            self._plot = EnvPlot(self, display=self.display, full=self.full)
+            self._plot = self._new_plot()
             if self._title is not None:
                 self._plot.set_title(self._title)
         return self._plot
+
+    def _new_plot(self) -> EnvPlot:
+        from irsim.render.plot import EnvPlot
+
+        return EnvPlot(self, display=self.display, full=self.full, attach=self._attach)
+
+    def _attach(self, ax: Any) -> None:
+        """The figure was made."""
+
+    def _detach(self) -> None:
+        """The figure goes away."""
+
+    def _carry_out(self) -> None:
+        """What was asked for between two frames."""
 
     def render(
         self,
@@ -79,7 +98,9 @@ class EnvDrawing(EnvAccess):
         mode: str = "dynamic",
         **kwargs: Any,
     ) -> None:
-        """Bring the figure up to date (every ``sample_time``); a no-op in headless mode.
+        """Bring the figure up to date (every ``sample_time``), then do what keys have asked for.
+
+        Headless, nothing is drawn.
 
         Args:
             interval: Seconds to show the frame, where there is a window.
@@ -87,14 +108,14 @@ class EnvDrawing(EnvAccess):
             mode: Which objects to update: ``dynamic``, ``static`` or ``all``.
             **kwargs: Object plot options that hold for this frame.
         """
-        if self.headless or not self._world.sampling:
-            return
-        plot = self._env_plot
-        plot.update(mode, **kwargs)
-        if self.save_ani:
-            plot.add_frame(**dict(figure_kwargs or {}))
-        if self.display:
-            plot.pause(interval)
+        if self._world.sampling and not self.headless:
+            plot = self._env_plot
+            plot.update(mode, **kwargs)
+            if self.save_ani:
+                plot.add_frame(**dict(figure_kwargs or {}))
+            if self.display:
+                plot.pause(interval)
+        self._carry_out()
 
     def save_figure(
         self, save_name: str | Path | None = None, include_index: bool = False, save_gif: bool = False, **kwargs: Any
@@ -162,6 +183,7 @@ class EnvDrawing(EnvAccess):
             self._plot.reset()
 
     def _finish_drawing(self, ending_time: float, **kwargs: Any) -> None:
+        self._detach()
         if self.headless:
             return
         if self.save_ani:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from irsim.actions import assign_actions
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_custom import EnvCustom
+from irsim.env_live import EnvLive
 from irsim.env_maps import EnvMaps
 from irsim.env_objects import EnvObjects
-from irsim.errors import NotSimulatedError
 from irsim.log import LEVELS, Logger
 from irsim.observers.events import Event, read_events
 from irsim.observers.outcome import Outcome, outcome_of
@@ -41,7 +41,7 @@ def make(
     Args:
         world_name: YAML file; searched as given, beside the script, in the current directory. Default: the name of the
             running script with ``.yaml``.
-        projection: ``"2d"`` (default).
+        projection: ``"2d"`` (default) or ``"3d"``: the same simulation, drawn in space.
         step_mode: ``"internal"`` or ``"external"``, over the file's.
         **kwargs: Those of :class:`Env`: display, headless, save_ani, seed, strict, log_level, …
 
@@ -52,19 +52,15 @@ def make(
     """
     chosen = (projection or "2d").lower()
     if chosen == "3d":
-        raise NotSimulatedError(
-            [
-                Diagnostic(
-                    "not-yet-simulated", "error", (), "projection='3d' is not drawn yet", fix="use projection='2d'"
-                )
-            ]
-        )
+        from irsim.env.env_base3d import EnvBase3D
+
+        return EnvBase3D(world_name, step_mode=step_mode, **kwargs)
     if chosen != "2d":
-        raise ValueError(f"unknown projection {projection!r}: choose '2d'")
+        raise ValueError(f"unknown projection {projection!r}: choose '2d' or '3d'")
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvObjects, EnvMaps, EnvCustom):
+class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive):
     """One world, stepped from Python.
 
     Args:
@@ -112,6 +108,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom):
         self.debug_count = 0
         self._ended = False
         self._start_drawing()
+        self._start_live()
         self._log_collisions()
 
     def _open(self, world_name: str | Path | ResolvedScenario | None) -> None:
@@ -164,6 +161,8 @@ class Env(EnvObjects, EnvMaps, EnvCustom):
             if action is not None:
                 for view, control in assign_actions(self._objects, action, action_id, self.logger.warning_once):
                     simulation.impose(view.row, control)
+            if self.world_param.control_mode == "keyboard":
+                self._drive_by_keyboard()
             simulation.step()
         self._after_step()
 
@@ -302,6 +301,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom):
     def resume(self) -> None:
         """Go on after ``pause`` or debugging."""
         self.pause_flag = self.debug_flag = False
+        self._label = None
 
     # what happened ---------------------------------------------------------------------------------------------------
     @property

@@ -47,14 +47,15 @@ class Compositor:
         self._base: Any = None
         self._base_key: tuple[Any, ...] | None = None
 
-    def draw(self, versions: Mapping[Artist, tuple[int, int]]) -> None:
+    def draw(self, versions: Mapping[Artist, tuple[int, int]], *, plainly: bool = False) -> None:
         """Draw everything into the canvas.
 
         Args:
             versions: (version, scenes at rest) of the artists whose changes are known; all others are drawn each time.
+            plainly: Keep nothing and let Matplotlib draw, as it must where there is more than one flat pair of axes.
         """
         canvas = self._canvas()
-        if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
+        if plainly or len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
             draw_all: Any = FigureCanvasAgg.draw
             draw_all(canvas)
             self.forget()

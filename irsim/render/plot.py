@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -62,6 +62,7 @@ class EnvPlot:
         display: Open a window where that is possible.
         full: Fill the screen with it.
         palette: Default colours.
+        attach: Told the axes once they are made.
 
     Attributes:
         title: Fixed title, or None for time and status.
@@ -71,11 +72,17 @@ class EnvPlot:
     """
 
     def __init__(
-        self, env: Pictured, *, display: bool = False, full: bool = False, palette: Palette | None = None
+        self,
+        env: Pictured,
+        *,
+        display: bool = False,
+        full: bool = False,
+        palette: Palette | None = None,
+        attach: Callable[[Axes], None] | None = None,
     ) -> None:
         self.env = env
         self.palette = palette or Palette()
-        self._display, self._full = display, full
+        self._display, self._full, self._attach = display, full, attach
         source = env.simulation.scenario.source
         self._pictures = Pictures(Path(source).parent if source else None, env.logger.warning)
         self._options = env.simulation.scenario.world.plot
@@ -138,15 +145,10 @@ class EnvPlot:
 
                 name = self.env.simulation.scenario.name
                 self._window = open_window(self._size, self._dpi, full=self._full, title=name)
-            self._figure = SceneFigure(
-                self._size,
-                self._dpi,
-                axis=not self._options.no_axis,
-                tight=self._options.tight,
-                figure=None if self._window is None else self._window.figure,
-                pictures=self._pictures,
-            )
+            self._figure = self._new_figure(None if self._window is None else self._window.figure)
             self._show(self._figure)
+            if self._attach is not None:
+                self._attach(self._figure.ax)
         return self._figure
 
     def _show(self, figure: SceneFigure) -> None:
@@ -155,6 +157,16 @@ class EnvPlot:
             objects = views(self.env.simulation)
             shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
             self._user_sensors.show(figure.ax, shown)
+
+    def _new_figure(self, figure: Figure | None) -> SceneFigure:
+        return SceneFigure(
+            self._size,
+            self._dpi,
+            axis=not self._options.no_axis,
+            tight=self._options.tight,
+            figure=figure,
+            pictures=self._pictures,
+        )
 
     def scene(self) -> Scene:
         """What the picture shows, as data."""
@@ -333,6 +345,7 @@ class EnvPlot:
         self._user_sensors.forget()
         if self._figure is not None:
             self._figure.clear()
+            self._synced()
 
     def close(self) -> None:
         """Close the window and forget figure and frames."""

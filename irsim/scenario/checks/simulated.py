@@ -29,8 +29,6 @@ def check(context: Context) -> Iterator[Finding]:
         yield _not_yet(("world", "obstacle_map"), f"maps of the kind '{name}'")
     if world.collision_mode == "contact":
         yield _not_yet(("world", "collision_mode"), "pushing and sliding contacts")
-    if world.control_mode == "keyboard":
-        yield _not_yet(("world", "control_mode"), "keyboard control")
     seen: set[tuple[Any, ...]] = set()
     for path, feature in _uses(context):
         if (path, feature) not in seen:

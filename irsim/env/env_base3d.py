@@ -1,0 +1,42 @@
+"""The environment seen in three dimensions: the same flat simulation, drawn in space."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from irsim.env.env_base import Env
+from irsim.parameters import WorldView
+
+if TYPE_CHECKING:
+    from irsim.render.plot import EnvPlot
+
+__all__ = ["EnvBase3D", "World3D"]
+
+_DEPTH = 10.0
+
+
+class World3D(WorldView):
+    """The world with an extent along z."""
+
+    def __init__(self, simulation: Any) -> None:
+        super().__init__(simulation)
+        self.depth = float(simulation.scenario.world.depth or _DEPTH)
+        self.offset = [*self.offset[:2], 0.0]
+
+    @property
+    def z_range(self) -> list[float]:
+        """[zmin, zmax] of the world [m]."""
+        return [self.offset[2], self.offset[2] + self.depth]
+
+
+class EnvBase3D(Env):
+    """An environment with ``projection="3d"``: objects stand on the ground of a view in space."""
+
+    def _open(self, world_name: Any) -> None:
+        super()._open(world_name)
+        self._world: World3D = World3D(self._simulation)
+
+    def _new_plot(self) -> EnvPlot:
+        from irsim.render.plot3d import EnvPlot3D
+
+        return EnvPlot3D(self, depth=self._world.depth, display=self.display, full=self.full, attach=self._attach)
