@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -117,7 +118,10 @@ class KeyboardControl:
             canvas.mpl_disconnect(handler)
         if self.backend == "pynput" and not self._listen():
             self.backend = "mpl"
-        events = {"figure_enter_event": self._enter, "figure_leave_event": self._leave}
+        events: dict[str, Callable[[Any], None]] = {
+            "figure_enter_event": self._enter,
+            "figure_leave_event": self._leave,
+        }
         if self.backend == "mpl":
             events |= {"key_press_event": self._on_press, "key_release_event": self._on_release}
         self._connections = [(canvas, canvas.mpl_connect(name, call)) for name, call in events.items()]

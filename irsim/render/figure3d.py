@@ -84,17 +84,17 @@ class SceneFigure3D:
         lines = [_raised(points, height) for points in outlines(mark.geometry)]
         edge = mark.stroke.color
         if isinstance(mark.geometry, Line):
-            color = to_rgba(edge if edge is not None else "none", mark.alpha)
+            color = _rgba(edge if edge is not None else "none", mark.alpha)
             return self.ax.add_collection3d(Line3DCollection(lines, colors=[color], linestyles=mark.stroke.style))
         patch = Poly3DCollection(lines, linewidths=0.0 if mark.stroke.metric else mark.stroke.width)
-        patch.set_facecolor(to_rgba(mark.fill if mark.fill is not None else "none", mark.alpha))
-        patch.set_edgecolor(to_rgba(edge if edge is not None else "none", mark.alpha))
+        patch.set_facecolor(_rgba(mark.fill if mark.fill is not None else "none", mark.alpha))
+        patch.set_edgecolor(_rgba(edge if edge is not None else "none", mark.alpha))
         return self.ax.add_collection3d(patch)
 
     def _beams(self, beams: Beams) -> Any:
         start = np.broadcast_to(np.array([*beams.origin, _LIFT]), (len(beams.ends), 3))
         ends = _raised(beams.ends, _LIFT)
-        color = to_rgba(beams.color, beams.alpha)
+        color = _rgba(beams.color, beams.alpha)
         return self.ax.add_collection3d(Line3DCollection(np.stack([start, ends], axis=1), colors=[color]))
 
     def _label(self, label: Label) -> Any:
@@ -122,6 +122,10 @@ def outlines(geometry: Circle | Region | Line | Sector) -> list[NDArray[np.float
     angles = np.linspace(first, last, _CORNERS, endpoint=not full)
     ring = geometry.radius * np.column_stack([np.cos(angles), np.sin(angles)]) + [geometry.x, geometry.y]
     return [ring if full else np.vstack([[geometry.x, geometry.y], ring])]
+
+
+def _rgba(color: Any, alpha: float) -> tuple[float, float, float, float]:
+    return to_rgba(color, alpha)
 
 
 def _raised(points: NDArray[np.float64], height: float) -> NDArray[np.float64]:

@@ -91,7 +91,7 @@ class EnvPlot:
         self._dpi = float(self.saved_figure_kwargs["dpi"])
         width, height = self._options.figure_pixels
         self._size = float(width), float(height)
-        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._pictures.has)
+        self._builder = SceneBuilder(env.simulation, palette=self.palette, has_picture=self._has_picture)
         self._overlay = Overlay(self.palette)
         self._user_sensors = UserSensors()
         self._figure: SceneFigure | None = None
@@ -157,6 +157,10 @@ class EnvPlot:
             objects = views(self.env.simulation)
             shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
             self._user_sensors.show(figure.ax, shown)
+
+    def _has_picture(self, name: str) -> bool:
+        """Whether an image is drawn in place of bodies."""
+        return self._pictures.has(name)
 
     def _new_figure(self, figure: Figure | None) -> SceneFigure:
         return SceneFigure(
@@ -340,7 +344,7 @@ class EnvPlot:
         """Draw everything anew: drawings, titles and views of scripts are gone; kept frames stay."""
         self._options = self.env.simulation.scenario.world.plot
         self._begin()
-        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._pictures.has)
+        self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._has_picture)
         self._overlay.forget()
         self._user_sensors.forget()
         if self._figure is not None:

@@ -69,6 +69,9 @@ class EnvPlot3D(EnvPlot):
         super().__init__(env, **kwargs)
         self._overlay = _Overlay3D(self.palette)
 
+    def _has_picture(self, name: str) -> bool:
+        return False
+
     def _new_figure(self, figure: Figure | None) -> Any:
         axis = not self._options.no_axis
         return SceneFigure3D(self._size, self._dpi, depth=self._depth, axis=axis, figure=figure)

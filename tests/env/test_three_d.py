@@ -12,7 +12,8 @@ import irsim
 YAML = """\
 world: {width: 6, height: 4, depth: 3}
 robot:
-  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 1, 0.5], goal: [5, 3], behavior: {name: dash},
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 1, 0.5], goal: [5, 3],
+     behavior: {name: dash},
      sensors: [{name: lidar2d, number: 30, range_max: 2}],
      plot: {show_goal: true, show_trajectory: true, show_text: true, show_trail: true}}
 obstacle:
