@@ -340,7 +340,7 @@ class ObjectSpec:
 class RandomPlacement:
     """Objects of one `random` distribution: states, then goals, drawn per scene (D7).
 
-    Static objects and wanderers draw no goal here: the former keep theirs, the latter draw one at every reset.
+    Wanderers draw no goal here but one at every reset; nothing keeps the goals of static objects apart.
     """
 
     def __init__(
@@ -485,6 +485,8 @@ class State:
             reach: From the origin of the object [m].
             occlusion: Parts hidden behind what is not `unobstructed` do not count.
         """
+    def reset_row(self, row: int) -> None:
+        """Put one object back to its initial pose, control and goals and clear its flags and history."""
     def reshape(self, row: int, parts: Sequence[Part], seed: int) -> None:
         """Give the row another body until the next scene is drawn; `seed` is for random parts."""
     def look(self) -> None:

@@ -12,10 +12,13 @@ if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
     from irsim.simulation import Simulation
 
-__all__ = ["ObjectBody", "column"]
+__all__ = ["ObjectBody", "column", "convex_inequality"]
 
 Floats = NDArray[np.float64]
+Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _CIRCLE_POINTS = 64
+_STRAIGHT = 1e-12
+"""A corner that turns less than this [m2] counts as straight."""
 _RADIUS_MARGIN = 0.1
 """What avoidance methods of IR-SIM add to a body's radius [m]."""
 
@@ -25,6 +28,34 @@ def column(values: Any) -> Floats:
     copied = np.array(values, dtype=np.float64).reshape(-1, 1)
     copied.setflags(write=False)
     return copied
+
+
+def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) -> Inequality:
+    """A body as ``G p <= h``, for convex optimisation.
+
+    Returns:
+        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone
+        ``"Rpositive"``. Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Other areas:
+        None, None, None, False; lines and maps: four times None.
+    """
+    state = simulation.state
+    kinds = state.parts(row)
+    if kinds == ["circle"]:
+        x, y, radius = state.circle(row, 0, world_frame)
+        return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-radius]]), "norm2", True
+    if kinds != ["polygon"]:
+        return None, None, None, None if len(kinds) == 1 else False
+    points = state.vertices(row, 0, world_frame)
+    edges = np.roll(points, -1, axis=0) - points
+    ahead = np.roll(edges, -1, axis=0)
+    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
+    if not ((turns >= -_STRAIGHT).all() or (turns <= _STRAIGHT).all()):
+        return None, None, None, False
+    if turns.sum() < 0:
+        points = points[::-1]
+        edges = np.roll(points, -1, axis=0) - points
+    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
+    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
 
 
 class ObjectBody:
@@ -100,6 +131,65 @@ class ObjectBody:
         """(2, 1) centre of the body's area, world frame."""
         point = self.geometry.centroid
         return column([point.x, point.y])
+
+    @property
+    def original_centroid(self) -> Floats:
+        """(2, 1) centre of the body's area, body frame."""
+        point = self.original_geometry.centroid
+        return column([point.x, point.y])
+
+    @property
+    def original_state(self) -> Floats:
+        """(3, 1) centre of the body's area and heading 0, body frame."""
+        return column([*self.original_centroid[:, 0], 0.0])
+
+    @property
+    def original_part_vertices(self) -> list[Floats] | None:
+        """Outlines of the parts of a compound, (2, M) each, body frame; None for simple shapes."""
+        if self.shape != "compound":
+            return None
+        return [self._part(i, world_frame=False) for i in range(len(self._simulation.state.parts(self.row)))]
+
+    @property
+    def goal_vertices(self) -> Floats | None:
+        """(2, M) outline at the present goal; None without a goal or for a compound."""
+        x, y, theta = self._simulation.goal[self.row].tolist()
+        outline = self.original_vertices
+        if outline is None or math.isnan(x):
+            return None
+        turn = 0.0 if math.isnan(theta) else theta
+        c, s = math.cos(turn), math.sin(turn)
+        moved: Floats = np.array([[c, -s], [s, c]]) @ outline + [[x], [y]]
+        return moved
+
+    # convex inequality -----------------------------------------------------------------------------------------------
+    @property
+    def G(self) -> Floats | None:
+        """Normals of ``G p <= h`` in the body frame; see :func:`irsim.body.convex_inequality`."""
+        return self.get_init_Gh()[0]
+
+    @property
+    def h(self) -> Floats | None:
+        """Right side of ``G p <= h`` in the body frame."""
+        return self.get_init_Gh()[1]
+
+    @property
+    def cone_type(self) -> str | None:
+        """``Rpositive`` for convex polygons, ``norm2`` for circles, else None."""
+        return self.get_init_Gh()[2]
+
+    @property
+    def convex_flag(self) -> bool | None:
+        """Whether the body is convex; None for lines and maps."""
+        return self.get_init_Gh()[3]
+
+    def get_init_Gh(self) -> Inequality:
+        """(G, h, cone_type, convex_flag) of the body in its own frame."""
+        return convex_inequality(self._simulation, self.row, world_frame=False)
+
+    def get_Gh(self) -> Inequality:
+        """(G, h, cone_type, convex_flag) of the body where it is now, world frame."""
+        return convex_inequality(self._simulation, self.row, world_frame=True)
 
     def _part(self, part: int, *, world_frame: bool) -> Floats:
         state = self._simulation.state

@@ -149,14 +149,14 @@ class EnvObjects(EnvDrawing):
         Args:
             range_low: Lower bounds of x, y [m] and heading [rad]; default [0, 0, -3.14].
             range_high: Upper bounds; default [10, 10, 3.14].
-            ids: Ids of the obstacles; default: all but the map.
+            ids: Ids of the obstacles; default: all. The map and the walls round the world stay.
             non_overlapping: Draw up to 100 times until an obstacle touches neither those that stay nor those that have
                 been placed.
         """
         low = np.array([0.0, 0.0, -3.14] if range_low is None else range_low, dtype=np.float64).reshape(3)
         high = np.array([10.0, 10.0, 3.14] if range_high is None else range_high, dtype=np.float64).reshape(3)
         wanted = None if ids is None else set(ids)
-        chosen = [o for o in self.obstacle_list if o.shape != "map" and (wanted is None or o.id in wanted)]
+        chosen = [o for o in self.obstacle_list if o.record.path[0] != "world" and (wanted is None or o.id in wanted)]
         standing = [view for view in self._objects if view not in chosen]
         for view in chosen:
             rest = view.state[3:, 0]

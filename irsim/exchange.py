@@ -24,7 +24,9 @@ __all__ = ["admit", "alone", "dismiss", "restore"]
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
     """A simulation of one object in an otherwise empty world like that of ``scenario``."""
     world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none"})
-    simulation = Simulation(replace(scenario, world=world, objects=[record], placements=[]), [seed], history=True)
+    simulation = Simulation(
+        replace(scenario, world=world, objects=[record], placements=[], grid=None), [seed], history=True
+    )
     simulation.user = record.id + 1
     attach_python_drives(simulation)
     return simulation

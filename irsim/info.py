@@ -11,37 +11,9 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from irsim.views import ObjectView
 
-__all__ = ["ObjectInfo", "ObstacleInfo", "convex_inequality"]
+__all__ = ["ObjectInfo", "ObstacleInfo"]
 
 Floats = NDArray[np.float64]
-
-
-def convex_inequality(view: ObjectView) -> tuple[Floats | None, Floats | None, str | None, bool]:
-    """The body as ``G p <= h`` in the body frame, for convex optimisation.
-
-    Returns:
-        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone
-        ``"Rpositive"``. Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Otherwise
-        None, None, None, False.
-    """
-    state = view._simulation.state
-    kinds = state.parts(view.row)
-    if kinds == ["circle"]:
-        x, y, radius = state.circle(view.row, 0, False)
-        return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-radius]]), "norm2", True
-    if kinds != ["polygon"]:
-        return None, None, None, False
-    points = state.vertices(view.row, 0, False)
-    edges = np.roll(points, -1, axis=0) - points
-    ahead = np.roll(edges, -1, axis=0)
-    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
-    if not ((turns >= 0).all() or (turns <= 0).all()):
-        return None, None, None, False
-    if turns.sum() < 0:
-        points = points[::-1]
-        edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
-    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
 
 
 @dataclass
@@ -71,7 +43,7 @@ class ObjectInfo(_Extensible):
     G: Floats | None
     h: Floats | None
     cone_type: str | None
-    convex_flag: bool
+    convex_flag: bool | None
     name: str
     mass: float
     friction: float
@@ -96,7 +68,7 @@ class ObjectInfo(_Extensible):
             np.array(record.angle_range, dtype=np.float64).reshape(2, 1),
             view.goal_threshold,
             view.wheelbase,
-            *convex_inequality(view),
+            *view.get_init_Gh(),
             view.name,
             record.mass,
             record.friction,
@@ -116,9 +88,9 @@ class ObstacleInfo(_Extensible):
     G: Floats | None
     h: Floats | None
     cone_type: str | None
-    convex_flag: bool
+    convex_flag: bool | None
 
     @classmethod
     def of(cls, view: ObjectView) -> ObstacleInfo:
         """The description of ``view`` now."""
-        return cls(view.position, view.vertices, view.velocity, view.radius, *convex_inequality(view))
+        return cls(view.position, view.vertices, view.velocity, view.radius, *view.get_init_Gh())

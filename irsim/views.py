@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from irsim.body import ObjectBody, column
 from irsim.hooks import ObjectHooks
 from irsim.info import ObjectInfo, ObstacleInfo
+from irsim.object_avoidance import ObjectAvoidance
+from irsim.object_status import ObjectStatus
 from irsim.scans import Lidar2D
 from irsim.sensing import attach_sensors, sensors_of
 
@@ -26,7 +28,7 @@ __all__ = ["ObjectView", "set_views", "views"]
 Floats = NDArray[np.float64]
 
 
-class ObjectView(ObjectBody, ObjectHooks):
+class ObjectView(ObjectBody, ObjectHooks, ObjectStatus, ObjectAvoidance):
     """One robot or obstacle.
 
     Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
@@ -169,17 +171,17 @@ class ObjectView(ObjectBody, ObjectHooks):
         """States after each executed step, (state_dim, 1) each, without the initial one."""
         return [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
 
-    def set_state(self, state: Any, init: bool = False) -> None:
+    def set_state(self, state: Any = None, init: bool = False) -> None:
         """Put the object somewhere else.
 
         Args:
-            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows.
+            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows; None: zeros.
             init: Also what ``reset`` returns to.
 
         Raises:
             ValueError: Wrong number of numbers, or not finite.
         """
-        values = np.asarray(state, dtype=np.float64).reshape(-1)
+        values = np.zeros(self.state_dim) if state is None else np.asarray(state, dtype=np.float64).reshape(-1)
         if values.size != self.state_dim or not np.isfinite(values).all():
             raise ValueError(f"the state of {self.name!r} is {self.state_dim} finite numbers, not {state!r}")
         self._pose[:] = values[:3]
@@ -188,17 +190,17 @@ class ObjectView(ObjectBody, ObjectHooks):
             self._simulation.state.set_initial(self.row, pose=True, control=False)
         self._simulation.state.moved(self.row)
 
-    def set_velocity(self, velocity: Any, init: bool = False) -> None:
+    def set_velocity(self, velocity: Any = None, init: bool = False) -> None:
         """Overwrite the present control (acceleration limits start from it).
 
         Args:
-            velocity: ``vel_dim`` numbers in the command frame.
+            velocity: ``vel_dim`` numbers in the command frame; None: zeros.
             init: Also what ``reset`` returns to.
 
         Raises:
             ValueError: Wrong number of numbers.
         """
-        values = np.asarray(velocity, dtype=np.float64).reshape(-1)
+        values = np.zeros(self.vel_dim) if velocity is None else np.asarray(velocity, dtype=np.float64).reshape(-1)
         if values.size != self.vel_dim:
             raise ValueError(f"the velocity of {self.name!r} is {self.vel_dim} numbers, not {velocity!r}")
         self._simulation.control[self.row, : min(3, self.vel_dim)] = values[:3]
@@ -219,7 +221,7 @@ class ObjectView(ObjectBody, ObjectHooks):
         """The present goal and those still to come, (2 or 3, 1) each."""
         return [column(goal) for goal in self._simulation.state.goals(self.row)]
 
-    def set_goal(self, goal: Any, init: bool = False) -> None:
+    def set_goal(self, goal: Any = None, init: bool = False) -> None:
         """Give a new goal.
 
         Args:

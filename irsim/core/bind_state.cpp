@@ -319,6 +319,14 @@ void bind_state(nb::module_& m) {
           },
           nb::arg("row"), nb::arg("angle"), nb::arg("reach"), nb::arg("occlusion"))
       .def(
+          "reset_row",
+          [](S& self, int row) {
+            self.check_row(row);
+            restart_row(*self.world, self.state, row);
+            moved(*self.world, self.state, row);
+          },
+          nb::arg("row"))
+      .def(
           "reshape",
           [](S& self, int row, const std::vector<PartSpec>& parts, std::uint64_t seed) {
             self.check_row(row);

@@ -18,6 +18,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.collided[row] = from.collided[old_row];
   to.stopped[row] = from.stopped[old_row];
   to.goals[row] = from.goals[old_row];
+  to.infeasible[row] = from.infeasible[old_row];
   to.goal_draws[row] = from.goal_draws[old_row];
   to.initial_pose[row] = from.initial_pose[old_row];
   to.initial_control[row] = from.initial_control[old_row];

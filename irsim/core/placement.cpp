@@ -137,8 +137,15 @@ void place_randomly(const World& world, State& state, int w) {
     Spread spread(entry.min_distance);
     Crowd goals = still;  // goals of other entries may be shared
     for (const int i : entry.objects) {
-      if (world.is_static[i] || world.wander[i]) continue;  // no goal to reach; drawn at every reset
+      if (world.wander[i]) continue;  // drawn at every reset
       Goal goal;
+      if (world.is_static[i]) {  // never reached, but IR-SIM has it
+        const auto u = Draws(key, Stream::placement, world.number[i]).uniforms(kGoalDraws);
+        const auto &low = entry.range_low, &high = entry.range_high;
+        state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],
+                                           low[2] + (high[2] - low[2]) * u[2]}};
+        continue;
+      }
       if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread, goals, goal))
         failed(i);
       spread.add(goal.position());

@@ -72,6 +72,11 @@ void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
 
 void Shapes::copy(const Shapes& other, int object, bool fixed) {
   const Slot &from = other.body[object], &to = other.body[object + 1];
+  for (int p = from.part; p < to.part; ++p) {
+    for (const auto& grid : other.grids) {
+      if (grid.get() == other.parts[p].cells) grids.push_back(grid);
+    }
+  }
   parts.insert(parts.end(), other.parts.begin() + from.part, other.parts.begin() + to.part);
   vertices.insert(vertices.end(), other.vertices.begin() + from.vertex, other.vertices.begin() + to.vertex);
   centre.push_back(other.centre[object]);

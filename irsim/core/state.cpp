@@ -106,32 +106,34 @@ void place_fixed(const World& world, State& state, int w) {
   }
 }
 
+void restart_row(const World& world, State& state, int row) {
+  const int w = row / world.objects, i = row % world.objects;
+  const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
+  state.pose[row] = state.initial_pose[row];
+  std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
+  state.control[row] = state.initial_control[row];
+  state.twist[row] = state.command[row] = {};
+  state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
+  state.radius[row] = state.scenes[w].shapes->radius[i];
+  state.infeasible[row] = 0;
+  state.goal_draws[row] = 0;
+  if (state.keep_history) state.history[row].clear();
+  if (world.wander[i]) {
+    draw_wander_goal(world, state, w, i);
+    state.goals[row].initial = state.goals[row].goals;
+  } else {
+    state.goals[row].set(state.goals[row].initial);
+    state.sync_goal(row);
+  }
+}
+
 void restart(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   state.count[w] = 0;
   scene.events.clear();
   scene.pairs.clear();
   if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
-  for (int i = 0; i < world.objects; ++i) {
-    const int row = w * world.objects + i;
-    const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
-    state.pose[row] = state.initial_pose[row];
-    std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
-    state.control[row] = state.initial_control[row];
-    state.twist[row] = state.command[row] = {};
-    state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
-    state.radius[row] = scene.shapes->radius[i];
-    state.infeasible[row] = 0;
-    state.goal_draws[row] = 0;
-    if (state.keep_history) state.history[row].clear();
-    if (world.wander[i]) {
-      draw_wander_goal(world, state, w, i);
-      state.goals[row].initial = state.goals[row].goals;
-    } else {
-      state.goals[row].set(state.goals[row].initial);
-      state.sync_goal(row);
-    }
-  }
+  for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
   place_fixed(world, state, w);
   evaluate(world, state, w, true);
 }

@@ -94,6 +94,8 @@ struct State {
 void draw_scene(const World& world, State& state, int w);
 /// Draw poses and goals of the random placements of world w; `failed_placement` tells who found no room.
 void place_randomly(const World& world, State& state, int w);
+/// Put one object back to its initial values, without evaluating anything.
+void restart_row(const World& world, State& state, int row);
 /// Put world w back to its initial poses and evaluate collisions, arrival and sensors.
 void restart(const World& world, State& state, int w);
 /// Reset the worlds where mask is set; see `State.reset` in _core.pyi.

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
+from irsim.maps._grid import MapCells, Walls
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching"]
+__all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
 
 _QUADRANT_SEGMENTS = 16
 
@@ -42,6 +43,9 @@ def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> 
 
 def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
     """The body of a row for the core, body frame."""
+    shape = simulation.scenario.objects[row % simulation.objects].shape
+    if isinstance(shape, (MapCells, Walls)):
+        return shape.parts()
     state = simulation.state
     parts: list[core.Part] = []
     for part, kind in enumerate(state.parts(row)):
@@ -58,6 +62,12 @@ def touching(a: ObjectView, b: ObjectView) -> bool:
     """Whether two bodies meet where they are now, exactly."""
     first, second = core_parts(a._simulation, a.row), core_parts(b._simulation, b.row)
     return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
+
+
+def touching_circle(a: ObjectView, x: float, y: float, radius: float) -> bool:
+    """Whether a body where it is now meets a circle."""
+    circle = core.Circle(radius=radius, center=[x, y])
+    return core.intersects(core_parts(a._simulation, a.row), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
 
 
 def from_shapely(geometry: Any) -> list[core.Part]:

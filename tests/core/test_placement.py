@@ -39,12 +39,11 @@ def test_nothing_overlaps(seed: int, distance: float) -> None:
     assert state.failed_placement[0] == -1
     walls_cross = [[0, 1]]
     assert state.collision_pairs(0).tolist() == walls_cross
-    for first, last in ((2, 10), (10, 18)):
-        for points in (state.pose[first:last, :2], state.goal[first:last, :2]):
-            gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(8, 1)]
-            assert np.isnan(gaps).any() or (gaps >= distance).all()
-    # goals: clear of what stands still and of each other
-    assert np.isnan(state.goal[10:]).all()
+    for points in (state.pose[2:10, :2], state.pose[10:, :2], state.goal[2:10, :2]):
+        gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(8, 1)]
+        assert (gaps >= distance).all()
+    # goals: clear of what stands still and of each other; those of static objects are anywhere
+    assert np.isfinite(state.goal[10:]).all()
     parts = [[SHAPES[k % 3]] for k in range(8)]
     goals, poses = state.goal[2:10].tolist(), state.pose.tolist()
     for k in range(8):

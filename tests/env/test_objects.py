@@ -323,3 +323,33 @@ def test_pictures_follow(make: Callable[..., Env], tmp_path: Any) -> None:
     env.reload()
     assert {mark.object for mark in env._env_plot.scene().marks} == {0, 1, 2, 3, 4}
     env.end(0)
+
+
+def test_beside_a_map_and_walls(make: Callable[..., Env]) -> None:
+    text = """
+world:
+  {width: 10, height: 10, boundary: walls, obstacle_map: {name: perlin, resolution: 0.5, complexity: 0.1, seed: 2}}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [5, 5, 0]}
+obstacle: {shape: {name: circle, radius: 0.1}, state: [5, 6, 0]}
+"""
+    env = make(text)
+    walls = env.get_object_by_name("boundary")
+    assert walls is not None
+    pushed = env.create_robot({"name": "omni"}, shape={"name": "circle", "radius": 0.2}, state=[9.7, 5, 0])
+    env.delete_object(1)
+    env.add_object(pushed)
+    for _ in range(3):
+        env.step([1, 0], action_id=pushed.id)
+    assert pushed.collision
+    assert walls in pushed.collision_obj or any(o.shape == "map" for o in pushed.collision_obj)
+    assert walls.check_collision(pushed) == (walls in pushed.collision_obj)
+    before = [view.state.tolist() for view in env.obstacle_list]
+    env.random_obstacle_position(non_overlapping=True)
+    assert [view.state.tolist() for view in env.obstacle_list] == before
+    map_object = next(view for view in env.obstacle_list if view.shape == "map")
+    env.delete_object(map_object.id)
+    env.step()
+    assert map_object.id not in [view.id for view in env.objects]
+    env.add_object(map_object)
+    env.step()
+    assert walls.possible_collision_objects is not None

@@ -18,11 +18,35 @@ LAYERS = (
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",
-    (
-        "actions batch body env env_access env_custom env_drawing env_live env_maps env_objects exchange gui hooks info "
-        "navigation observers parameters python_behaviors python_drives python_parts render scans sensing "
-        "sensor_factory views"
-    ),
+    """
+    actions
+    batch
+    body
+    env
+    env_access
+    env_custom
+    env_drawing
+    env_live
+    env_maps
+    env_objects
+    exchange
+    gui
+    hooks
+    info
+    navigation
+    object_avoidance
+    object_status
+    observers
+    parameters
+    python_behaviors
+    python_drives
+    python_parts
+    render
+    scans
+    sensing
+    sensor_factory
+    views
+    """,
     "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
     "cli __main__",
     "irsim_mcp",

@@ -1,0 +1,191 @@
+"""What scripts ask single objects, between steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+Make = Callable[..., Any]
+
+TEXT = """
+world: {width: 10, height: 10}
+robot:
+  - {kinematics: {name: diff}, shape: {name: rectangle, length: 1, width: 0.4}, state: [1, 1, 0.3], goal: [1.5, 1, 0],
+     vel_max: [2, 0.7], vel_min: [-2, -0.7]}
+  - {kinematics: {name: omni}, shape: {name: circle, radius: 0.2, center: [0.1, 0]}, state: [5, 3, 0.3],
+     goal: [1.5, 1, 0], vel_max: [2, 0.7], vel_min: [-2, -0.7]}
+obstacle:
+  - {shape: {name: linestring, vertices: [[7, 7], [8, 8], [9, 7]]}, state: [0, 0, 0]}
+  - {shape: {name: polygon, vertices: [[0, 0], [1, 0], [1, 1]]}, state: [7, 1, 0.5]}
+  - {shape: {name: compound, parts: [{name: circle, radius: 0.2}, {name: rectangle, length: 1, width: 0.2}]},
+     state: [3, 7, 0.5], unobstructed: true}
+  - {shape: {name: circle, radius: 0.1}, state: [8, 4, 0]}
+"""
+
+
+def test_what_avoidance_asks(make: Make) -> None:
+    env = make(TEXT)
+    diff, omni = env.robot_list
+    line, polygon = env.obstacle_list[:2]
+    assert diff.desired_omni_vel[:, 0].tolist() == [2, 0]
+    assert diff.get_desired_omni_vel(normalized=True)[:, 0].tolist() == [1, 0]
+    assert diff.get_desired_omni_vel(goal_threshold=1)[:, 0].tolist() == [0, 0]
+    to_goal = np.array([-3.5, -2]) / math.hypot(3.5, 2)
+    np.testing.assert_allclose(omni.desired_omni_vel[:, 0], to_goal * [2, 0.7])
+    np.testing.assert_allclose(diff.rvo_state, [1, 1, 0, 0, math.hypot(0.5, 0.2) + 0.1, 2, 0, 0.3])
+    np.testing.assert_allclose(
+        omni.rvo_neighbor_state, [5 + 0.1 * math.cos(0.3), 3 + 0.1 * math.sin(0.3), 0, 0, 0.3], atol=1e-12
+    )
+    assert line.rvo_line_segments == [[7, 7, 8, 8], [8, 8, 9, 7]]
+    assert polygon.rvo_line_segments == []
+    assert len(diff.rvo_neighbors) == 4  # not the unobstructed one
+    diff.set_goal(None)
+    assert diff.desired_omni_vel[:, 0].tolist() == [0, 0]
+    np.testing.assert_allclose(diff.vel_world2body([0.5, 1.0])[:, 0], [0.77318845, 0.7])
+    np.testing.assert_allclose(omni.vel_world2body(np.array([[0.5], [1.0]]))[:, 0], [0.77318845, 0.80757639])
+    with pytest.raises(NotImplementedError):
+        line.vel_world2body([1, 0])
+
+
+def test_convex_inequalities_hold_for_the_vertices(make: Make) -> None:
+    env = make(TEXT)
+    for view in (env.robot, env.obstacle_list[1]):
+        for (normals, offsets, cone, convex), vertices in (
+            (view.get_init_Gh(), view.original_vertices),
+            (view.get_Gh(), view.vertices),
+        ):
+            assert (cone, convex) == ("Rpositive", True)
+            assert (normals @ vertices <= offsets + 1e-12).all()
+            assert ((normals @ vertices >= offsets - 1e-12).sum(axis=1) == 2).all()
+    np.testing.assert_allclose(env.robot_list[1].h, [[0.1], [0], [-0.2]])
+    assert env.obstacle_list[0].get_Gh() == (None, None, None, None)
+    assert env.obstacle_list[2].get_Gh() == (None, None, None, False)
+
+
+def test_body_frame_geometry(make: Make) -> None:
+    env = make(TEXT)
+    polygon, compound = env.obstacle_list[1:3]
+    np.testing.assert_allclose(polygon.original_centroid[:, 0], [2 / 3, 1 / 3])
+    np.testing.assert_allclose(polygon.original_state[:, 0], [2 / 3, 1 / 3, 0])
+    assert [part.shape for part in compound.original_part_vertices] == [(2, 64), (2, 4)]
+    np.testing.assert_allclose(env.robot.goal_vertices, [[1, 2, 2, 1], [0.8, 0.8, 1.2, 1.2]])
+    assert compound.goal_vertices is None
+
+
+def test_checks_of_arrival(make: Make) -> None:
+    robot = make(TEXT).robot
+    assert not robot.check_arrive(None)
+    assert robot.check_arrive([1, 1])
+    assert not robot.check_arrive(np.array([[1.5], [1], [0]]))
+    assert robot.check_arrive([1.5, 1, 0], threshold=0.6)
+    robot.set_goal([[1, 1, 0], [8, 8, 0]])
+    robot.check_arrive_status()
+    assert (robot.arrive_flag, robot.goal[:, 0].tolist()) == (False, [8, 8, 0])
+    robot.set_goal([1, 1, 0])
+    robot.check_status()
+    assert robot.arrive_flag
+    assert robot.done()
+
+
+def test_checks_of_contact(make: Make) -> None:
+    env = make(TEXT)
+    robot, disc, ghost = env.robot, env.obstacle_list[3], env.obstacle_list[2]
+    assert robot.possible_collision_objects == []
+    assert not robot.check_collision(disc)
+    disc.set_state([1.5, 1.2, 0])
+    assert robot.check_collision(disc)
+    assert robot.possible_collision_objects == [disc]
+    robot.check_collision_status()
+    assert (robot.collision_flag, robot.stop_flag) == (True, True)
+    disc.set_state([8, 4, 0])
+    ghost.set_state([1, 1, 0])
+    robot.check_status()
+    assert (robot.collision_flag, robot.stop_flag) == (False, False)
+    env.world_param.collision_mode = "unobstructed"
+    disc.set_state([1.5, 1.2, 0])
+    robot.check_collision_status()
+    assert (robot.collision_flag, robot.stop_flag) == (True, False)
+
+
+def test_reset_of_one_object(make: Make) -> None:
+    env = make(TEXT)
+    first, second = env.robot_list
+    for _ in range(3):
+        env.step([[1, 0.2], [0.5, 0.5]])
+    elsewhere = second.state
+    first.reset()
+    assert first.state[:, 0].tolist() == [1, 1, 0.3]
+    assert first.trajectory == []
+    assert first.velocity[:, 0].tolist() == [0, 0]
+    np.testing.assert_array_equal(second.state, elsewhere)
+    first.set_state()
+    first.set_velocity()
+    assert first.state[:, 0].tolist() == [0, 0, 0]
+    first.remove()
+    first.refresh()
+
+
+def test_sensors_look_again(make: Make) -> None:
+    text = TEXT.replace("vel_max: [2, 0.7], vel_min: [-2, -0.7]}", "sensors: [{type: lidar2d, number: 9}]}", 1)
+    env = make(text)
+    before = env.robot.get_lidar_scan()["ranges"]
+    env.obstacle_list[3].set_state([3, 1.6, 0])
+    np.testing.assert_array_equal(env.robot.get_lidar_scan()["ranges"], before)
+    env.robot.sensor_step()
+    assert (env.robot.get_lidar_scan()["ranges"] != before).any()
+
+
+def test_random_goals(make: Make) -> None:
+    env = make(TEXT, seed=3)
+    robot = env.robot
+    robot.set_random_goal(env.obstacle_list, init=True, range_limits=[[2, 2, -1], [3, 4, 1]])
+    goal = robot.goal[:, 0]
+    assert (goal >= [2, 2, -1]).all()
+    assert (goal <= [3, 4, 1]).all()
+    env.reset()
+    np.testing.assert_array_equal(robot.goal[:, 0], goal)
+    robot.set_goal([[1, 1], [2, 2]])
+    robot.set_random_goal([])
+    assert len(robot.goals) == 2
+    disc = env.obstacle_list[3]
+    disc.set_original_geometry(shapely.box(-10, -10, 1, 1))
+    disc.set_state([8, 8, 0])
+    for _ in range(20):
+        robot.set_random_goal([disc], goal_check_radius=0.1)
+        x, y = robot.goal[:2, 0]
+        assert not shapely.box(-2, -2, 9, 9).intersects(shapely.Point(x, y).buffer(0.09))
+    robot.set_random_goal([disc], goal_check_radius=100)  # gives up in the end
+    again = make(TEXT, seed=3)
+    again.robot.set_random_goal(again.obstacle_list, range_limits=[[2, 2, -1], [3, 4, 1]])
+    np.testing.assert_array_equal(again.robot.goal[:, 0], goal)
+
+
+def test_another_body(make: Make) -> None:
+    env = make(TEXT)
+    disc = env.obstacle_list[3]
+    disc.set_original_geometry(shapely.Polygon([(-1, -1), (1, -1), (1, 1), (-1, 1)]))
+    assert disc.geometry.bounds == (7, 3, 9, 5)
+    assert disc.radius == pytest.approx(math.sqrt(2))
+    env.robot.set_state([6.5, 4, 0])
+    env.refresh()
+    assert env.robot.collision_obj == [disc]
+    env.reset()
+    assert disc.geometry.bounds == (7, 3, 9, 5)
+    env.reset(random=True)
+    assert disc.radius == pytest.approx(0.1)
+    with pytest.raises(ValueError, match="polygons and lines"):
+        disc.set_original_geometry(shapely.Point(0, 0))
+    with pytest.raises(ValueError, match="empty"):
+        disc.set_original_geometry(shapely.Polygon())
+
+
+def test_static_objects_placed_at_random_have_a_goal(make: Make) -> None:
+    text = "obstacle: {number: 2, distribution: {name: random}, shape: {name: circle, radius: 0.1}}"
+    goals = [view.goal[:, 0].tolist() for view in make(text, seed=1).objects]
+    assert goals[0] != goals[1]
+    assert all(0 <= value <= 10 for goal in goals for value in goal[:2])
