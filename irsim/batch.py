@@ -37,6 +37,7 @@ class Batch:
         twist: (n, N, 3) true velocity [m/s], world frame, and yaw rate [rad/s].
         goal: (n, N, 3) present goals; NaN where there is none (or no goal heading).
         arrived, collided, stopped: (n, N) uint8 flags.
+        infeasible: (n, N) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
         ranges: (n, B) ranges of all lidars of a world, one after another [m].
         explored: (n, nx, ny) uint8, cells of the fog map that robots have seen; no cells without ``fog_map``.
         count: (n,) executed steps of each episode.
@@ -62,6 +63,7 @@ class Batch:
         self.arrived = simulation.arrived.reshape(n, objects)
         self.collided = simulation.collided.reshape(n, objects)
         self.stopped = simulation.stopped.reshape(n, objects)
+        self.infeasible = simulation.infeasible.reshape(n, objects)
         self.ranges = simulation.ranges.reshape(n, simulation.world.beams_per_world)
         self.explored = simulation.state.explored
         self.count = simulation.count

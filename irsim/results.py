@@ -106,6 +106,9 @@ class RobotResult(Result):
     """Time of first arrival [s]; None when it never arrived."""
     collision_count: int
     """Contacts that began."""
+    infeasible_steps: int | None = None
+    """Steps in which its behavior found no velocity that avoids everybody (only ``orca`` says so); None
+    if there were none."""
     path_length: float
     """Distance travelled [m]."""
     distance_to_goal: float | None

@@ -47,6 +47,7 @@ class Simulation:
         command, given: (R, 3), (R,) control wanted for the next step, and which rows it is imposed on.
         arrived, collided, stopped: (R,) flags, uint8.
         goal: (R, 3) current goals; NaN where there is none.
+        infeasible: (R,) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
         ids: (N + 1,) id of each object of a world; the last entry, -1, stands for none.
         names: Name of every object that ever was in it, by id.
         passable: Ids of those that are ``unobstructed``.
@@ -99,6 +100,7 @@ class Simulation:
         self.command, self.given = state.command, state.given
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
         self.goal, self.radius = state.goal, state.radius
+        self.infeasible = state.infeasible
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.count = state.count
         self._all = np.ones(self.copies, dtype=np.uint8)

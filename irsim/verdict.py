@@ -128,6 +128,7 @@ def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
                 collision_count=sum(collision_of(e, view.name, passable) for e in events),
+                infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),

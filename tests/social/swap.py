@@ -136,7 +136,7 @@ def swap(
     began = time.perf_counter()
     batch = open_batch(scenario(robots, behavior, drive, options or {}), robots, seeds, threads)
     horizon = math.ceil(LIMIT * 2 * ring_radius(robots) / SPEED / STEP_TIME)
-    infeasible = batch.simulation.state.infeasible.reshape(batch.n, -1)
+    infeasible = batch.infeasible
     hurt = np.zeros((batch.n, robots), dtype=bool)
     freely = np.zeros((batch.n, robots), dtype=bool)
     for _ in range(horizon):
@@ -172,8 +172,8 @@ HEADER = """\
 |---|---|---|---|---|---|---|---|---|---|"""
 LEGEND = """
 all arrived: episodes in which every robot reached its goal; collided: robots that touched another, in all episodes;
-freely: those for which no infeasible step was reported before; time: mean length of episodes in which all arrived; infeasible:
-share of robot steps in which the behavior found no velocity that avoids everybody (only orca says so)."""
+freely: those for which no infeasible step was reported before; time: mean length of episodes in which all arrived;
+infeasible: share of robot steps in which the behavior found no velocity that avoids everybody (only orca says so)."""
 
 
 def main() -> None:

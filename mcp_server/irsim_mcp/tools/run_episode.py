@@ -38,6 +38,7 @@ class Robot(BaseModel):
     time_to_goal: float | None = None
     distance_to_goal: float | None = None
     collision_count: int
+    infeasible_steps: int | None = None
     path_length: float | None = None
     pose: list[float] | None = None
 
@@ -164,6 +165,7 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         time_to_goal=_rounded(robot["time_to_goal"]),
         distance_to_goal=_rounded(robot["distance_to_goal"]),
         collision_count=robot["collision_count"],
+        infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
     )
@@ -213,6 +215,8 @@ def _robot_text(robot: Robot) -> str:
     if robot.distance_to_goal is not None:
         facts.append(f"{robot.distance_to_goal:g} m from its goal")
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
+    if robot.infeasible_steps is not None:
+        facts.append(f"{robot.infeasible_steps} steps in which its behavior saw no way to avoid everybody")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
     if robot.pose is not None:
