@@ -13,7 +13,10 @@ from irsim.units import Count, Meters, MetersPerSecond, Seconds
 
 
 class Orca(BehaviorOptions):
-    """Each member of a group takes half of the smallest change of velocity that avoids every collision."""
+    """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
+
+    Movers that are not driven by orca are avoided by the whole change; what stands still is never driven into.
+    """
 
     in_group: ClassVar[bool] = True
 
@@ -21,17 +24,17 @@ class Orca(BehaviorOptions):
 
     name: Literal["orca"] = "orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 15.0
-    """Others farther away than this are ignored."""
+    """Movers farther away than this are ignored."""
     maxNeighbors: Count = 10
-    """Most neighbours considered, nearest first."""
+    """Most movers considered, nearest first; walls and standing circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 20.0
-    """How far ahead collisions with agents are avoided."""
+    """How far ahead collisions with movers are avoided. Long ones make crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0
-    """How far ahead collisions with walls are avoided."""
+    """How far ahead collisions with walls and standing circles are avoided."""
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
-    """Added to the radius of each agent."""
+    """Added to the own radius."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed; null is the object's own."""
+    """Largest speed, and at most what the object can do in every direction; null is just that."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -24,13 +24,19 @@ double top_speed(const OrcaOptions& options, const World& world, int object) {
   return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed, own) : own);
 }
 
-/// Full speed to the goal; nothing without one, or within `goal_threshold` of it.
+/// Full speed to the goal; nothing without one, or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
+/// unequal limits leans toward the axis of the world that has the larger one.
 Vec2 preferred_velocity(const World& world, const State& state, int row, int object, double speed) {
   const Goal& goal = state.goal[row];
   if (std::isnan(goal.x)) return {};
-  const Vec2 way = goal.position() - state.pose[row].position();
+  Vec2 way = goal.position() - state.pose[row].position();
   const double distance = norm(way);
-  return distance > 0.0 && distance >= world.goal_threshold[object] ? way * (speed / distance) : Vec2{};
+  if (!(distance > 0.0 && distance >= world.goal_threshold[object])) return {};
+  const Vec3& top = world.vel_max[object];
+  if (top[0] == top[1] || !std::holds_alternative<OmniOptions>(world.drive[object])) return way * (speed / distance);
+  way = {way.x * top[0], way.y * top[1]};
+  const double length = norm(way);
+  return length > 0.0 ? way * (speed / length) : Vec2{};
 }
 
 /// How a drive that cannot move sideways turns. Small changes of direction and slow wishes are left out, as in IR-SIM,
