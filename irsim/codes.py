@@ -234,6 +234,24 @@ CODES: dict[str, Code] = {
     "group-behavior-unused": Code(
         "group behavior without effect", "The first member of a group (lowest id) decides about its group behavior."
     ),
+    "lidar-ends-meet": Code(
+        "first and last beam look the same way",
+        "Beams are spread over angle_range with both ends included. Over a full turn the ends are one direction, so n "
+        "beams look in n - 1 directions: 361 beams are 1 degree apart, 360 beams 1.003. For exactly n directions use "
+        "an angle_range of 2π (n - 1) / n, 6.26573 for 360.",
+    ),
+    "lidar-beams": Code(
+        "beams that do not spread", "One beam looks straight ahead, and an angle_range of 0 makes all beams one."
+    ),
+    "lidar-noise-off": Code(
+        "noise settings without noise", "std and angle_std count only with 'noise: true' (velocity_noise_std always)."
+    ),
+    "fog-never-lifts": Code(
+        "nobody sees anything", "Robots clear the fog: with a lidar, or with 'fov' and 'fov_radius'. Obstacles do not."
+    ),
+    "fog-too-fine": Code(
+        "too many cells of fog", "A fog map has up to 16 million cells: the extent of the world over the cell size."
+    ),
     "fov-radius-ignored": Code("fov_radius without fov", "The radius counts only together with 'fov'."),
     "fov-without-radius": Code("fov without fov_radius", "A field of view needs a reach: add 'fov_radius' or a lidar."),
     "contact-without-mode": Code(

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.world.build import COLLISION_MODES
-from irsim.world.fog import DEFAULT_RESOLUTION, FogMap
+from irsim.world.fog import FogMap, fog_resolution
 
 if TYPE_CHECKING:
     from irsim.log import Logger
@@ -93,7 +93,7 @@ class WorldView:
         self.plot_parse = world.plot
         self._fog: FogMap | None = None
         if world.fog_map:
-            resolution = world.fog_map_resolution or DEFAULT_RESOLUTION
+            resolution = fog_resolution(simulation.scenario)
             self._fog = FogMap(world.width, world.height, resolution, self.offset)
 
     @property

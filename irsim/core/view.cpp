@@ -10,19 +10,29 @@ namespace {
 /// Bearings, relative to the axis of a sector, at which something may begin or end to be seen.
 class Bearings {
  public:
-  explicit Bearings(const Sector& sector) : sector_(sector), axis_(unit(sector.middle)) {
+  /// Of a sector, as far as a disc about a target is seen through it.
+  Bearings(const Sector& sector, Vec2 centre, double radius) : sector_(sector), axis_(unit(sector.middle)) {
     list_ = {-std::min(sector.half, kPi), std::min(sector.half, kPi)};
+    const double distance = norm(centre - sector.apex);
+    if (!(distance > radius * (1.0 + 1e-6))) return;
+    target_ = bearing_of(centre), width_ = std::asin(radius / distance) + 1e-6;
+    for (const double end : {wrap(target_ - width_), wrap(target_ + width_)}) {
+      if (std::fabs(end) < sector.half) list_.push_back(end);
+    }
   }
 
   void add(Vec2 point) {
-    const Vec2 p = unrotate(point - sector_.apex, axis_);
-    const double bearing = std::atan2(p.y, p.x);
-    if (std::fabs(bearing) < sector_.half) list_.push_back(bearing);
+    const double bearing = bearing_of(point);
+    if (std::fabs(bearing) < sector_.half && std::fabs(wrap(bearing - target_)) <= width_) list_.push_back(bearing);
   }
   /// Corners, and the outermost bearings of circles.
   void add_ends(const Footprint& body) {
     for (int k = 0; k < body.count; ++k) {
       const Part& part = body.parts[k];
+      if (part.cells != nullptr) {
+        near_cells(*part.cells, [&](Vec2 a, Vec2) { add(a); });
+        continue;
+      }
       if (part.kind != Kind::circle) {
         for (int v = part.first; v <= part.last; ++v) add(body.vertices[v]);
         continue;
@@ -45,7 +55,9 @@ class Bearings {
   void add_rim(const Footprint& body) {
     for (int k = 0; k < body.count; ++k) {
       const Part& part = body.parts[k];
-      if (part.kind == Kind::circle) {
+      if (part.cells != nullptr) {
+        near_cells(*part.cells, [&](Vec2 a, Vec2 b) { segment_circle(a, b, sector_.apex, sector_.reach); });
+      } else if (part.kind == Kind::circle) {
         circles(body.vertices[part.first], part.radius, sector_.apex, sector_.reach);
       } else {
         for (int v = part.first; v < part.last; ++v) {
@@ -61,7 +73,33 @@ class Bearings {
   }
 
  private:
+  double bearing_of(Vec2 point) const {
+    const Vec2 p = unrotate(point - sector_.apex, axis_);
+    return std::atan2(p.y, p.x);
+  }
+  /// The edges between occupied and free cells within reach, each from the end at which it is seen to begin or to end.
+  template <class Visit>
+  void near_cells(const OccupancyGrid& grid, Visit&& visit) const {
+    grid.any_in(box_around(sector_.apex, sector_.reach), [&](int i, int j) {
+      const Vec2 corners[4] = {grid.corner(i, j), grid.corner(i + 1, j), grid.corner(i + 1, j + 1),
+                               grid.corner(i, j + 1)};
+      const bool free[4] = {!grid.occupied(i, j - 1), !grid.occupied(i + 1, j), !grid.occupied(i, j + 1),
+                            !grid.occupied(i - 1, j)};
+      for (int k = 0; k < 4; ++k) {
+        if (free[k]) visit(corners[k], corners[(k + 1) % 4]), visit(corners[(k + 1) % 4], corners[k]);
+      }
+      return false;
+    });
+  }
+  void cross_cells(const OccupancyGrid& grid, const Footprint& b, const Part& q) {
+    near_cells(grid, [&](Vec2 from, Vec2 to) {
+      if (q.kind == Kind::circle) return segment_circle(from, to, b.vertices[q.first], q.radius);
+      for (int j = q.first; j < q.last; ++j) segments(from, to, b.vertices[j], b.vertices[j + 1]);
+    });
+  }
   void cross_parts(const Footprint& a, const Part& p, const Footprint& b, const Part& q) {
+    if (p.cells != nullptr) return cross_cells(*p.cells, b, q);
+    if (q.cells != nullptr) return cross_cells(*q.cells, a, p);
     const bool round_p = p.kind == Kind::circle, round_q = q.kind == Kind::circle;
     if (round_p && round_q) return circles(a.vertices[p.first], p.radius, b.vertices[q.first], q.radius);
     if (round_p) return cross_parts(b, q, a, p);
@@ -104,6 +142,7 @@ class Bearings {
 
   const Sector& sector_;
   Vec2 axis_;
+  double target_ = 0.0, width_ = kInfinity;  // of what is looked at
   std::vector<double> list_;
 };
 
@@ -141,7 +180,7 @@ bool unhidden(const World& world, const State& state, int w, int object, int tar
     if (!aside) blockers.push_back(i);
   }
   if (blockers.empty()) return true;
-  Bearings bearings(sector);
+  Bearings bearings(sector, body.centre, body.radius);
   bearings.add_ends(body);
   bearings.add_rim(body);
   for (const int i : blockers) {

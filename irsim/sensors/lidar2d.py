@@ -61,7 +61,8 @@ class Lidar2d(SensorOptions):
     angle_range: SpanAngle = 3.141592653589793
     """Total opening angle, symmetric about the sensor's x axis; 6.28318 is a full turn."""
     number: Annotated[Integer, Field(ge=1, le=1_000_000)] = 100
-    """How many beams."""
+    """How many beams, both ends included; over a full turn the first and the last look the same way: 361 beams are 360
+    directions, for exactly 360 use `angle_range` 6.26573."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
     """Time of one scan, reported in messages only."""
     noise: Bool = False

@@ -14,7 +14,7 @@ from irsim import _core as core
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "fog_shape"]
+__all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "fog_resolution", "fog_shape"]
 
 DEFAULT_RESOLUTION = 0.1
 """Cell size [m] where neither the scenario nor a map says another."""
@@ -27,17 +27,20 @@ def fog_shape(width: float, height: float, resolution: float) -> tuple[int, int]
     return max(1, round(width / resolution)), max(1, round(height / resolution))
 
 
-def build_fog(scenario: ResolvedScenario, resolution: float = DEFAULT_RESOLUTION) -> core.Fog | None:
-    """The fog of a scenario, cleared by its robots; None without ``fog_map``.
+def fog_resolution(scenario: ResolvedScenario) -> float:
+    """Wanted cell size [m]: the scenario's own, else that of its map along x, else the usual one."""
+    world = scenario.world
+    if world.fog_map_resolution is not None:
+        return float(world.fog_map_resolution)
+    return DEFAULT_RESOLUTION if scenario.grid is None else float(scenario.grid.cell[0])
 
-    Args:
-        scenario: What to simulate.
-        resolution: Cell size [m] unless ``fog_map_resolution`` is given.
-    """
+
+def build_fog(scenario: ResolvedScenario) -> core.Fog | None:
+    """The fog of a scenario, cleared by its robots; None without ``fog_map``."""
     world = scenario.world
     if not world.fog_map:
         return None
-    columns, rows = fog_shape(world.width, world.height, world.fog_map_resolution or resolution)
+    columns, rows = fog_shape(world.width, world.height, fog_resolution(scenario))
     carriers, views = [], []
     for index, record in enumerate(scenario.objects):
         if record.role != "robot":

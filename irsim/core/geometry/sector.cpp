@@ -66,8 +66,25 @@ bool segment_meets(const Wedge& wedge, Vec2 a, Vec2 b) {
 
 }  // namespace
 
+bool meets(const OccupancyGrid& grid, const Sector& sector) {
+  const Wedge wedge(sector);
+  const Vec2 axis = unit(sector.middle);
+  return grid.any_in(box_around(sector.apex, sector.reach), [&](int i, int j) {
+    const Box box = grid.box(i, j);
+    if (box.meets(box_around(sector.apex, 0.0))) return true;
+    Vec2 corners[5] = {{box.x0, box.y0}, {box.x1, box.y0}, {box.x1, box.y1}, {box.x0, box.y1}};
+    for (int k = 0; k < 4; ++k) corners[k] = unrotate(corners[k] - sector.apex, axis);
+    corners[4] = corners[0];
+    for (int k = 0; k < 4; ++k) {
+      if (segment_meets(wedge, corners[k], corners[k + 1])) return true;
+    }
+    return false;
+  });
+}
+
 bool meets(const Footprint& body, const Sector& sector) {
-  if (!(norm(body.centre - sector.apex) <= (sector.reach + body.radius) * (1.0 + 1e-9) + 1e-9)) return false;
+  const bool near = norm(body.centre - sector.apex) <= (sector.reach + body.radius) * (1.0 + 1e-9) + 1e-9;
+  if (!near && body.parts[0].kind != Kind::room) return false;
   const Wedge wedge(sector);
   const Vec2 axis = unit(sector.middle);
   const auto local = [&](Vec2 p) { return unrotate(p - sector.apex, axis); };
@@ -78,7 +95,12 @@ bool meets(const Footprint& body, const Sector& sector) {
       if (disc_meets(wedge, local(*vertices), part.radius)) return true;
       continue;
     }
+    if (part.cells != nullptr) {
+      if (meets(*part.cells, sector)) return true;
+      continue;
+    }
     const int edges = part.last - part.first;
+    if (part.kind == Kind::room && !inside_ring(vertices, edges, sector.apex)) return true;
     if (part.kind == Kind::polygon && inside_ring(vertices, edges, sector.apex)) return true;
     for (int i = 0; i < edges; ++i) {
       if (segment_meets(wedge, local(vertices[i]), local(vertices[i + 1]))) return true;

@@ -44,6 +44,24 @@ class OccupancyGrid {
   /// Whether everything within `reach` [m] of a point is certainly free (false: it may be).
   bool clear_of(Vec2 point, double reach) const;
 
+  /// Calls `visit(i, j)` for the occupied cells that may meet a box, until it returns true; whether it has.
+  template <class Visit>
+  bool any_in(const Box& area, Visit&& visit) const {
+    if (count_ == 0 || !area.meets(bounds_)) return false;
+    const auto index = [](double at, double size, int count) {
+      return static_cast<int>(clip(std::floor(at / size), 0.0, count - 1.0));
+    };
+    const int i0 = std::max(0, index(area.x0 - origin_.x, cell_.x, columns_) - 1);
+    const int j0 = std::max(0, index(area.y0 - origin_.y, cell_.y, rows_) - 1);
+    const int i1 = index(area.x1 - origin_.x, cell_.x, columns_), j1 = index(area.y1 - origin_.y, cell_.y, rows_);
+    for (int j = j0; j <= j1; ++j) {
+      for (int i = next_occupied(j, i0, i1); i >= 0; i = next_occupied(j, i + 1, i1)) {
+        if (visit(i, j)) return true;
+      }
+    }
+    return false;
+  }
+
   /// Corners of the outline of the occupied cells, one list per ring, straight runs merged. The occupied side is on the
   /// left, so outer rings go counter-clockwise and holes clockwise. Cells that share only a corner have rings of their
   /// own.

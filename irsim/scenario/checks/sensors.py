@@ -1,16 +1,23 @@
-"""Sensors and fields of view."""
+"""Sensors, fields of view and fog."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.angles import FULL_TURN
+from irsim.diagnostics import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint
 
+_MOST_CELLS = 16_000_000
+_USUAL_CELL = 0.1
+
 
 def check(context: Context) -> Iterator[Finding]:
-    """By entry."""
+    """By entry, then the fog."""
+    yield from _fog(context)
     for path, entry, records in context.entries():
         seen = set()
         for record in records:
@@ -45,5 +52,93 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
             given=getattr(sensor, written),
             fix="range_min must be smaller than range_max",
         )
+    if getattr(sensor, "is_lidar", False):
+        yield from _beams(path, sensor)
+        yield from _unused(path, sensor)
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":
         yield hint("contact-without-mode", path, "there are no contact forces without 'collision_mode: contact'")
+
+
+def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
+    """Fans of beams that are not what they look like."""
+    count, span, written = sensor.number, sensor.angle_range, sensor.model_fields_set
+    if count == 1:
+        if span > 0 and "angle_range" in written:
+            where = (*path, "angle_range")
+            yield hint("lidar-beams", where, "one beam looks straight ahead, whatever the angle_range", given=span)
+        return
+    if span == 0:
+        yield hint(
+            "lidar-beams",
+            (*path, "angle_range"),
+            f"all {count} beams look the same way",
+            given=span,
+            fix="number: 1 for a range finder",
+        )
+        return
+    spacing = span / (count - 1)
+    if FULL_TURN - span < spacing / 2 and "number" in written and not _whole_degrees(count - 1):
+        yield hint(
+            "lidar-ends-meet",
+            (*path, "number"),
+            f"over a full turn the first and the last of {count} beams look the same way: {count - 1} directions, "
+            f"{math.degrees(spacing):.4g} degrees apart",
+            given=count,
+            fix=f"number: {count + 1}, or angle_range: {FULL_TURN * (count - 1) / count:.6g}, for {count} directions",
+        )
+
+
+def _whole_degrees(directions: int) -> bool:
+    """Whether so many directions are a round number of degrees apart: half or whole ones, or whole parts of one."""
+    return 720 % directions == 0 or directions % 360 == 0
+
+
+def _unused(path: Path, sensor: Any) -> Iterator[Finding]:
+    """Keys that do nothing beside the others."""
+    written = sensor.model_fields_set
+    for key in ("std", "angle_std"):
+        if key in written and getattr(sensor, key) > 0 and not sensor.noise:
+            message = f"without 'noise: true' '{key}' does not count"
+            yield hint("lidar-noise-off", (*path, key), message, given=getattr(sensor, key), fix="noise: true")
+    if sensor.name == "fmcw_lidar2d" and sensor.has_velocity:
+        yield hint(
+            "ignored-key",
+            (*path, "has_velocity"),
+            "this lidar measures radial velocities only: 'has_velocity' has no effect",
+            fix="remove it, or use a lidar2d",
+        )
+
+
+def _fog(context: Context) -> Iterator[Finding]:
+    world = context.scenario.world
+    if not world.fog_map:
+        if world.fog_map_resolution is not None:
+            where = ("world", "fog_map_resolution")
+            yield hint("ignored-key", where, "without 'fog_map: true' there is no fog", fix="fog_map: true")
+        return
+    grid = context.resolved.grid
+    cell = world.fog_map_resolution or (_USUAL_CELL if grid is None else grid.cell[0])
+    cells = (world.width / cell) * (world.height / cell)
+    if cells > _MOST_CELLS:
+        key = "fog_map" if world.fog_map_resolution is None else "fog_map_resolution"
+        least = math.sqrt(world.width * world.height / _MOST_CELLS)
+        yield error(
+            "fog-too-fine",
+            ("world", key),
+            f"cells of {cell:g} m make {cells:.3g} of them",
+            given=getattr(world, key),
+            allowed=f"at most {_MOST_CELLS:,} cells",
+            fix=f"fog_map_resolution: {least:.2g} or more",
+        )
+    sees = any(
+        any(getattr(sensor, "is_lidar", False) for sensor in record.sensors)
+        or (record.fov is not None and record.fov_radius is not None)
+        for record in context.resolved.robots()
+    )
+    if not sees:
+        yield hint(
+            "fog-never-lifts",
+            ("world", "fog_map"),
+            "no robot has a lidar or a field of view: nothing is ever seen",
+            fix="give a robot 'sensors: [{name: lidar2d}]', or 'fov' and 'fov_radius'",
+        )
