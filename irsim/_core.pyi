@@ -47,6 +47,11 @@ class OrcaOptions(_Options):
         maxSpeed: float | None,
     ) -> None: ...
 
+class RvoOptions(_Options):
+    def __init__(
+        self, *, vxmax: float, vymax: float, acce: float, factor: float, mode: str, neighbor_threshold: float
+    ) -> None: ...
+
 class SfmOptions(_Options):
     def __init__(
         self,

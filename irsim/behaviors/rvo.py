@@ -6,13 +6,17 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS
 from irsim.units import Meters, MetersPerSecond, Number
 
 
 class Rvo(BehaviorOptions):
-    """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles."""
+    """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
+
+    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second.
+    """
 
     schema_extra: ClassVar[dict[str, Any]] = {
         "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]
@@ -30,7 +34,7 @@ class Rvo(BehaviorOptions):
     mode: Literal["rvo", "hrvo", "vo"] = "rvo"
     """Whose share of the avoidance each side takes."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
-    """Others farther away than this are ignored."""
+    """Others, and walls, farther away than this are ignored; linestrings never are."""
 
 
-BEHAVIORS.register(Rvo)
+BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "neighbors.hpp"
+#include "velocity_obstacles.hpp"
 #include "orca/crowd.hpp"
 
 namespace irsim {
@@ -35,6 +36,7 @@ struct Workspace {
   std::vector<double> extra;     // a row of State::extra
   Neighbors neighbors;
   std::vector<int> walls;  // those near
+  VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
 };
 

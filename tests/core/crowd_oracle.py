@@ -126,3 +126,114 @@ def forward(velocity: np.ndarray, theta: float, *, tolerance: float, guarantee_t
     error = -wrap(theta - math.atan2(velocity[1], velocity[0]))
     kept = 0.0 if abs(error) < tolerance else error
     return max(0.0, speed * math.cos(error)), kept, float(np.clip(kept / guarantee_time, -max_rate, max_rate))
+
+
+def time_to_line(view: View, a: np.ndarray, b: np.ndarray, w: np.ndarray) -> float:
+    along = (b - a) / np.linalg.norm(b - a)
+    offset = cross(along, view.position - a)
+    towards = -math.copysign(1.0, offset) * cross(along, w)
+    if towards <= 1e-9:
+        return 1e6
+    t = max((abs(offset) - view.radius) / towards, 0.0)
+    at = (view.position + w * t - a) @ along
+    if not -view.radius <= at <= np.linalg.norm(b - a) + view.radius:
+        return 1e6
+    return 1e-4 if t == 0 else t
+
+
+def time_to_wall(view: View, a: np.ndarray, b: np.ndarray, w: np.ndarray) -> float:
+    """When a disc that moves at w first touches a segment; bisection over the distance, which is convex in time."""
+    away = view.position - nearest(a, b, view.position)
+    if w @ away >= 0:
+        return math.inf
+    if np.linalg.norm(away) <= view.radius:
+        return 0.0
+
+    def distance(t: float) -> float:
+        p = view.position + t * w
+        return float(np.linalg.norm(p - nearest(a, b, p)))
+
+    low, high = 0.0, 1e3 / float(np.linalg.norm(w))
+    for _ in range(100):  # least distance
+        one, two = low + (high - low) / 3, high - (high - low) / 3
+        low, high = (low, two) if distance(one) < distance(two) else (one, high)
+    if distance(low) > view.radius:
+        return math.inf
+    low, high = 0.0, low
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if distance(middle) <= view.radius else (middle, high)
+    return high
+
+
+def cones(o: Any, view: View) -> list[tuple[np.ndarray, float, float]]:
+    """Apex, left and right edge of every velocity obstacle."""
+    found = []
+    for centre, velocity, radius in view.discs:
+        way = centre - view.position
+        distance, both = np.linalg.norm(way), view.radius + radius + 0.1
+        half, bearing = math.asin(both / max(distance, both)), math.atan2(way[1], way[0])
+        left, right = bearing + half, bearing - half
+        a, b = (view.velocity + velocity) / 2, velocity
+        apex = {"rvo": a, "vo": b, "hrvo": a}[o.mode]
+        if o.mode == "hrvo":
+            opening = math.pi - 2 * half
+            lean = math.sin(left - math.atan2(*(a - b)[::-1])) / math.sin(0.01 if opening == 0 else opening)
+            shift = np.linalg.norm(a - b) * lean * np.array([math.cos(right), math.sin(right)])
+            apex = a - shift if cross(way, view.velocity - a) <= 0 else b + shift
+        found.append((apex, left, right))
+    for a, b in view.lines:
+        if np.linalg.norm(b - a) < 1e-6:
+            continue
+        a, b = a - view.position, b - view.position
+        if cross(a, b) < 0:
+            a, b = b, a
+        wide = [math.asin(min(1.0, view.radius / max(np.linalg.norm(p), view.radius))) for p in (a, b)]
+        found.append((np.zeros(2), math.atan2(b[1], b[0]) + wide[1], math.atan2(a[1], a[0]) - wide[0]))
+    return found
+
+
+def samples(speed: float, acce: float, limit: float) -> np.ndarray:
+    grid = np.arange(max(speed - acce, -limit), min(speed + acce, limit), 0.05)
+    return grid if len(grid) else np.array([np.clip(speed, -limit, limit)])
+
+
+def rvo(o: Any, view: View) -> list[tuple[float, float, float]]:
+    """Candidates (cost, x, y) of the class that counts, best first.
+
+    Several may be equally good to rounding: any of them is a right answer, the first one in exact arithmetic.
+    """
+    view.discs = [d for d in view.discs if np.linalg.norm(d[0] - view.position) < o.neighbor_threshold]
+    reach = min(o.neighbor_threshold, view.radius + math.hypot(o.vxmax, o.vymax))
+    view.walls = [
+        (a, b)
+        for a, b in view.walls
+        if cross(b - a, view.position - a) <= 0
+        and np.linalg.norm(nearest(a, b, view.position) - view.position) <= reach
+    ]
+    obstacles = cones(o, view)
+    free, spoiled, walled = [], [], []
+    for x in samples(view.velocity[0], o.acce, o.vxmax):
+        for y in samples(view.velocity[1], o.acce, o.vymax):
+            w = np.array([x, y])
+            far = float(np.linalg.norm(w - view.desired))
+            into_wall = [time_to_wall(view, a, b, w) for a, b in view.walls]
+            times = [1e6]
+            for centre, velocity, radius in view.discs:
+                gap2 = np.sum((centre - view.position) ** 2) - (view.radius + radius + 0.1) ** 2
+                t = math.sqrt(max(gap2, 0.0)) / (np.linalg.norm(2 * w - view.velocity - velocity) + 1e-7)
+                times.append(1e-4 if t == 0 else t)
+            times += [time_to_line(view, a, b, w) for a, b in view.lines]
+            penalty = o.factor / min(times) if len(times) > 1 else 0.0
+            if min(into_wall, default=math.inf) < 1.0:
+                worst = min([*times, *(min(max(t, 1e-4), 1e6) for t in into_wall)])
+                walled.append((o.factor / worst + far, x, y))
+            elif any(
+                cross(np.array([math.cos(left), math.sin(left)]), w - apex) <= 0
+                and cross(np.array([math.cos(right), math.sin(right)]), w - apex) >= 0
+                for apex, left, right in obstacles
+            ):
+                spoiled.append((penalty + far, x, y))
+            else:
+                free.append((far, x, y))
+    return sorted(free or spoiled or walled, key=lambda c: c[0])

@@ -121,18 +121,18 @@ class Crowd:
                 view.walls += list(zip(v, np.roll(v, -1, axis=0), strict=True))
         return view
 
-    def control(self, i: int, velocity: np.ndarray, turning: dict[str, float], share: float = 1.0) -> np.ndarray:
-        """What the drive does about a wanted velocity; `share` of the forward speed."""
+    def control(self, i: int, velocity: np.ndarray, turning: dict[str, float], fastest: float = math.inf) -> np.ndarray:
+        """What the drive does about a wanted velocity; no faster along the heading than `fastest`."""
         drive, spec = str(self.drives[i]), self.specs[i]
         theta = spec["pose"][2]
         if drive.startswith("omni"):
             return np.array([*(rotation(-theta) @ velocity), 0.0])
         speed, error, rate = oracle.forward(velocity, theta, **turning)
         if drive == "diff":
-            return np.array([speed * share, rate, 0.0])
+            return np.array([min(speed, fastest), rate, 0.0])
         if error != 0.0:
             speed = max(speed, 0.2 * float(np.hypot(*velocity)))
         if drive == "steer":
-            return np.array([speed * share, error, 0.0])
+            return np.array([min(speed, fastest), error, 0.0])
         rate = (np.clip(error, -PI / 4, PI / 4) - spec["extra"][0]) / turning["guarantee_time"]
-        return np.array([speed * share, np.clip(rate, -turning["max_rate"], turning["max_rate"]), 0.0])
+        return np.array([min(speed, fastest), np.clip(rate, -turning["max_rate"], turning["max_rate"]), 0.0])

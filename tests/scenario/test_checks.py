@@ -178,7 +178,6 @@ LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
     ({"world": {"obstacle_map": {"name": "ros", "path": "map.yaml"}}}, ("world", "obstacle_map")),
     ({"world": {"collision_mode": "contact"}}, ("world", "collision_mode")),
     ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
-    (robot(behavior={"name": "rvo"}), ("robot", 0, "behavior", "name")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
 ]
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from random import Random
 from typing import Any
 
-FAMILIES = {"sfm": 600, "sfm-group": 150}
+FAMILIES = {"rvo": 700, "sfm": 600, "sfm-group": 150}
 """Scenes per family. In a scene of a group every member's decision counts, else that of the first robot."""
 
 

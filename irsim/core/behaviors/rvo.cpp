@@ -1,0 +1,121 @@
+#include "behaviors/rvo.hpp"
+
+#include "surroundings.hpp"
+#include "velocity_obstacles.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kSpacing = 0.05;     // of the search grid [m/s]
+constexpr double kShortest = 1e-6;    // shorter segments are skipped [m]
+constexpr double kThinAngle = 0.01;   // stands for an angle of zero in the apex of hrvo [rad]
+constexpr double kWallHorizon = 1.0;  // walls that are reached sooner block a velocity [s]
+constexpr double kCreep = 0.2;        // drives that turn while they roll use at least this share of the speed
+
+/// Where the cone of a disc starts; `sine` and `cosine` of half its angle.
+Vec2 apex_of(Avoidance mode, const Ego& ego, const Disc& disc, const Cone& cone, double sine, double cosine) {
+  const Vec2 middle = (ego.velocity + disc.velocity) * 0.5;
+  if (mode == Avoidance::vo) return disc.velocity;
+  if (mode == Avoidance::rvo) return middle;
+  const double opening = cosine > 0.0 ? 2.0 * sine * cosine : std::sin(kThinAngle);
+  const double shift = cross(middle - disc.velocity, cone.left) / opening;
+  const bool on_the_right = cross(disc.centre - ego.position, ego.velocity - middle) <= 0.0;
+  return on_the_right ? middle - cone.right * shift : disc.velocity + cone.right * shift;
+}
+
+void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, VelocityObstacles& obstacles) {
+  const Vec2 way = disc.centre - ego.position;
+  const double radius = ego.radius + disc.radius + kPadding, distance = norm(way);
+  const double sine = radius / std::max(distance, radius), cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
+  const Vec2 towards = distance > 0.0 ? way * (1.0 / distance) : Vec2{1.0, 0.0};
+  Cone cone{{}, rotate(towards, {cosine, sine}), rotate(towards, {cosine, -sine})};
+  cone.apex = apex_of(options.mode, ego, disc, cone, sine, cosine);
+  obstacles.cones.push_back(cone);
+  obstacles.approaches.push_back(
+      {ego.velocity + disc.velocity, std::sqrt(std::max(distance * distance - radius * radius, 0.0))});
+}
+
+/// Cone from the clockwise end of a segment to the other, wider by the radius of the ego at both.
+void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
+  a = a - ego.position, b = b - ego.position;
+  const double length = norm(b - a);
+  if (length < kShortest) return;
+  if (cross(a, b) < 0.0) std::swap(a, b);
+  const auto edge = [&](Vec2 end, double side) {
+    const double distance = norm(end);
+    if (distance <= kShortest) return rotate(unit(0.0), {0.0, side});
+    const double sine = std::min(1.0, ego.radius / std::max(distance, ego.radius));
+    return rotate(end * (1.0 / distance), {std::sqrt(1.0 - sine * sine), side * sine});
+  };
+  obstacles.cones.push_back({{}, edge(b, 1.0), edge(a, -1.0)});
+  obstacles.stretches.push_back({a, (b - a) * (1.0 / length), length, ego.radius});
+}
+
+void look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
+  obstacles.clear();
+  obstacles.horizon = kWallHorizon;
+  for_discs(decision, ego, options.neighbor_threshold,
+            [&](const Disc& disc) { avoid_disc(options, ego, disc, obstacles); });
+  for_lines(decision, ego, kInfinity, [&](Vec2 a, Vec2 b) { avoid_line(ego, a, b, obstacles); });
+  const double fastest = norm({options.vxmax, options.vymax});
+  const double reach = std::min(options.neighbor_threshold, ego.radius + fastest * kWallHorizon);
+  for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
+    const Vec2 a = wall.a - ego.position, b = wall.b - ego.position, nearest = nearest_on_segment(a, b, {});
+    obstacles.barriers.push_back({a, b, nearest, ego.radius, norm(nearest) - ego.radius});
+  });
+}
+
+/// Samples about a speed; only the limit itself where that is farther away than the window.
+Axis window(double speed, double acce, double limit) {
+  const Axis axis = Axis::arange(std::max(speed - acce, -limit), std::min(speed + acce, limit), kSpacing);
+  return axis.count > 0 ? axis : Axis{clip(speed, -limit, limit), kSpacing, 1};
+}
+
+template <class Drive>
+constexpr bool moves_sideways(const Drive&) {
+  return false;
+}
+constexpr bool moves_sideways(const OmniOptions&) { return true; }
+constexpr bool moves_sideways(const OmniAngularOptions&) { return true; }
+
+/// Drives that do not move sideways roll along their heading while they turn: the speed at which that path is free of
+/// walls, too [m/s].
+double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 heading) {
+  const double rolling = std::max(dot(velocity, heading), kCreep * norm(velocity));
+  double speed = kInfinity;
+  for (const Barrier& wall : obstacles.barriers) {
+    const double share = wall.time(heading * rolling) / obstacles.horizon;
+    if (share < 1.0) speed = std::min(speed, rolling * share);
+  }
+  return speed;
+}
+
+Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading) {
+  Turning turning;
+  if (norm(velocity) <= turning.min_speed) {
+    const bool alone = obstacles.cones.empty();
+    turning.max_forward = 0.0;
+    return Intent::of_velocity(alone ? ego.desired : Vec2{}, turning);
+  }
+  turning.max_forward = free_speed(obstacles, velocity, heading);
+  return Intent::of_velocity(velocity, turning);
+}
+
+}  // namespace
+
+void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
+  VelocityObstacles& obstacles = decision.work.velocity_obstacles;
+  for (int k = 0; k < decision.count; ++k) {
+    const Ego ego = ego_of(decision, k);
+    look_around(options, decision, ego, obstacles);
+    const Vec2 v = ego.velocity;
+    const Axis x = window(v.x, options.acce, options.vxmax), y = window(v.y, options.acce, options.vymax);
+    const Vec2 velocity = best_sample(obstacles, x, y, ego.desired, options.factor);
+    const bool sideways =
+        std::visit([](const auto& drive) { return moves_sideways(drive); }, decision.world.drive[ego.id]);
+    intents[k] = sideways ? Intent::of_velocity(velocity)
+                          : turning_intent(obstacles, ego, velocity, decision.state.heading(ego.row));
+  }
+}
+
+}  // namespace irsim

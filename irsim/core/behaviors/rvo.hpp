@@ -1,0 +1,30 @@
+// rvo: reciprocal velocity obstacles, by sampling (reference: 5.2, 5.3). van den Berg, Lin, Manocha: "Reciprocal
+// velocity obstacles for real-time multi-agent navigation" (2008); Snape, van den Berg, Guy, Manocha: "The hybrid
+// reciprocal velocity obstacle" (2011).
+#pragma once
+
+#include "decision.hpp"
+#include "fields.hpp"
+
+namespace irsim {
+
+enum class Avoidance { rvo, hrvo, vo };
+
+struct RvoOptions {
+  double vxmax, vymax;  // bounds of the search, world axes [m/s]
+  double acce;          // half width of the search window [m/s]
+  double factor;        // weight of the time to collision when nothing is free
+  Avoidance mode;
+  double neighbor_threshold;  // [m]
+
+  static constexpr auto fields() {
+    using R = RvoOptions;
+    return std::make_tuple(field("vxmax", &R::vxmax), field("vymax", &R::vymax), field("acce", &R::acce),
+                           field("factor", &R::factor), choice("mode", &R::mode, "rvo", "hrvo", "vo"),
+                           field("neighbor_threshold", &R::neighbor_threshold));
+  }
+};
+
+void rvo(const RvoOptions& options, const Decision& decision, Intent* intents);
+
+}  // namespace irsim

@@ -1,0 +1,238 @@
+"""Reciprocal velocity obstacles: against plain NumPy over the whole grid, and what they must do in simple scenes."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from irsim import _core as core
+from tests.core import crowd_oracle as oracle
+from tests.core.crowds import Crowd
+from tests.core.oracle import rotation
+from tests.core.worlds import DRIVES, PI, circle, line, obstacle, rectangle, robot, scene
+
+DEFAULTS: dict[str, Any] = {
+    "vxmax": 1.5,
+    "vymax": 1.5,
+    "acce": 1.0,
+    "factor": 1.0,
+    "mode": "rvo",
+    "neighbor_threshold": 3.0,
+}
+TURNING = {"tolerance": 0.1, "guarantee_time": 0.2, "max_rate": 1.5}
+
+
+def rvo(**overrides: Any) -> core.RvoOptions:
+    return core.RvoOptions(**{**DEFAULTS, **overrides})
+
+
+def agent(**overrides: Any) -> core.ObjectSpec:
+    return robot(
+        **{"drive": DRIVES["omni"], "behavior": rvo(), "vel_max": [1.5] * 3, "vel_min": [-1.5] * 3, **overrides}
+    )
+
+
+def expected(crowd: Crowd, i: int, view: oracle.View, velocity: np.ndarray, discs_or_lines: bool) -> np.ndarray:
+    """The control of the drive for the velocity that was picked."""
+    if str(crowd.drives[i]).startswith("omni"):
+        return crowd.control(i, velocity, TURNING)
+    if np.linalg.norm(velocity) <= 0.02:
+        return crowd.control(i, np.zeros(2) if discs_or_lines else view.desired, TURNING, fastest=0.0)
+    heading = rotation(crowd.specs[i]["pose"][2]) @ (1.0, 0.0)
+    rolling = max(float(velocity @ heading), 0.2 * float(np.linalg.norm(velocity)))
+    times = [oracle.time_to_wall(view, a, b, heading * rolling) for a, b in view.walls]
+    return crowd.control(i, velocity, TURNING, min([math.inf, *(rolling * t for t in times if t < 1.0)]))
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
+@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    options = rvo(
+        mode=mode,
+        vxmax=rng.uniform(0.2, 0.8),
+        vymax=rng.uniform(0.2, 0.8),
+        acce=rng.uniform(0.1, 0.4),
+        factor=rng.uniform(0, 3),
+        neighbor_threshold=rng.uniform(1, 5),
+    )
+    crowd = Crowd(rng, drive, options)
+    core.decide(crowd.world, crowd.state)
+    for i in range(crowd.deciders):
+        view = crowd.view(i)
+        candidates = oracle.rvo(options, view)
+        seen = bool(view.discs or [1 for a, b in view.lines if np.linalg.norm(b - a) >= 1e-6])
+        good = [np.array(c[1:]) for c in candidates if c[0] - candidates[0][0] < 1e-9]
+        answers = [expected(crowd, i, view, w, seen) for w in good]
+        gaps = [np.abs(crowd.state.command[i] - answer).max() for answer in answers]
+        assert min(gaps) < 1e-6, (i, candidates[0], answers[0], crowd.state.command[i])
+
+
+def test_alone_one_takes_the_sample_nearest_to_the_desired_velocity() -> None:
+    world, state = scene(agent(goals=[[3.0, 4.0]]))
+    core.decide(world, state)
+    np.testing.assert_allclose(state.command[0, :2], [0.9, 0.95], atol=1e-9)  # of ..., 0.85, 0.9, 0.95
+
+
+@pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_head_on_pair_passes(drive: str, mode: str) -> None:
+    behavior = rvo(mode=mode, acce=0.5, neighbor_threshold=6.0)
+    limits = {"vel_max": [1.0, 1.0, 1.0], "vel_min": [-1.0] * 3, "behavior": behavior, "goal_threshold": 0.3}
+    world, state = scene(
+        agent(drive=DRIVES[drive], pose=[0.0, 0.02, 0.0], goals=[[8.0, 0.0]], **limits),
+        agent(drive=DRIVES[drive], pose=[8.0, 0.0, PI], goals=[[0.0, 0.0]], **limits),
+    )
+    core.advance(world, state, 400, until_done=True)
+    assert not state.collided.any()
+    assert state.arrived.all()
+
+
+def test_a_circle_in_the_way_is_gone_round() -> None:
+    world, state = scene(agent(goals=[[6.0, 0.0]]), obstacle(parts=[circle(0.5)], pose=[3.0, 0.1, 0.0]))
+    core.advance(world, state, 200, until_done=True)
+    assert state.arrived[0]
+    assert not state.collided.any()
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_a_wall_ahead_stops(drive: str) -> None:
+    world, state = scene(
+        agent(drive=DRIVES[drive], goals=[[6.0, 0.0]]),
+        obstacle(parts=[rectangle(0.2, 8.0)], pose=[3.0, 0.0, 0.0]),
+    )
+    core.advance(world, state, 200)
+    assert not state.collided.any()
+    assert 2.3 < state.pose[0, 0] < 2.7
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_along_a_wall_one_drives_at_full_speed(drive: str) -> None:
+    """As near as the padding allows: a wall blocks only velocities that lead into it."""
+    world, state = scene(
+        agent(drive=DRIVES[drive], pose=[0.0, 0.0, 0.0], goals=[[8.0, 0.0]], control=[1.0, 0.0, 0.0]),
+        obstacle(parts=[rectangle(12.0, 0.2)], pose=[3.0, 0.41, 0.0]),
+    )
+    core.advance(world, state, 40)
+    assert state.pose[0, 0] > 4.5
+    assert not state.collided.any()
+
+
+def room(width: float, height: float, thickness: float = 0.2) -> list[core.ObjectSpec]:
+    return [obstacle(parts=[rectangle(width, thickness)], pose=[width / 2, y, 0.0]) for y in (0.0, height)] + [
+        obstacle(parts=[rectangle(thickness, height)], pose=[x, height / 2, 0.0]) for x in (0.0, width)
+    ]
+
+
+@pytest.mark.parametrize("drive", ["diff", "omni", "omni_angular"])
+@pytest.mark.parametrize("seed", range(4))
+def test_goals_in_a_closed_room_of_rectangles_are_reached(drive: str, seed: int) -> None:
+    """Also close to the walls, from everywhere, with somebody else on the way."""
+    rng = np.random.default_rng(seed)
+    starts = [(1.0, 1.0), (5.0, 1.0), (1.0, 5.0), (5.0, 5.0)]
+    goals = [(5.45, 5.0), (0.55, 5.4), (5.4, 0.6), (0.6, 0.6)]
+    movers = [
+        agent(
+            drive=DRIVES[drive],
+            pose=[*np.add(start, rng.uniform(-0.3, 0.3, 2)), rng.uniform(-PI, PI)],
+            goals=[list(goal)],
+            goal_threshold=0.15,
+        )
+        for start, goal in zip(starts, goals, strict=True)
+    ]
+    world, state = scene(*movers, *room(6.0, 6.0))
+    core.advance(world, state, 600, until_done=True)
+    assert not state.collided[:4].any()
+    assert state.arrived[:4].all()
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_walls_are_never_run_into(drive: str, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    boxes = [
+        obstacle(parts=[rectangle(*rng.uniform(0.3, 1.5, 2))], pose=[*rng.uniform(1.5, 6.5, 2), rng.uniform(-PI, PI)])
+        for _ in range(4)
+    ]
+    mover = agent(
+        drive=DRIVES[drive],
+        pose=[*rng.uniform(0.4, 1.0, 2), rng.uniform(-PI, PI)],
+        goals=[rng.uniform(0.5, 7.5, 2).tolist()],
+        wander=True,
+        range_low=[0.4, 0.4, -PI],
+        range_high=[7.6, 7.6, PI],
+    )
+    world, state = scene(mover, *boxes, *room(8.0, 8.0), seeds=[seed])
+    if state.collided[0]:
+        return  # a box stands there
+    core.advance(world, state, 400)
+    assert not state.collided[0]
+
+
+def test_faster_than_the_limits_one_brakes_to_them() -> None:
+    world, state = scene(agent(control=[1.5, 0.0, 0.0], behavior=rvo(vxmax=0.4, acce=0.2), goals=[[9.0, 0.0]]))
+    core.decide(world, state)
+    np.testing.assert_allclose(state.command[0, :2], [0.4, 0.0], atol=1e-9)
+
+
+def test_a_turner_without_anybody_around_turns_in_place() -> None:
+    behavior = rvo(acce=0.001)
+    world, state = scene(agent(drive=DRIVES["diff"], behavior=behavior, goals=[[-5.0, 0.1]]))
+    core.decide(world, state)
+    np.testing.assert_allclose(state.command[0], [0.0, 1.5, 0.0])
+
+
+def test_lines_are_seen_from_any_distance_and_circles_only_near() -> None:
+    far_line = obstacle(parts=[line((9.0, -9.0), (9.0, 9.0))])
+    far_circle = obstacle(parts=[circle(2.0)], pose=[9.0, 0.0, 0.0])
+    for thing, seen in ((far_line, True), (far_circle, False)):
+        world, state = scene(agent(goals=[[20.0, 0.0]]), thing)
+        core.decide(world, state)
+        assert (abs(state.command[0, :2] - [0.95, 0.0]).max() < 1e-9) != seen
+
+
+def test_shown_are_those_of_the_role_targeted() -> None:
+    for roles, moves in ((0, False), (1, True), (2, False)):
+        world, state = scene(
+            agent(goals=[[6.0, 0.0]], target_roles=roles), obstacle(parts=[circle(0.5)], pose=[1.5, 0.0, 0.0])
+        )
+        core.decide(world, state)
+        assert (abs(state.command[0, 1]) < 1e-9) == moves
+
+
+def test_a_batch_equals_its_worlds_one_by_one() -> None:
+    rng = np.random.default_rng(5)
+    movers = [
+        agent(pose=[*rng.uniform(0, 9, 2), rng.uniform(-3, 3)], drive=DRIVES["diff"], goals=[rng.uniform(0, 9, 2)])
+        for _ in range(50)
+    ]
+    world, state = scene(*movers, *room(9.0, 9.0), seeds=[1, 2, 3], mode=1)
+    core.advance(world, state, 20, threads=2)
+    alone_world, alone = scene(*movers, *room(9.0, 9.0), seeds=[2], mode=1)
+    core.advance(alone_world, alone, 20)
+    for k in range(3):
+        assert state.pose[54 * k : 54 * (k + 1)].tobytes() == alone.pose.tobytes()
+
+
+def test_shifting_the_world_shifts_the_motion() -> None:
+    def build(shift: float) -> tuple[core.World, core.State]:
+        return scene(
+            *(
+                agent(pose=[k + shift, math.sin(k) + shift, 0.3 * k], goals=[[5 - k + shift, 3 + shift]])
+                for k in range(6)
+            ),
+            mode=1,
+        )
+
+    plain, moved = build(0.0), build(64.0)
+    for world, state in (plain, moved):
+        core.advance(world, state, 10)
+    np.testing.assert_allclose(moved[1].pose[:, :2] - 64.0, plain[1].pose[:, :2], atol=1e-9)
