@@ -284,6 +284,10 @@ CODES: dict[str, Code] = {
     "map-values": Code(
         "not an occupancy grid", "A map given as an array has the shape (nx, ny) and holds numbers from 0 to 100."
     ),
+    "map-generator": Code(
+        "map generator failed", "The Python class registered under this name raised an exception, or gave no grid."
+    ),
+    "no-map": Code("no map", "The scenario has no 'world.obstacle_map', so there is nothing to export."),
     "map-stand-in": Code(
         "another map is used",
         "The indoor scans of IR-SIM may not be handed on; flats of our own stand in for them under the same names.",

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.body import column
+from irsim.map_view import grid_values
 from irsim.world.build import COLLISION_MODES
 from irsim.world.fog import FogMap, fog_resolution
 
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from irsim.views import ObjectView
 
 __all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
+
+_OCCUPIED = 50
 
 
 class WorldParam:
@@ -131,4 +135,22 @@ class WorldView:
     @property
     def grid_map(self) -> NDArray[np.float64] | None:
         """(nx, ny) occupancy 0 to 100, None without a map."""
-        return None
+        return grid_values(self._simulation)
+
+    @property
+    def reso(self) -> NDArray[np.float64]:
+        """(2, 1) extent of a map cell along x and y [m]; zero without a map."""
+        grid = self._simulation.scenario.grid
+        return column(grid.cell if grid is not None else (0.0, 0.0))
+
+    @property
+    def obstacle_index(self) -> NDArray[np.int64] | None:
+        """(2, M) indices i, j of the occupied cells, None without a map."""
+        values = self.grid_map
+        return None if values is None else np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+
+    @property
+    def obstacle_positions(self) -> NDArray[np.float64] | None:
+        """(2, M) centres of the occupied cells [m], None without a map."""
+        index = self.obstacle_index
+        return None if index is None else np.array(self.offset)[:2, None] + (index + 0.5) * self.reso

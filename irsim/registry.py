@@ -103,6 +103,17 @@ class Registry:
 
         return add
 
+    def replace(self, options: type[BaseModel], name: str, function: Callable[..., Any]) -> None:
+        """Register what user code defines, also over an earlier definition of its own.
+
+        Raises:
+            ValueError: The name is that of a built-in feature.
+        """
+        known = self.get(name)
+        if known is not None and known.origin == "built-in":
+            raise ValueError(f"{name!r} is a built-in {self.kind}; give yours another name")
+        self._features[name] = Feature(name, options, None, function, options.__module__)
+
     def names(self) -> list[str]:
         """All names, sorted: built-in, registered, and offered by installed plug-ins."""
         return sorted({*self.installed(), *self._features})

@@ -395,8 +395,18 @@ def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
     """The views of one world, made once per simulation."""
     cache: dict[int, list[ObjectView]] = simulation.__dict__.setdefault("_views", {})
     if world not in cache:
-        cache[world] = [ObjectView(simulation, i, world) for i in range(simulation.objects)]
+        cache[world] = [
+            _view_class(record)(simulation, i, world) for i, record in enumerate(simulation.scenario.objects)
+        ]
     return cache[world]
+
+
+def _view_class(record: ObjectRecord) -> type[ObjectView]:
+    if record.shape.name != "map":
+        return ObjectView
+    from irsim.map_view import ObstacleMap
+
+    return ObstacleMap
 
 
 def set_views(simulation: Simulation, shown: Sequence[ObjectView]) -> None:

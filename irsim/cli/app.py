@@ -8,6 +8,7 @@ import typer
 
 from irsim.cli import demo, describe, new, render, run, schema, templates, validate
 from irsim.cli.guard import guarded
+from irsim.cli.map import map_app
 
 __all__ = ["app"]
 
@@ -50,3 +51,4 @@ for _verb in (
     schema.schema,
 ):
     app.command()(guarded(_verb))
+app.add_typer(map_app)

@@ -17,10 +17,13 @@ _BEGIN, _END = "<!-- begin commands -->\n", "<!-- end commands -->"
 def commands_table() -> str:
     """A Markdown table with one row per command: name and the first sentence of its help."""
     rows = ["| command | what it does |", "|---|---|"]
-    for command in app.registered_commands:
-        assert command.callback is not None
-        first = inspect.cleandoc(command.callback.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
-        rows.append(f"| `irsim {command.callback.__name__}` | {first} |")
+    groups = [("irsim", app), *((f"irsim {group.name}", group.typer_instance) for group in app.registered_groups)]
+    for program, commands in groups:
+        assert commands is not None
+        for command in commands.registered_commands:
+            assert command.callback is not None
+            first = inspect.cleandoc(command.callback.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
+            rows.append(f"| `{program} {command.name or command.callback.__name__}` | {first} |")
     return "\n".join(rows) + "\n"
 
 

@@ -122,7 +122,9 @@ class MapSite:
         folders = [*([beside] if beside is not None else []), *self.folders]
         wrong = self.refuse(name, folders)
         if wrong is not None:
-            raise MapProblem("path-outside-workspace", f"'{name}' {wrong}", given=name)
+            raise MapProblem(
+                "path-outside-workspace", f"'{name}' {wrong}", given=name, allowed="files inside the workspace"
+            )
         for path in (folder / Path(name).expanduser() for folder in folders):
             try:
                 if path.is_file():

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from irsim.maps._options import MapOptions
+from irsim.maps._site import MapSite, Raster
 from irsim.registry import MAPS
 
 
@@ -15,6 +16,9 @@ class RosMap(MapOptions):
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros", "path": "map.yaml"}]}
 
+    sets_extent: ClassVar[bool] = True
+    """The world takes its extent and offset from the map where the scenario gives none."""
+
     name: Literal["ros"] = "ros"
     path: Annotated[str, Field(strict=True, min_length=1)]
     """The map's YAML file."""
@@ -22,4 +26,14 @@ class RosMap(MapOptions):
     """What cells count as that are neither."""
 
 
-MAPS.register(RosMap)
+@MAPS.register(RosMap)
+def ros(options: RosMap, site: MapSite) -> Raster:
+    """The map where it says it is; turned ones are sampled anew.
+
+    Raises:
+        MapProblem: A file is missing or wrong.
+    """
+    from irsim.maps._rosmap import ros_raster
+
+    path = site.find(options.path)
+    return ros_raster(path, options.path, site, 100.0 if options.unknown == "occupied" else 0.0)

@@ -60,8 +60,6 @@ def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits
     except MapProblem as problem:
         key = problem.key if problem.key is not None and not isinstance(written, str) else None
         path = _PATH if key is None or hasattr(options, "__array__") else (*_PATH, key)
-        if problem.code == "path-outside-workspace":
-            return LoadedMap(None, world)  # the check of files says so
         found = error(
             problem.code, path, problem.message, given=problem.given, allowed=problem.allowed, fix=problem.fix
         )

@@ -47,6 +47,9 @@ def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
     if isinstance(shape, (MapCells, Walls)):
         return shape.parts()
     state = simulation.state
+    cells = state.cells(row)
+    if cells is not None:
+        return [core.GridCells(grid=cells)]
     parts: list[core.Part] = []
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":
@@ -54,7 +57,8 @@ def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
             parts.append(core.Circle(radius=radius, center=[x, y]))
         else:
             vertices = state.vertices(row, part, False).tolist()
-            parts.append(core.Polygon(vertices=vertices) if kind == "polygon" else core.Linestring(vertices=vertices))
+            make: Any = {"polygon": core.Polygon, "linestring": core.Linestring, "room": core.Room}[kind]
+            parts.append(make(vertices=vertices))
     return parts
 
 

@@ -33,6 +33,7 @@ LAYERS = (
     gui
     hooks
     info
+    map_view
     navigation
     object_avoidance
     object_status
@@ -47,7 +48,24 @@ LAYERS = (
     sensor_factory
     views
     """,
-    "api benchmark bridges config episode learning lib lookup modeline results snapshot templates testing util verdict",
+    """
+    api
+    benchmark
+    bridges
+    config
+    episode
+    learning
+    lib
+    lookup
+    map_files
+    modeline
+    results
+    snapshot
+    templates
+    testing
+    util
+    verdict
+    """,
     "cli __main__",
     "irsim_mcp",
 )

@@ -1,0 +1,101 @@
+"""``irsim map``: maps of the ROS map server, in and out."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.guard import guarded
+from irsim.cli.options import File, Imports, Json, Seed
+
+if TYPE_CHECKING:
+    from irsim.map_files import MapFiles
+
+__all__ = ["map_app"]
+
+map_app = typer.Typer(
+    name="map", help="Maps of the ROS map server: into scenarios, and out of them.", no_args_is_help=True
+)
+Out = Annotated[
+    Path, typer.Option("-o", "--out", metavar="FILE", help="YAML file to write; its picture lies beside it.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite files.")]
+
+
+class Unknown(str, Enum):
+    """What unknown cells count as."""
+
+    free = "free"
+    occupied = "occupied"
+
+
+class Mode(str, Enum):
+    """How the map server reads a picture."""
+
+    trinary = "trinary"
+    scale = "scale"
+    raw = "raw"
+
+
+class Picture(str, Enum):
+    """Format of the picture."""
+
+    pgm = "pgm"
+    png = "png"
+
+
+def import_(
+    file: Annotated[str, typer.Argument(help="The map's YAML file.", show_default=False)],
+    out: Out,
+    unknown: Annotated[Unknown, typer.Option(help="What cells count as that are neither.")] = Unknown.free,
+    force: Force = False,
+    json_output: Json = False,
+) -> None:
+    """Write a scenario with the map of the ROS map server: its extent, and its cells as a picture."""
+    from irsim.map_files import import_map
+
+    _show(import_map(file, out, unknown=unknown.value, overwrite=force), json_output, ["irsim", "render", str(out)])
+
+
+def export(
+    scenario: File,
+    out: Out,
+    mode: Annotated[Mode, typer.Option(help="How the map server is to read the picture.")] = Mode.trinary,
+    image: Annotated[Picture, typer.Option(help="Format of the picture.")] = Picture.pgm,
+    seed: Seed = None,
+    imports: Imports = None,
+    force: Force = False,
+    json_output: Json = False,
+) -> None:
+    """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
+    from irsim import api
+    from irsim.map_files import export_map
+
+    api.import_modules(imports or ())
+    resolved, _ = api.read_scenario(scenario, strict=False)
+    files = export_map(resolved, out, mode=mode.value, image=image.value, seed=seed, overwrite=force)
+    _show(files, json_output, None)
+
+
+def _show(written: MapFiles, json_output: bool, following: list[str] | None) -> None:
+    from rich.text import Text
+
+    from irsim.cli.output import console
+
+    if json_output:
+        typer.echo(json.dumps(written.as_dict(), indent=2))
+        return
+    shown = console()
+    size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
+    shown.print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
+    if following is not None:
+        shown.print(Text.assemble("next: ", (shlex.join(following), "cyan")), soft_wrap=True)
+
+
+map_app.command("import")(guarded(import_))
+map_app.command("export")(guarded(export))

@@ -1,0 +1,33 @@
+"""Maps under the names of IR-SIM."""
+
+from __future__ import annotations
+
+from typing import Any
+
+__all__ = [
+    "FogMap",
+    "GridMapGenerator",
+    "ImageGridGenerator",
+    "ObstacleMap",
+    "PerlinGridGenerator",
+    "build_grid_from_generator",
+    "resolve_obstacle_map",
+]
+
+_HOMES = {
+    "FogMap": "irsim.world.fog",
+    "GridMapGenerator": "irsim.maps._generators",
+    "ImageGridGenerator": "irsim.maps._generators",
+    "ObstacleMap": "irsim.map_view",
+    "PerlinGridGenerator": "irsim.maps._generators",
+    "build_grid_from_generator": "irsim.maps._generators",
+    "resolve_obstacle_map": "irsim.maps._generators",
+}
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
