@@ -17,7 +17,14 @@ _BEGIN, _END = "<!-- begin commands -->\n", "<!-- end commands -->"
 def commands_table() -> str:
     """A Markdown table with one row per command: name and the first sentence of its help."""
     rows = ["| command | what it does |", "|---|---|"]
-    groups = [("irsim", app), *((f"irsim {group.name}", group.typer_instance) for group in app.registered_groups)]
+    groups = [
+        ("irsim", app),
+        *(
+            (f"irsim {group.typer_instance.info.name}", group.typer_instance)
+            for group in app.registered_groups
+            if group.typer_instance is not None
+        ),
+    ]
     for program, commands in groups:
         assert commands is not None
         for command in commands.registered_commands:

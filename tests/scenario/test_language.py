@@ -122,7 +122,6 @@ def test_keys_of_objects(entry: str) -> None:
         "obstacle_map: cave.png\n  mdownsample: 2",
         "obstacle_map: {name: image, path: cave.png}\n  fog_map: true\n  fog_map_resolution: 0.2",
         "obstacle_map: {name: perlin, resolution: 0.1, complexity: 0.1, fractal: 2, attenuation: 0.4, seed: null}",
-        "obstacle_map: {name: ros, path: map.yaml}",
         "gravity: 1.6\n  friction: 0.1\n  restitution: 0.5\n  drive_tau: 0.2",
         "depth: 5",
         "status: Waiting",
