@@ -11,6 +11,7 @@ from irsim.parameters import PathParam, WorldParam
 
 if TYPE_CHECKING:
     from irsim.log import Logger
+    from irsim.render.palette import Palette
     from irsim.render.plot import EnvPlot
 
 __all__ = ["EnvDrawing"]
@@ -20,6 +21,7 @@ class EnvDrawing(EnvAccess):
     """Status, render, save_figure, draw_* and the animation of an environment."""
 
     logger: Logger
+    palette_param: Palette
     path_param: PathParam
     display: bool
     headless: bool
@@ -80,7 +82,7 @@ class EnvDrawing(EnvAccess):
     def _new_plot(self) -> EnvPlot:
         from irsim.render.plot import EnvPlot
 
-        return EnvPlot(self, display=self.display, full=self.full, attach=self._attach)
+        return EnvPlot(self, display=self.display, full=self.full, palette=self.palette_param, attach=self._attach)
 
     def _attach(self, ax: Any) -> None:
         """The figure was made."""

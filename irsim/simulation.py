@@ -305,6 +305,10 @@ class Simulation:
             self._rng = key, generator(*key, stream="user", object_id=self.user)
         return self._rng[1]
 
+    def set_rng(self, rng: np.random.Generator) -> None:
+        """Give user code another generator, until the next reset."""
+        self._rng = self.key(), rng
+
     @property
     def time(self) -> float:
         """Simulated time of the first world, unrounded [s]."""

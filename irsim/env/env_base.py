@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from irsim.actions import assign_actions
+from irsim.current import use
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_custom import EnvCustom
 from irsim.env_live import EnvLive
 from irsim.env_maps import EnvMaps
+from irsim.env_messages import EnvMessages
 from irsim.env_objects import EnvObjects
 from irsim.log import LEVELS, Logger
 from irsim.observers.events import Event, read_events
@@ -19,6 +21,7 @@ from irsim.observers.outcome import Outcome, outcome_of
 from irsim.observers.trace import Rollout, record_rollout
 from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
 from irsim.python_parts import attach_python
+from irsim.render.palette import Palette
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import open_scenario
 from irsim.simulation import Simulation
@@ -60,7 +63,7 @@ def make(
     return Env(world_name, step_mode=step_mode, **kwargs)
 
 
-class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive):
+class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
     """One world, stepped from Python.
 
     Args:
@@ -95,6 +98,8 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive):
         self.id = next(_IDS)
         self.logger = Logger(log_level, log_file)
         self.path_param = PathParam()
+        self.palette_param = Palette()
+        use(self)
         self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed
         self._world_name = world_name
         self._open(world_name)
@@ -150,6 +155,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive):
             ValueError: Unknown target, wrong number of numbers, or an action in external mode.
             RuntimeError: The environment has ended.
         """
+        use(self)
         if (self.pause_flag or self.quit_flag or self.debug_flag or self._ended) and self._held():
             return
         simulation = self._simulation
@@ -237,6 +243,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive):
         """
         if self._ended:
             raise RuntimeError("the environment has ended: make a new one to go on")
+        use(self)
         if random and self._exchanged:
             self._restore_objects()
         else:

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = (
     "_conflict _options angles codes colors diagnostics errors files log registry resources selection units vectors",
-    "_core compatibility streams text",
+    "_core compatibility msg streams text",
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",
@@ -22,12 +22,14 @@ LAYERS = (
     actions
     batch
     body
+    current
     env
     env_access
     env_custom
     env_drawing
     env_live
     env_maps
+    env_messages
     env_objects
     exchange
     gui

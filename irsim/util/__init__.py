@@ -1,0 +1,73 @@
+"""Helpers of scripts: angles, frames, polygons, lists, random numbers."""
+
+from irsim.util.angles import (
+    WrapToPi,
+    WrapToRegion,
+    diff_to_omni,
+    dist_hypot,
+    distance,
+    omni_to_diff,
+    relative_position,
+    transform_point_with_state,
+    vel_diff2world,
+    vel_omni2world,
+    vel_world2diff,
+    vel_world2omni,
+    vertices_transform,
+)
+from irsim.util.random import (
+    random_uniform,
+    rng,
+    set_seed,
+)
+from irsim.util.shapes import (
+    cross_product,
+    gen_inequal_from_vertex,
+    geometry_transform,
+    is_convex_and_ordered,
+    random_point_range,
+)
+from irsim.util.values import (
+    file_check,
+    find_duplicates,
+    find_file,
+    find_object_by_identity,
+    is_2d_list,
+    normalize_actions,
+    time_it,
+    time_it2,
+    to_numpy,
+)
+
+__all__ = [
+    "WrapToPi",
+    "WrapToRegion",
+    "cross_product",
+    "diff_to_omni",
+    "dist_hypot",
+    "distance",
+    "file_check",
+    "find_duplicates",
+    "find_file",
+    "find_object_by_identity",
+    "gen_inequal_from_vertex",
+    "geometry_transform",
+    "is_2d_list",
+    "is_convex_and_ordered",
+    "normalize_actions",
+    "omni_to_diff",
+    "random_point_range",
+    "random_uniform",
+    "relative_position",
+    "rng",
+    "set_seed",
+    "time_it",
+    "time_it2",
+    "to_numpy",
+    "transform_point_with_state",
+    "vel_diff2world",
+    "vel_omni2world",
+    "vel_world2diff",
+    "vel_world2omni",
+    "vertices_transform",
+]

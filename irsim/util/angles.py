@@ -1,0 +1,169 @@
+"""Angles, velocities and frames, as scripts of IR-SIM call them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "ClipTo2Pi",
+    "WrapTo2Pi",
+    "WrapToPi",
+    "WrapToRegion",
+    "diff_to_omni",
+    "dist_hypot",
+    "distance",
+    "get_affine_transform",
+    "get_transform",
+    "omni_to_diff",
+    "relative_position",
+    "transform_point_with_state",
+    "vel_diff2world",
+    "vel_omni2world",
+    "vel_world2diff",
+    "vel_world2omni",
+    "vertices_transform",
+]
+
+Floats = NDArray[np.float64]
+_TURN = 2 * math.pi
+
+
+def _flat(values: Any) -> Floats:
+    return np.asarray(values, dtype=np.float64).reshape(-1)
+
+
+def WrapToPi(rad: float, positive: bool = False) -> float:
+    """An angle in [-pi, pi); ``positive``: its absolute value. What is not finite becomes 0."""
+    if not math.isfinite(rad):
+        return 0.0
+    wrapped = (float(rad) + math.pi) % _TURN - math.pi
+    return abs(wrapped) if positive else wrapped
+
+
+def WrapTo2Pi(rad: float) -> float:
+    """An angle in [0, 2 pi). What is not finite becomes 0."""
+    return float(rad) % _TURN if math.isfinite(rad) else 0.0
+
+
+def ClipTo2Pi(rad: float) -> float:
+    """A number cut to [0, 2 pi]. NaN becomes 0."""
+    return 0.0 if math.isnan(rad) else min(max(float(rad), 0.0), _TURN)
+
+
+def WrapToRegion(rad: float, range: list[float]) -> float:
+    """An angle in an interval of one turn.
+
+    Raises:
+        AssertionError: ``range`` is not one turn wide.
+    """
+    low, high = range
+    assert math.isclose(high - low, _TURN), f"an interval of angles is 2 pi wide, not {high - low}"
+    return (float(rad) - low) % _TURN + low
+
+
+def relative_position(position1: Any, position2: Any, topi: bool = True) -> tuple[float, float]:
+    """Distance [m] and bearing [rad] of the second point from the first; ``topi``: in [-pi, pi)."""
+    dx, dy = (_flat(position2)[:2] - _flat(position1)[:2]).tolist()
+    bearing = math.atan2(dy, dx)
+    return math.hypot(dx, dy), WrapToPi(bearing) if topi else bearing
+
+
+def distance(point1: Any, point2: Any) -> float:
+    """Distance of two points in the plane [m]."""
+    a, b = _flat(point1), _flat(point2)
+    return math.hypot(a[0] - b[0], a[1] - b[1])
+
+
+def dist_hypot(x1: float, y1: float, x2: float, y2: float) -> float:
+    """Distance of two points in the plane [m]."""
+    return math.hypot(x1 - x2, y1 - y2)
+
+
+def vel_world2diff(
+    state_ori: float,
+    vel_omni: Any,
+    w_max: float = 1.5,
+    guarantee_time: float = 0.2,
+    tolerance: float = 0.1,
+    mini_speed: float = 0.02,
+) -> Floats:
+    """The control with which a differential drive follows a world velocity: turn to it, go as far as it points ahead.
+
+    Args:
+        state_ori: Heading [rad].
+        vel_omni: vx, vy [m/s], world frame.
+        w_max: Highest yaw rate [rad/s].
+        guarantee_time: The turn is planned to take this long [s].
+        tolerance: Turns smaller than this [rad] are left out.
+        mini_speed: Slower than this [m/s] counts as standing.
+
+    Returns:
+        (2, 1) forward speed [m/s] and yaw rate [rad/s].
+    """
+    vx, vy = _flat(vel_omni)[:2].tolist()
+    speed = math.hypot(vx, vy)
+    if speed < mini_speed:
+        return np.zeros((2, 1))
+    off = WrapToPi(state_ori - math.atan2(vy, vx))
+    rate = 0.0 if abs(off) < tolerance else min(max(-off / guarantee_time, -w_max), w_max)
+    return np.array([[max(0.0, speed * math.cos(off))], [rate]])
+
+
+omni_to_diff = vel_world2diff
+
+
+def vel_diff2world(state_ori: float, vel_diff: Any) -> Floats:
+    """(2, 1) world velocity [m/s] of a forward speed at a heading [rad]."""
+    speed = float(_flat(vel_diff)[0])
+    return np.array([[speed * math.cos(state_ori)], [speed * math.sin(state_ori)]])
+
+
+diff_to_omni = vel_diff2world
+
+
+def vel_world2omni(state_ori: float, vel_world: Any) -> Floats:
+    """(2, 1) forward and lateral velocity [m/s] of a world velocity at a heading [rad]."""
+    return _rotation(-state_ori) @ _flat(vel_world)[:2, None]
+
+
+def vel_omni2world(state_ori: float, vel_body: Any) -> Floats:
+    """(2, 1) world velocity [m/s] of a forward and lateral velocity at a heading [rad]."""
+    return _rotation(state_ori) @ _flat(vel_body)[:2, None]
+
+
+def _rotation(angle: float) -> Floats:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def get_transform(state: Any) -> tuple[Floats, Floats]:
+    """Translation (2, 1) and rotation (2, 2) of a pose; without a heading no rotation."""
+    pose = _flat(state)
+    return pose[:2, None], _rotation(pose[2]) if pose.size > 2 else np.eye(2)
+
+
+def get_affine_transform(state: Any) -> list[float]:
+    """A pose as [a, b, d, e, x, y] of :func:`shapely.affinity.affine_transform`."""
+    (x, y), rotation = _flat(state)[:2].tolist(), get_transform(state)[1]
+    return [*rotation.reshape(-1).tolist(), x, y]
+
+
+def transform_point_with_state(point: Any, state: Any) -> Floats:
+    """(3, 1) pose in the world frame of a pose ``point`` in the frame of ``state``; the heading wrapped."""
+    inner, outer = _flat(point), _flat(state)
+    translation, rotation = get_transform(outer)
+    x, y = (rotation @ inner[:2, None] + translation)[:, 0].tolist()
+    return np.array([[x], [y], [WrapToPi(float(inner[2] + outer[2]))]])
+
+
+def vertices_transform(vertices: Any, state: Any) -> Floats | None:
+    """(2, N) body-frame points at a pose, world frame; None stays None."""
+    if vertices is None:
+        return None
+    translation, rotation = get_transform(state)
+    moved: Floats = rotation @ np.asarray(vertices, dtype=np.float64) + translation
+    return moved
