@@ -189,10 +189,10 @@ class CustomBehaviors:
         self._add(self.classes, self._taken[1], (kinematics, name), maker)
 
     def _add(self, table: dict[Pair, Callable[..., Any]], taken: frozenset[Pair], key: Pair, value: Any) -> None:
-        if table.get(key, value) is not value:
-            raise ValueError(f"{self.kind} {key[1]!r} is already registered for {key[0]!r}")
         if key in taken:
             raise ValueError(f"{key[1]!r} is a built-in {self.kind} of {key[0]!r}; register yours under another name")
+        if table.get(key, value) is not value:
+            raise ValueError(f"{self.kind} {key[1]!r} is already registered for {key[0]!r}")
         table[key] = value
 
     def function(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:

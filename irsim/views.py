@@ -105,6 +105,24 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectStatus, ObjectAvoidance):
             options.name, options.noise, options.alpha, options.mode, self.record.wheelbase, self.role, options.tau
         )
 
+    @property
+    def gf(self) -> Any:
+        """The shape as a handler, where it stands now."""
+        from irsim.lib.handler.geometry_handler import handler_of
+
+        return handler_of(self)
+
+    @property
+    def obj_behavior(self) -> Any:
+        """Its behavior as an object that can be asked."""
+        from irsim.lib.behavior.behavior import Behavior
+
+        if "_behavior" not in self.__dict__:
+            options = self.record.behavior
+            keys = {} if options is None else options.model_dump(exclude_unset=True)
+            self.__dict__["_behavior"] = Behavior(self.info, keys)
+        return self.__dict__["_behavior"]
+
     # state -----------------------------------------------------------------------------------------------------------
     @property
     def state(self) -> Floats:

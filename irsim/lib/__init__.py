@@ -12,9 +12,13 @@ from irsim.lib.behavior.behavior_registry import (
     register_group_behavior_class,
 )
 
+_ALGORITHM = "irsim.lib.algorithm"
 _PLANNERS = "irsim.lib.path_planners"
 _HOMES = {
     "AStarPlanner": _PLANNERS,
+    "Behavior": "irsim.lib.behavior.behavior",
+    "GeometryFactory": "irsim.lib.handler.geometry_handler",
+    "GroupBehavior": "irsim.lib.behavior.group_behavior",
     "InformedRRTStar": _PLANNERS,
     "JPSPlanner": _PLANNERS,
     "KinematicsFactory": "irsim.lib.handler.kinematics_handler",
@@ -22,30 +26,43 @@ _HOMES = {
     "PRMPlanner": _PLANNERS,
     "RRT": _PLANNERS,
     "RRTStar": _PLANNERS,
-    "ackermann_kinematics": "irsim.lib.algorithm.kinematics",
-    "differential_kinematics": "irsim.lib.algorithm.kinematics",
-    "omni_kinematics": "irsim.lib.algorithm.kinematics",
+    "SocialForceModelBatch": _ALGORITHM,
+    "ackermann_kinematics": _ALGORITHM,
+    "differential_kinematics": _ALGORITHM,
+    "generate_polygon": _ALGORITHM,
+    "omni_kinematics": _ALGORITHM,
+    "random_generate_polygon": _ALGORITHM,
+    "reciprocal_vel_obs": _ALGORITHM,
     "register_kinematics": "irsim.kinematics._handler",
+    "social_force_model": _ALGORITHM,
 }
 
 __all__ = [
     "RRT",
     "AStarPlanner",
+    "Behavior",
+    "GeometryFactory",
+    "GroupBehavior",
     "InformedRRTStar",
     "JPSPlanner",
     "KinematicsFactory",
     "KinematicsHandler",
     "PRMPlanner",
     "RRTStar",
+    "SocialForceModelBatch",
     "ackermann_kinematics",
     "differential_kinematics",
+    "generate_polygon",
     "kinematics_factory",
     "omni_kinematics",
+    "random_generate_polygon",
+    "reciprocal_vel_obs",
     "register_behavior",
     "register_behavior_class",
     "register_group_behavior",
     "register_group_behavior_class",
     "register_kinematics",
+    "social_force_model",
 ]
 
 

@@ -1,0 +1,307 @@
+"""Names of ``irsim.lib``: functions for arrays and objects, with numbers that IR-SIM 2.12.0 gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from importlib import import_module
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+import irsim
+import irsim.lib
+from irsim.lib import (
+    Behavior,
+    GeometryFactory,
+    GroupBehavior,
+    SocialForceModelBatch,
+    generate_polygon,
+    random_generate_polygon,
+    register_behavior,
+    social_force_model,
+)
+from irsim.lib.algorithm import cast_rays
+from irsim.lib.behavior.behavior_methods import (
+    AckerDash,
+    DiffDash,
+    OmniAngularDash,
+    OmniDash,
+    SFMVelocity,
+    beh_acker_dash,
+    beh_diff_dash,
+    beh_diff_sfm,
+    beh_omni_angular_dash,
+    beh_omni_dash,
+    beh_omni_sfm,
+)
+
+Make = Callable[..., irsim.Env]
+SCENARIO = """
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0.3], goal: [9, 4],
+     behavior: {name: dash}, velocity: [0.5, 0.1], acce: [1, 1]}
+  - {kinematics: {name: omni}, shape: {name: rectangle, length: 0.6, width: 0.4}, state: [3, 2, 1.0], goal: [1, 1.5],
+     behavior: {name: sfm}, velocity: [0.3, 0.2]}
+  - {kinematics: {name: acker}, shape: {name: rectangle, length: 0.6, width: 0.4, wheelbase: 0.4},
+     state: [2, 6, 0.3, 0.1], goal: [9, 4], behavior: {name: dash}}
+  - {kinematics: {name: omni_angular}, shape: {name: circle, radius: 0.2}, state: [5, 6, 0.3], goal: [9, 4, 1.0],
+     behavior: {name: dash}}
+obstacle:
+  - {shape: {name: linestring, vertices: [[2, 0], [2, 0.8], [2.5, 0.9]]}, state: [0, 0, 0]}
+  - {shape: {name: circle, radius: 0.3}, state: [2.2, 1.8, 0]}
+"""
+EGO = [1, 1, 0.4, 0.1, 0.3, 1.0, 0.2, 0.3]
+OTHERS = [[2, 1.2, -0.3, 0, 0.3], [1.5, 2, 0, -0.4, 0.4]]
+LINES = [[0, 0, 3, 0]]
+
+
+@pytest.mark.parametrize("name", irsim.lib.__all__)
+def test_every_name_can_be_imported(name: str) -> None:
+    assert getattr(irsim.lib, name) is not None
+    assert name in dir(irsim.lib)
+
+
+@pytest.mark.parametrize(
+    ("module", "names"),
+    [
+        ("irsim.lib.behavior", "Behavior register_behavior register_group_behavior"),
+        ("irsim.lib.behavior.behavior_registry", "behaviors_map behaviors_class_map group_behaviors_map"),
+        ("irsim.lib.behavior.group_behavior", "GroupBehavior"),
+        ("irsim.lib.behavior.group_behavior_methods", "OrcaGroupBehavior SfmGroupBehavior beh_omni_orca"),
+        ("irsim.lib.algorithm", "cast_rays omni_angular_kinematics reciprocal_vel_obs social_force_model"),
+        ("irsim.lib.algorithm.rvo", "reciprocal_vel_obs"),
+        ("irsim.lib.handler.kinematics_handler", "KinematicsFactory OmniKinematics register_kinematics"),
+        ("irsim.lib.handler.geometry_handler", "GeometryFactory geometry_handler CircleGeometry"),
+    ],
+)
+def test_old_import_paths(module: str, names: str) -> None:
+    for name in names.split():
+        assert callable(getattr(import_module(module), name)) or name.endswith("_map")
+
+
+def test_dash_of_arrays() -> None:
+    state, goal = np.array([[1.0], [1.0], [0.3]]), np.array([[4.0], [3.0], [0.5]])
+    two, three = np.array([[1.0], [2.0]]), np.array([[1.0], [2.0], [0.5]])
+    expected = {
+        "diff": (DiffDash(state, goal, two), [0.958813123592, 2.0]),
+        "ramp": (DiffDash(state, goal, two, angular_acce=1.0, dt=0.1), [0.958813123592, 0.331283209846]),
+        "omni": (OmniDash(state, goal, two), [0.958813123592, 0.568075326087]),
+        "acker": (AckerDash(state, goal, two, 0.1, 0.1), [1.0, 0.288002603548]),
+        "turning": (OmniAngularDash(state, goal, three), [0.958813123592, 0.568075326087, 0.5]),
+        "there": (OmniAngularDash(goal - 0.01, goal, three), [0.0, 0.0, 0.0]),
+    }
+    for name, (control, numbers) in expected.items():
+        assert control.shape == (len(numbers), 1), name
+        assert control[:, 0] == pytest.approx(numbers, abs=1e-11), name
+
+
+@pytest.mark.parametrize(
+    ("function", "index", "expected"),
+    [
+        (beh_diff_dash, 0, [0.6, 0.0]),
+        (beh_omni_dash, 1, [-0.7282569211, 0.685304207539]),
+        (beh_acker_dash, 2, [1.0, -0.578299659005]),
+        (beh_omni_angular_dash, 3, [0.722318278264, -0.691560774542, -1.0]),
+        (beh_diff_sfm, 0, [0.0, 0.2]),
+        (beh_omni_sfm, 1, [0.685832030922, 0.380059502248]),
+    ],
+)
+def test_behaviors_of_objects(make: Make, function: Any, index: int, expected: list[float]) -> None:
+    ego = make(SCENARIO).objects[index]
+    control = function(ego, ego.external_objects, name="any", wander=False)
+    assert control[:, 0] == pytest.approx(expected, abs=1e-9)
+    assert len(control) == ego.vel_dim
+
+
+def test_behaviors_see_only_what_they_are_shown(make: Make) -> None:
+    ego = make(SCENARIO).objects[1]
+    alone = beh_omni_sfm(ego, [])
+    assert alone[:, 0] != pytest.approx(beh_omni_sfm(ego, ego.external_objects)[:, 0], abs=1e-3)
+    assert alone[:, 0] == pytest.approx(beh_omni_sfm(ego, [], neighbor_threshold=0.01)[:, 0])
+
+
+def test_a_behavior_of_users_on_top_of_a_built_in_one(make: Make) -> None:
+    register_behavior("omni", "careful")(
+        lambda ego_object, external_objects, **keys: 0.5 * beh_omni_sfm(ego_object, external_objects, **keys)
+    )
+    text = SCENARIO.replace("{name: sfm}", "{name: careful}")
+    env, plain = make(text), make(SCENARIO)
+    env.step()
+    plain.step()
+    assert env.objects[1].velocity == pytest.approx(0.5 * plain.objects[1].velocity, abs=1e-12)
+
+
+def test_in_a_batch_an_object_is_asked_in_its_own_world(tmp_path: Any) -> None:
+    register_behavior("diff", "through")(
+        lambda ego_object, external_objects, **_: beh_diff_dash(ego_object, external_objects)
+    )
+    path = tmp_path / "scenario.yaml"
+    text = "robot: {{number: 2, kinematics: {{name: diff}}, distribution: {{name: random}}, behavior: {{name: {0}}}}}"
+    poses = []
+    for name in ("through", "dash"):
+        path.write_text(text.format(name))
+        batch = irsim.batch(path, 3, seeds=[1, 2, 3])
+        for _ in range(5):
+            batch.step()
+        poses.append(batch.pose.copy())
+    assert poses[0] == pytest.approx(poses[1], abs=1e-12)
+
+
+def test_social_forces_of_arrays() -> None:
+    model = social_force_model(EGO, OTHERS, LINES)
+    assert model.cal_vel() == pytest.approx([0.4840826400668017, 0.39801746222251233], abs=1e-12)
+    assert model.desired_force() == pytest.approx([1.2, 0.2], abs=1e-12)
+    assert model.social_force() == pytest.approx([-0.17103504730094443, -0.6611645593142674], abs=1e-9)
+    assert model.obstacle_force() == pytest.approx([0.0, 0.41686201967850844], abs=1e-9)
+    model.update(EGO, [], [])
+    assert model.social_force() == [0.0, 0.0]
+    fast = [0.0, 0.0, 5.0, 0.0, 0.3, 9.0, 0.0]
+    assert math.hypot(*social_force_model(fast, vmax=1.2).cal_vel()) == pytest.approx(1.2)
+
+
+def test_social_forces_of_several_at_once() -> None:
+    other = [1.3, 1.5, 0.1, 0.1, 0.3, 0.5, 0.5, 0]
+    batch = SocialForceModelBatch([EGO, other], OTHERS, LINES, social_groups=[[0, 1]])
+    assert batch.n == 2
+    expected = {
+        "cal_vel": [[0.462698210684, 0.294607180381], [0.003938736937, 0.461241927399]],
+        "desired_force": [[1.2, 0.2], [0.8, 0.8]],
+        "social_force": [[-0.186759611767, -1.010084386777], [-0.735090495225, 0.322615138506]],
+        "obstacle_force": [[0.0, 0.416862019679], [0.0, 0.223130160148]],
+        "coherence_force": [[0.059588645776, 0.099314409627], [-0.059588645776, -0.099314409627]],
+        "group_repulsive_force": [[-0.3, -0.5], [0.3, 0.5]],
+        "gaze_force": [[0.0, 0.0], [-0.132581766367, -0.132581766367]],
+    }
+    for name, numbers in expected.items():
+        assert getattr(batch, name)() == pytest.approx(np.array(numbers), abs=1e-9), name
+
+
+def test_velocity_of_social_forces(make: Make) -> None:
+    env = make(SCENARIO)
+    velocity = SFMVelocity([1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.351123441588, 0.3])
+    assert velocity == pytest.approx((0.6630333489209558, 0.2235451151410533), abs=1e-9)
+    env.end()
+
+
+def test_behavior_objects(make: Make) -> None:
+    env = make(SCENARIO)
+    robot = env.robot
+    assert Behavior(robot.info, {"name": "dash"}).gen_vel(robot, robot.external_objects)[:, 0].tolist() == [0.6, 0.0]
+    assert robot.obj_behavior.gen_vel(robot, [])[:, 0].tolist() == [0.6, 0.0]
+    assert Behavior(robot.info, {}).gen_vel(robot, []).tolist() == [[0.0], [0.0]]
+    with pytest.raises(ValueError, match="nope"):
+        Behavior(robot.info, {"name": "nope"}).gen_vel(robot, [])
+
+
+def test_group_behavior_objects(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
+    walker = make(SCENARIO).objects[1]
+    group = GroupBehavior([walker], name="sfm")
+    (control,) = group.gen_group_vel()
+    assert control[:, 0] == pytest.approx([0.685832030922, 0.380059502248], abs=1e-9)
+    (control,) = GroupBehavior([walker], name="orca").gen_group_vel()
+    assert np.isfinite(control).all()
+    assert GroupBehavior([walker]).gen_group_vel() == [None]
+    assert GroupBehavior([walker, walker], name="nope").gen_group_vel() == [None, None]
+    assert "nope" in capsys.readouterr().err
+
+
+def test_registries_list_what_is_built_in() -> None:
+    registry = import_module("irsim.lib.behavior.behavior_registry")
+    import_module("irsim.lib.behavior.group_behavior_methods")
+    assert registry.behaviors_map["diff", "dash"] is beh_diff_dash
+    assert ("omni", "orca") in registry.group_behaviors_class_map
+
+
+@pytest.mark.parametrize(
+    ("name", "keys", "area", "radius", "size", "centroid"),
+    [
+        ("circle", {"radius": 0.5}, 0.784137, 0.5, (1.0, 1.0), (0, 0)),
+        ("Circle", {"radius": 0.3, "center": [1, 2], "wheelbase": 0.4}, 0.282289, 0.3, (0.6, 0.6), (1.2, 2)),
+        ("rectangle", {"length": 2.0, "width": 1.0, "wheelbase": 1.2}, 2.0, 1.118034, (2.0, 1.0), (0.6, 0)),
+        ("polygon", {"vertices": [[0, 0], [2, 0], [1, 0.2], [0, 1]]}, 0.7, 1.118034, (2, 1), (0.523810, 0.304762)),
+        ("polygon", {}, 4.0, 1.414214, (2, 2), (0, 0)),
+        ("linestring", {"vertices": [[0, 0], [2, 0], [2, 1]]}, 0.0, 1.118034, (2, 1), (1.333333, 0.166667)),
+        (
+            "compound",
+            {"parts": [{"name": "circle", "radius": 0.3}, {"name": "rectangle", "width": 0.2, "pose": [0.5, 0, 0]}]},
+            0.423469,
+            0.653846,
+            (1.3, 0.6),
+            (0.215713, 0),
+        ),
+    ],
+)
+def test_shapes(name: str, keys: Any, area: float, radius: float, size: Any, centroid: Any) -> None:
+    made = GeometryFactory.create_geometry(name, **keys)
+    assert made.geometry.area == pytest.approx(area, abs=1e-6)
+    assert made.radius == pytest.approx(radius, abs=1e-6)
+    assert (made.length, made.width) == pytest.approx(size)
+    assert made.original_centroid[:, 0] == pytest.approx(centroid, abs=1e-6)
+    assert made.wheelbase == keys.get("wheelbase")
+    moved = made.step(np.array([[1.0], [2.0], [0.5]]))
+    assert moved is made.geometry
+    turn = np.array([[math.cos(0.5), -math.sin(0.5)], [math.sin(0.5), math.cos(0.5)]])
+    where = turn @ np.array(centroid) + [1, 2]
+    assert (moved.centroid.x, moved.centroid.y) == pytest.approx(tuple(where), abs=1e-6)
+    if name != "compound":
+        assert made.vertices == pytest.approx(turn @ made.original_vertices + [[1], [2]])
+
+
+def test_inequalities() -> None:
+    square = GeometryFactory.create_geometry("polygon", vertices=[[0, 1], [2, 1], [2, 0], [0, 0]])
+    for G, h, cone, convex in (square.get_init_Gh(), square.get_Gh(vertices=square.original_vertices)):
+        assert G.tolist() == [[0, -2], [1, 0], [0, 2], [-1, 0]]
+        assert h[:, 0].tolist() == [0, 2, 2, 0]
+        assert (cone, convex) == ("Rpositive", True)
+    disc = GeometryFactory.create_geometry("circle", radius=0.5)
+    assert disc.get_init_Gh()[1][:, 0] == pytest.approx([0, 0, -0.5])
+    assert disc.get_Gh(center=np.array([[1], [2]]), radius=0.3)[1][:, 0].tolist() == [1, 2, -0.3]
+    dent = GeometryFactory.create_geometry("polygon", vertices=[[0, 0], [2, 0], [1, 0.2], [0, 1]])
+    assert dent.get_init_Gh() == (None, None, None, False)
+    line = GeometryFactory.create_geometry("linestring", vertices=[[0, 0], [2, 0]])
+    assert line.get_init_Gh() == (None, None, None, None)
+    with pytest.raises(ValueError, match="unknown shape"):
+        GeometryFactory.create_geometry("blob")
+    with pytest.raises(TypeError):
+        GeometryFactory.create_geometry("circle", size=3)
+
+
+def test_shapes_of_objects(make: Make) -> None:
+    env = make(SCENARIO)
+    for view in env.objects:
+        assert view.gf.geometry.symmetric_difference(view.geometry).area < 0.001
+        assert view.gf.radius == pytest.approx(view.radius, abs=1e-9)
+    assert env.objects[1].gf.get_init_Gh()[3] is True
+    assert env.objects[4].gf.get_init_Gh() == (None, None, None, None)
+
+
+def test_random_polygons() -> None:
+    for _ in range(50):
+        points = generate_polygon([3, 4], 1.0, 0.2, 0.3, 7)
+        assert points.shape == (7, 2)
+        assert shapely.Polygon(points).is_valid
+        assert shapely.LinearRing(points).is_ccw
+        assert np.linalg.norm(points - [3, 4], axis=1).max() <= 2.0
+    two = random_generate_polygon(number=2, num_vertices_range=[3, 6])
+    assert [3 <= len(polygon) < 6 for polygon in two] == [True, True]
+    with pytest.raises(ValueError, match="irregularity"):
+        generate_polygon([0, 0], 1.0, 2, 0.3, 5)
+
+
+def test_beams_against_geometries() -> None:
+    beams = shapely.MultiLineString([[(0, 0), (5, 0)], [(0, 0), (3, 3)], [(0, 0), (0, 5)]])
+    box = SimpleNamespace(geometry=shapely.box(2, -1, 3, 1))
+    line = SimpleNamespace(geometry=shapely.LineString([(-1, 2), (1, 2)]))
+    ranges, hits, origin, directions = cast_rays(beams, [box, line], 5.0)
+    assert ranges.tolist() == [2.0, 5.0, 2.0]
+    assert hits.tolist() == [0, -1, 1]
+    assert origin.tolist() == [0, 0]
+    assert directions == pytest.approx(np.array([[1, 0], [0.6, 0.6], [0, 1]]))
+    ranges, hits, _, _ = cast_rays(beams, [], 5.0)
+    assert (ranges.tolist(), hits.tolist()) == ([5.0] * 3, [-1] * 3)
+    along = SimpleNamespace(geometry=shapely.LineString([(4, 0), (3, 0)]))
+    assert cast_rays(beams, [along], 5.0)[0][0] == pytest.approx(3.0)
