@@ -21,6 +21,7 @@ from irsim.lib import (
     SocialForceModelBatch,
     generate_polygon,
     random_generate_polygon,
+    reciprocal_vel_obs,
     register_behavior,
     social_force_model,
 )
@@ -28,14 +29,18 @@ from irsim.lib.algorithm import cast_rays
 from irsim.lib.behavior.behavior_methods import (
     AckerDash,
     DiffDash,
+    DiffRVO,
     OmniAngularDash,
     OmniDash,
+    OmniRVO,
     SFMVelocity,
     beh_acker_dash,
     beh_diff_dash,
+    beh_diff_rvo,
     beh_diff_sfm,
     beh_omni_angular_dash,
     beh_omni_dash,
+    beh_omni_rvo,
     beh_omni_sfm,
 )
 
@@ -305,3 +310,36 @@ def test_beams_against_geometries() -> None:
     assert (ranges.tolist(), hits.tolist()) == ([5.0] * 3, [-1] * 3)
     along = SimpleNamespace(geometry=shapely.LineString([(4, 0), (3, 0)]))
     assert cast_rays(beams, [along], 5.0)[0][0] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("mode", "free", "with_line"),
+    [("rvo", [0.8, -0.3], [0.45, -0.15]), ("hrvo", [0.8, -0.3], [0.45, -0.15]), ("vo", [0.55, -0.4], [0.2, 0.0])],
+)
+def test_velocity_obstacles_of_arrays(mode: str, free: list[float], with_line: list[float]) -> None:
+    model = reciprocal_vel_obs(EGO, OTHERS)
+    assert model.cal_vel(mode) == pytest.approx(free, abs=1e-12)
+    model.update(EGO, OTHERS, LINES)
+    assert model.cal_vel(mode) == pytest.approx(with_line, abs=1e-12)
+    assert reciprocal_vel_obs(EGO).cal_vel() == pytest.approx([0.85, 0.2], abs=1e-12), "nobody is near"
+    with pytest.raises(ValueError, match="sideways"):
+        model.cal_vel("sideways")
+
+
+def test_velocity_obstacles_of_objects(make: Make) -> None:
+    env = make(SCENARIO)
+    diff, omni = env.objects[:2]
+    assert beh_diff_rvo(diff, diff.external_objects)[:, 0] == pytest.approx([0.676291287492, -0.783644376869], abs=1e-9)
+    expected = [0.032500270611, -0.031179356294]
+    assert beh_omni_rvo(omni, omni.external_objects)[:, 0] == pytest.approx(expected, abs=1e-9)
+    far = beh_diff_rvo(diff, env.objects[3:4], vxmax=1.0, acce=0.5, mode="vo", name="rvo", wander=False)
+    assert far[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
+
+
+def test_velocity_obstacles_in_the_command_frame() -> None:
+    ego = [1, 1, 0.477668244562803, 0.14776010333066977, 0.3, 0.9363291775690445, 0.35112344158839165, 0.3]
+    assert DiffRVO(ego, [])[:, 0] == pytest.approx([0.989005461439, 0.0], abs=1e-9)
+    behind = [0, 0, 0, 0, 0.3, -1.0, 0.0, 0.0]
+    assert DiffRVO(behind, [])[:, 0] == pytest.approx([0.0, 1.5]), "it turns on the spot where nobody is near"
+    world = OmniRVO(ego, [])[:, 0]
+    assert world == pytest.approx(OmniRVO([*ego[:7], 2.0], [])[:, 0]), "world frame, whatever the heading"

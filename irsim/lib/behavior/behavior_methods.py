@@ -112,7 +112,7 @@ def OmniRVO(
     neighbor_threshold: float = 3.0,
     line_segments: Sequence[Sequence[float]] | None = None,
 ) -> Floats:
-    """(2, 1) body-frame velocity [m/s] of a holonomic drive that avoids others.
+    """(2, 1) world-frame velocity [m/s] of a holonomic drive that avoids others.
 
     Args:
         state_tuple: [x, y, vx, vy, padded radius, wanted vx, wanted vy, theta], as ``rvo_state`` of objects.
@@ -127,8 +127,7 @@ def OmniRVO(
     """
     keys = {"vxmax": vxmax, "vymax": vymax, "acce": acce, "factor": factor, "mode": mode}
     world = _rvo_velocity(state_tuple, neighbor_list, line_segments, {**keys, "neighbor_threshold": neighbor_threshold})
-    cosine, sine = math.cos(state_tuple[7]), math.sin(state_tuple[7])
-    return np.array([[world[0] * cosine + world[1] * sine], [-world[0] * sine + world[1] * cosine]])
+    return world[:, None]
 
 
 def DiffRVO(
