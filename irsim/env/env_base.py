@@ -31,6 +31,8 @@ from irsim.views import views
 if TYPE_CHECKING:
     import numpy as np
 
+    from irsim.object_factory import EnvConfig, ObjectFactory
+
 __all__ = ["Env", "EnvBase", "make"]
 
 _IDS = count()
@@ -101,7 +103,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self.palette_param = Palette()
         use(self)
         self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed
-        self._world_name = world_name
+        self.world_name = world_name
         self._open(world_name)
         self.headless = headless or disable_all_plot
         self.display = display and not self.headless
@@ -141,6 +143,18 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._external = mode == "external"
         self._events_seen = self._events_told = 0
         self._label: str | None = scenario.world.status
+
+    @property
+    def env_config(self) -> EnvConfig:
+        """The scenario as parsed, and what loads it."""
+        from irsim.object_factory import EnvConfig
+
+        return EnvConfig(self)
+
+    @property
+    def object_factory(self) -> ObjectFactory:
+        """Makes objects from scenario entries."""
+        return self.env_config.object_factory
 
     # time ------------------------------------------------------------------------------------------------------------
     def step(self, action: Any = None, action_id: Any = None) -> None:
@@ -262,10 +276,10 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         """
         if self._ended:
             raise RuntimeError("the environment has ended: make a new one to go on")
-        name = self._world_name if world_name is None else world_name
+        name = self.world_name if world_name is None else world_name
         self._wanted_seed = self.seed
         self._open(name)
-        self._world_name = name
+        self.world_name = name
         self._start_over(self.scenario.world.status)
 
     def _start_over(self, label: str | None) -> None:

@@ -20,7 +20,8 @@ world: {width: 10, height: 10, name: hall}
 robot:
   - {kinematics: {name: diff}, state: [1, 1, 0.3], shape: {name: circle, radius: 0.2}, goal: [9, 9, 0],
      sensors: [{type: lidar2d, number: 5, range_min: 0.5, range_max: 3}]}
-  - {kinematics: {name: acker}, state: [5, 1, 0.3, 0.1], shape: {name: rectangle, length: 1, width: 0.4, wheelbase: 0.6}}
+  - {kinematics: {name: acker}, state: [5, 1, 0.3, 0.1],
+     shape: {name: rectangle, length: 1, width: 0.4, wheelbase: 0.6}}
   - {kinematics: {name: omni_angular}, state: [5, 5, 0.3], shape: {name: circle, radius: 0.2}}
 obstacle:
   - {shape: {name: circle, radius: 0.2}, state: [8, 1, 0]}

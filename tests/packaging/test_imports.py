@@ -13,7 +13,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = (
-    "_conflict _options angles codes colors diagnostics errors files log registry resources selection units vectors",
+    """
+    _conflict _names _options angles codes colors diagnostics errors files log registry resources selection units
+    vectors
+    """,
     "_core compatibility msg streams text",
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
@@ -38,6 +41,8 @@ LAYERS = (
     map_view
     navigation
     object_avoidance
+    object_base
+    object_factory
     object_status
     observers
     parameters

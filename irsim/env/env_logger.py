@@ -1,0 +1,16 @@
+"""The logger of an environment under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(
+    __name__,
+    {
+        "EnvLogger": "irsim.log:Logger",
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,16 @@
+"""The picture in three dimensions under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(
+    __name__,
+    {
+        "EnvPlot3D": "irsim.render.plot3d",
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

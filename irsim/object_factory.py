@@ -1,0 +1,146 @@
+"""Objects from the entries of a scenario, and the configuration of an environment, under the names of IR-SIM."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import count
+from typing import TYPE_CHECKING, Any, Literal
+
+from irsim.current import last_used
+from irsim.exchange import alone
+from irsim.object_base import ObjectBase
+from irsim.scenario.opening import open_scenario, or_raise
+from irsim.scenario.read import read
+from irsim.simulation import Simulation
+from irsim.views import ObjectView, views
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+
+__all__ = ["EnvConfig", "ObjectFactory"]
+
+Role = Literal["robot", "obstacle"]
+
+
+class ObjectFactory:
+    """Makes objects that are in no world yet.
+
+    Args:
+        world: The world they are for; default: that of the environment used last.
+    """
+
+    def __init__(self, world: Any = None) -> None:
+        self.world = world
+
+    def create_robot(self, kinematics: Any = None, **keys: Any) -> ObjectView:
+        """A robot with the keys of a scenario entry."""
+        return ObjectBase(kinematics=kinematics, role="robot", **{"color": None, **keys})
+
+    def create_obstacle(self, kinematics: Any = None, **keys: Any) -> ObjectView:
+        """An obstacle with the keys of a scenario entry."""
+        return ObjectBase(kinematics=kinematics, role="obstacle", **{"color": None, **keys})
+
+    def create_object(self, obj_type: str = "robot", number: int = 1, **keys: Any) -> list[ObjectView]:
+        """The objects that one entry makes, with ``number``, ``distribution`` and spreading as in a file."""
+        return self.create_from_parse({"number": number, **keys}, obj_type)
+
+    def create_from_parse(
+        self,
+        parse: Sequence[Mapping[str, Any]] | Mapping[str, Any],
+        obj_type: str = "robot",
+        group_start_index: int = 0,
+    ) -> list[ObjectView]:
+        """The objects that an entry, or a list of entries, makes.
+
+        Args:
+            parse: As in a file.
+            obj_type: ``robot`` or ``obstacle``.
+            group_start_index: Number of the group of the first entry.
+
+        Raises:
+            ScenarioError: The entries cannot be used.
+        """
+        entries = [dict(parse)] if isinstance(parse, Mapping) else [dict(entry) for entry in parse]
+        env = last_used()
+        document = {"world": self._extent(), obj_type: entries}
+        scenario, _ = or_raise(read(document, name=f"create_{obj_type}"))
+        seed = 0 if env is None else int(env.rng.integers(2**32))
+        together = Simulation(scenario, [seed], history=True)
+        numbers = count() if env is None else env.env_param.id_iter
+        made = []
+        for view in views(together):
+            own = alone(scenario, view.record, seed)
+            own.exchange(own.scenario, [(together, view.row)])
+            single = views(own)[0]
+            single.group += group_start_index
+            single.renumber(next(numbers))
+            made.append(single)
+        return made
+
+    def generate_state_list(
+        self,
+        number: int = 1,
+        distribution: Mapping[str, Any] | None = None,
+        state: Sequence[Any] | None = None,
+        goal: Sequence[Any] | None = None,
+    ) -> tuple[list[list[float]], list[list[float]]]:
+        """States and goals of ``number`` objects by a distribution."""
+        entry = {"number": number, "distribution": distribution, "state": state, "goal": goal}
+        given = {key: value for key, value in entry.items() if value is not None}
+        made = self.create_from_parse({**given, "shape": {"name": "circle", "radius": 0.01}}, "robot")
+        goals = [[] if view.goal is None else view.goal[:, 0].tolist() for view in made]
+        return [view.state[:, 0].tolist() for view in made], goals
+
+    def _extent(self) -> dict[str, Any]:
+        env = last_used()
+        world = self.world if self.world is not None else None if env is None else env._world
+        return {} if world is None else {"width": world.width, "height": world.height, "offset": list(world.offset)}
+
+
+class EnvConfig:
+    """The scenario of an environment as parsed.
+
+    Args:
+        env: Whose.
+    """
+
+    def __init__(self, env: Env) -> None:
+        self._env = env
+        self.object_factory = ObjectFactory(env._world)
+
+    @property
+    def parse(self) -> dict[str, Any]:
+        """Sections of the file: ``world``, ``gui``, ``robot``, ``obstacle``, ``custom``; None where it has none."""
+        return {**dict.fromkeys(("world", "gui", "robot", "obstacle", "custom")), **self._env.scenario.document}
+
+    @property
+    def world_name(self) -> str:
+        """Name of the file as it was given, or of the world."""
+        given = self._env.world_name
+        return self._env.scenario.name if given is None else str(given)
+
+    @property
+    def world_file_path(self) -> str | None:
+        """Path of the file."""
+        return self._env.scenario.source
+
+    @property
+    def logger(self) -> Any:
+        """The logger of the environment."""
+        return self._env.logger
+
+    def load_yaml(self, world_name: str | None = None) -> None:
+        """Read the scenario again, or another one, from the next ``reload`` on."""
+        name = self.world_name if world_name is None else world_name
+        open_scenario(name)
+        self._env.world_name = name
+
+    def reload_objects(self) -> list[ObjectView]:
+        """Begin the next scene with the objects of the file; returns them."""
+        self._env.reset(random=True)
+        return self._env.objects
+
+    def reload_yaml_objects(self, world_name: str | None = None) -> list[ObjectView]:
+        """Read the scenario again, or another one, and begin it; returns its objects."""
+        self._env.reload(world_name)
+        return self._env.objects

@@ -1,0 +1,97 @@
+"""Single shapes on Matplotlib axes, as scripts of IR-SIM draw them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.patches import Circle, Ellipse, Patch, PathPatch, Polygon, Rectangle, Wedge
+from matplotlib.path import Path
+
+__all__ = ["draw_patch", "geometry_to_path", "linewidth_from_data_units", "set_patch_property"]
+
+_POINTS_PER_INCH = 72
+
+
+def geometry_to_path(geometry: Any) -> Path:
+    """A shapely polygon, line, or collection of them as a Matplotlib path."""
+    from shapely.geometry.polygon import orient
+
+    pieces = []
+    for piece in getattr(geometry, "geoms", [geometry]):
+        rings = [piece]
+        if piece.geom_type == "Polygon":
+            turned = orient(piece)  # holes run the other way round
+            rings = [turned.exterior, *turned.interiors]
+        for ring in rings:
+            points = np.asarray(ring.coords)[:, :2]
+            pieces.append(Path(points, closed=piece.geom_type != "LineString"))
+    return Path.make_compound_path(*pieces)
+
+
+def linewidth_from_data_units(linewidth: float, axis: Any, reference: str = "y") -> float:
+    """The line width in points that is as wide as ``linewidth`` in the units of the axes [m]."""
+    figure, box = axis.get_figure(), axis.get_position()
+    if reference == "x":
+        length, span = figure.bbox_inches.width * box.width, np.diff(axis.get_xlim())[0]
+    else:
+        length, span = figure.bbox_inches.height * box.height, np.diff(axis.get_ylim())[0]
+    return float(linewidth * length * _POINTS_PER_INCH / span)
+
+
+def set_patch_property(element: Any, **properties: Any) -> None:
+    """Set colour, alpha, zorder, … of an artist; what is None stays."""
+    element.set(**{key: value for key, value in properties.items() if value is not None})
+
+
+def draw_patch(
+    ax: Any,
+    shape: str,
+    state: Any = None,
+    radius: float | None = None,
+    width: float | None = None,
+    height: float | None = None,
+    vertices: Any = None,
+    theta1: float | None = None,
+    theta2: float | None = None,
+    **kwargs: Any,
+) -> Patch:
+    """Add one shape to axes.
+
+    Args:
+        ax: Axes.
+        shape: ``circle``, ``rectangle``, ``ellipse``, ``wedge`` or ``polygon``.
+        state: x, y [m] and heading [rad], by default zeros.
+        radius: Of a circle or wedge [m].
+        width: Along x of a rectangle or ellipse [m].
+        height: Along y of a rectangle or ellipse [m].
+        vertices: (2, N) corners of a polygon, world frame.
+        theta1: Where a wedge begins [degrees].
+        theta2: Where it ends [degrees].
+        **kwargs: Of the Matplotlib patch.
+
+    Raises:
+        ValueError: Another shape.
+    """
+    x, y, theta = (*(np.zeros(3) if state is None else np.asarray(state, dtype=float).reshape(-1)), 0.0, 0.0)[:3]
+    turn = float(np.degrees(theta))
+    patch: Patch
+    if shape == "circle":
+        patch = Circle((x, y), radius or 0.5, **kwargs)
+    elif shape == "rectangle" and vertices is None:
+        patch = Rectangle(
+            (x - (width or 1) / 2, y - (height or 1) / 2), width or 1, height or 1, angle=turn, rotation_point="center",
+            **kwargs,
+        )  # fmt: skip
+    elif shape == "ellipse":
+        patch = Ellipse((x, y), width or 1, height or 1, angle=turn, **kwargs)
+    elif shape == "wedge":
+        patch = Wedge((x, y), radius or 0.5, theta1 or 0.0, 360.0 if theta2 is None else theta2, **kwargs)
+    elif shape in ("polygon", "rectangle"):
+        patch = Polygon(np.asarray(vertices)[:2].T, **kwargs)
+    elif shape == "path":
+        patch = PathPatch(vertices, **kwargs)
+    else:
+        raise ValueError(f"unknown shape {shape!r}: choose circle, rectangle, ellipse, wedge or polygon")
+    ax.add_patch(patch)
+    return patch

@@ -1,0 +1,16 @@
+"""The factory of objects under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(
+    __name__,
+    {
+        "ObjectFactory": "irsim.object_factory",
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

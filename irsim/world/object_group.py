@@ -1,0 +1,16 @@
+"""Groups of objects under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(
+    __name__,
+    {
+        "ObjectGroup": "irsim.object_base",
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)
