@@ -188,15 +188,21 @@ class FmcwLidar2dOptions(_Options):
 
 # shapes (core/shapes/): body frame
 class Circle:
+    radius: float
+    center: list[float]
     def __init__(self, *, radius: float, center: Sequence[float]) -> None: ...
 
 class Polygon:
     """Closed and filled; convex or not; simple."""
 
+    vertices: list[list[float]]
+
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
 class Linestring:
     """Open polyline without thickness."""
+
+    vertices: list[list[float]]
 
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
@@ -310,6 +316,15 @@ class ObjectSpec:
         behavior: Options of a native behavior, or None.
         grouped: The behavior is that of the group: it decides for all members at once.
         sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
+        centroid: x, y in the body frame, what contacts turn it about; empty follows from the shape, where overlaps
+            of parts count twice.
+        mass: [kg], infinity for what nothing can push.
+        friction: Coefficient of friction with the ground.
+        inertia: Moment of inertia [kg m^2]; NaN follows from shape and mass.
+        restitution: Bounciness, 0 to 1.
+        tau: Lag of the drive [s].
+        driven: Whether it has a drive, native or not; what has none and is not static is moved by contacts only;
+            its control is a world-frame velocity and a yaw rate.
     """
 
     def __init__(
@@ -340,6 +355,13 @@ class ObjectSpec:
         behavior: _Options | None,
         grouped: bool,
         sensors: Sequence[_Options | None],
+        centroid: Sequence[float],
+        mass: float,
+        friction: float,
+        inertia: float,
+        restitution: float,
+        tau: float,
+        driven: bool,
     ) -> None: ...
 
 class RandomPlacement:
@@ -390,12 +412,13 @@ class World:
         *,
         step_time: float,
         collision_mode: int,
+        gravity: float,
         objects: Sequence[ObjectSpec],
         placements: Sequence[RandomPlacement],
         copies: int,
         fog: Fog | None = None,
     ) -> None: ...
-    # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles
+    # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles, 3 contact
     copies: int
     objects: int  # N
     step_time: float
@@ -431,6 +454,10 @@ class State:
     control: Floats  # (R, 3) executed control without noise
     twist: Floats  # (R, 3) true vx, vy (world frame), yaw rate of the last step
     command: Floats  # (R, 3) control wanted for the next step
+    drive: Floats  # (R, 3) control of the drives in `collision_mode: contact`, before contacts interfere
+    contact_time: Floats  # (R,) how long the row has touched something [s]
+    air_time: Floats  # (R,) how long it has touched nothing [s]
+    touching: Flags  # (R,) bit 0: in contact in the last step, bit 1: in the one before
     given: Flags  # (R,) 1: `command` comes from outside, behaviors leave the row alone; cleared by every step
     arrived: Flags  # (R,)
     collided: Flags  # (R,)
@@ -471,6 +498,12 @@ class State:
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
+    def contacts(self, world: int) -> list[tuple[int, int, float, float, float, float, float, float]]:
+        """Contacts of the last step: a, b, normal x, y (from b to a), depth [m], point x, y, force [N]."""
+    def body(self, row: int) -> tuple[float, float, float, float, float]:
+        """1 / mass, 1 / inertia, square of the shape's radius of gyration [m^2], centroid x, y in the body frame."""
+    def pieces(self, row: int) -> list[Floats]:
+        """Convex pieces of the shape, (M, 2) each, body frame; a circle is its centre, lines are segments."""
     def goals(self, row: int) -> list[list[float]]: ...
     def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
     def set_initial(self, row: int, pose: bool, control: bool) -> None:
@@ -479,6 +512,8 @@ class State:
         """(3 + E,) pose and extra rows that reset() returns to."""
     def velocity_world(self, row: int) -> tuple[float, float]:
         """World-frame velocity that the present control gives at the present pose."""
+    def drive_velocity_world(self, row: int) -> tuple[float, float]:
+        """World-frame velocity that `drive` gives at the present pose."""
     def moved(self, row: int) -> None:
         """The row's pose was written from outside: forget geometry cached for it (flags and scans wait for a step)."""
     def in_view(self, row: int, angle: float, reach: float, occlusion: bool) -> list[int]:
@@ -546,6 +581,9 @@ def limit(world: World, state: State) -> None: ...
 def integrate(world: World, state: State) -> None:
     """Move; rows without native drive keep pose, extra and twist, which are then the caller's to write."""
 
+def push_apart(world: World, state: State) -> None:
+    """Push apart what overlaps (`collision_mode` 3 only); after `integrate`."""
+
 def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
@@ -555,7 +593,7 @@ def scan(world: World, state: State, index: int, sensor: int, pose: Sequence[flo
 def finish(world: World, state: State) -> None:
     """Count the step, append the history, clear `given`.
 
-    The order is decide, limit, integrate, finish, collide, arrive, sense.
+    The order is decide, limit, integrate, (push_apart,) finish, collide, arrive, sense.
     """
 
 # Used by the Python API and by tests
@@ -593,6 +631,23 @@ def drive_follow(
 
 def drive_deviation(drive: _Options, control: Sequence[float]) -> list[float]:
     """Standard deviations of the motion noise of three controls."""
+
+def shift(world: World, state: State, row: int, by: tuple[float, float], turn: float) -> None:
+    """Move a row by `by` [m] and turn it about its centroid, as within one period: its velocity changes too."""
+
+def push(world: World, state: State, row: int, change: tuple[float, float]) -> None:
+    """Change the velocity of a row, world frame [m/s]."""
+
+def contact_step(
+    world: World,
+    state: State,
+    index: int,
+    pairs: Sequence[tuple[int, int]],
+    sweeps: int,
+    slop: float,
+    step_time: float,
+) -> None:
+    """Push apart these pairs of objects of world `index` where they overlap; `state.contacts(index)` tells how."""
 
 def neighbors(
     world: World, state: State, index: int, centre: tuple[float, float], reach: float

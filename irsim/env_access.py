@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.contacts import Contact, contacts_of
 from irsim.info import ObjectInfo, ObstacleInfo
 from irsim.parameters import WorldView
 from irsim.scenario.objects import ResolvedScenario
@@ -25,6 +26,11 @@ class EnvAccess:
     _simulation: Simulation
     _objects: list[ObjectView]
     _world: WorldView
+
+    @property
+    def contacts(self) -> list[Contact]:
+        """Contacts of the last step, for ``collision_mode: contact``."""
+        return contacts_of(self._simulation)
 
     @property
     def simulation(self) -> Simulation:

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.contacts import Contact2D
 from irsim.registry import SENSORS, Feature
 from irsim.scans import FMCWLidar2D, Lidar2D
+from irsim.sensors.contact2d import Contact2d
 from irsim.streams import generator
 
 if TYPE_CHECKING:
@@ -103,7 +105,9 @@ def sensors_of(simulation: Simulation, view: ObjectView) -> list[Any]:
     sensors: list[Any] = []
     for index, options in enumerate(view.record.sensors):
         feature = SENSORS.get(str(getattr(options, "name", "")))
-        if feature is not None and feature.kernel is not None:
+        if feature is not None and feature.options is Contact2d:
+            sensors.append(view.contact)
+        elif feature is not None and feature.kernel is not None:
             sensors.append(_LIDARS.get(feature.name, Lidar2D)(simulation, view, options, next(native)))
         elif feature is not None and feature.function is not None:
             sensors.append(PythonSensor(view, options, feature, index))
@@ -114,7 +118,7 @@ def attach_sensors(simulation: Simulation, view: ObjectView) -> None:
     """Let the sensors of an object read its place in another simulation."""
     native = _native(simulation, view)
     for sensor in view.sensors:
-        if not isinstance(sensor, PythonSensor):
+        if not isinstance(sensor, (Contact2D, PythonSensor)):
             sensor.attach(simulation, next(native))
 
 
@@ -140,7 +144,8 @@ def attach_python_sensors(simulation: Simulation) -> None:
         str(getattr(options, "name", "")) for record in simulation.scenario.objects for options in record.sensors
     }
     features = [feature for name in sensors if (feature := SENSORS.get(name)) is not None]
-    if any(feature.kernel is None and feature.function is not None for feature in features):
+    by_users = [f for f in features if f.kernel is None and f.options is not Contact2d]
+    if any(feature.function is not None for feature in by_users):
         if _measure not in simulation.measurements:
             simulation.measurements.append(_measure)
         simulation.measure()

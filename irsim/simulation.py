@@ -13,7 +13,7 @@ from irsim.diagnostics import Diagnostic
 from irsim.errors import PlacementError
 from irsim.log import Logger
 from irsim.streams import generator
-from irsim.world.build import build_world
+from irsim.world.build import COLLISION_MODES, build_world
 
 if TYPE_CHECKING:
     from irsim.hooks import Hooks
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
 __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
+
+CONTACT = COLLISION_MODES["contact"]
 
 PythonDecision = Callable[["Simulation"], None]
 """Fills ``command`` of the rows that are its own; called between the native decisions and the motion."""
@@ -168,6 +170,8 @@ class Simulation:
             drives.move()
         if hooks is not None:
             hooks.after_motion()
+        if world.collision_mode == CONTACT:
+            core.push_apart(world, state)
         core.finish(world, state)
         core.collide(world, state)
         core.arrive(world, state)

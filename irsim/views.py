@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.body import ObjectBody, column
+from irsim.contacts import Contact2D
 from irsim.hooks import ObjectHooks
 from irsim.info import ObjectInfo, ObstacleInfo
+from irsim.matter import ObjectMatter
 from irsim.object_avoidance import ObjectAvoidance
 from irsim.object_status import ObjectStatus
 from irsim.scans import Lidar2D
@@ -28,7 +30,7 @@ __all__ = ["ObjectView", "set_views", "views"]
 Floats = NDArray[np.float64]
 
 
-class ObjectView(ObjectBody, ObjectHooks, ObjectStatus, ObjectAvoidance):
+class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoidance):
     """One robot or obstacle.
 
     Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
@@ -63,6 +65,7 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectStatus, ObjectAvoidance):
         self._plain = record.state_dim == 3
         self.sensors: list[Any] = []
         self.attach(simulation, index, world)
+        self.contact = Contact2D(self, _contact_options(record.sensors))
         self.sensors = sensors_of(simulation, self)
         self.lidar: Lidar2D | None = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
 
@@ -433,6 +436,10 @@ def set_views(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
         view.record = record
         view.attach(simulation, index)
     simulation.__dict__["_views"] = {0: list(shown)}
+
+
+def _contact_options(sensors: Sequence[Any]) -> Any:
+    return next((sensor for sensor in sensors if getattr(sensor, "name", "") == "contact2d"), None)
 
 
 def _goal_list(goal: Any) -> list[list[float]]:

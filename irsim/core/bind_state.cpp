@@ -70,6 +70,13 @@ std::tuple<double, double> velocity_of(const BoundState& self, int row) {
   return {v.x, v.y};
 }
 
+std::tuple<double, double> drive_velocity_of(const BoundState& self, int row) {
+  self.check_row(row);
+  std::vector<double> scratch;
+  const Vec2 v = velocity_of_control(*self.world, self.state, row, self.state.drive[row], scratch);
+  return {v.x, v.y};
+}
+
 nb::object events(const BoundState& self, int w, std::size_t start) {
   self.check_world(w);
   nb::list out;
@@ -90,6 +97,40 @@ nb::object collision_pairs(const BoundState& self, int w) {
   }
   const std::size_t count = out.size() / 2;
   return own(std::move(out), {count, 2});
+}
+
+nb::object contacts(const BoundState& self, int w) {
+  self.check_world(w);
+  nb::list out;
+  for (const Contact& c : self.state.scenes[w].contacts) {
+    out.append(nb::make_tuple(c.a, c.b, c.normal.x, c.normal.y, c.depth, c.point.x, c.point.y, c.force));
+  }
+  return out;
+}
+
+nb::object body(BoundState& self, int row) {
+  self.check_row(row);
+  const int object = row % self.world->objects;
+  const Bodies& bodies = bodies_of(*self.world, self.state, row / self.world->objects);
+  const Vec2 centroid = bodies.centroid[object];
+  return nb::make_tuple(bodies.inverse_mass[object], bodies.inverse_inertia[object], bodies.gyration2[object],
+                        centroid.x, centroid.y);
+}
+
+nb::object pieces(BoundState& self, int row) {
+  self.check_row(row);
+  const int object = row % self.world->objects;
+  const Bodies& bodies = bodies_of(*self.world, self.state, row / self.world->objects);
+  nb::list out;
+  for (int p = bodies.begin[object]; p < bodies.begin[object + 1]; ++p) {
+    std::vector<double> numbers;
+    const Convex& piece = bodies.pieces[p];
+    for (int v = piece.first; v < piece.first + piece.count; ++v) {
+      numbers.insert(numbers.end(), {bodies.vertices[v].x, bodies.vertices[v].y});
+    }
+    out.append(own(std::move(numbers), {static_cast<std::size_t>(piece.count), 2}));
+  }
+  return out;
 }
 
 nb::object trajectory(const BoundState& self, int row) {
@@ -188,6 +229,10 @@ void BoundState::expose() {
   control = view<double>(state.control.memory, {rows, 3});
   twist = view<double>(state.twist.memory, {rows, 3});
   command = view<double>(state.command.memory, {rows, 3});
+  drive = view<double>(state.drive.memory, {rows, 3});
+  contact_time = view<double>(state.contact_time.memory, {rows});
+  air_time = view<double>(state.air_time.memory, {rows});
+  touching = view<std::uint8_t>(state.touching.memory, {rows});
   given = view<std::uint8_t>(state.given.memory, {rows});
   arrived = view<std::uint8_t>(state.arrived.memory, {rows});
   collided = view<std::uint8_t>(state.collided.memory, {rows});
@@ -241,6 +286,10 @@ void bind_state(nb::module_& m) {
       .def_ro("control", &S::control)
       .def_ro("twist", &S::twist)
       .def_ro("command", &S::command)
+      .def_ro("drive", &S::drive)
+      .def_ro("contact_time", &S::contact_time)
+      .def_ro("air_time", &S::air_time)
+      .def_ro("touching", &S::touching)
       .def_ro("given", &S::given)
       .def_ro("arrived", &S::arrived)
       .def_ro("collided", &S::collided)
@@ -297,11 +346,15 @@ void bind_state(nb::module_& m) {
           nb::arg("world"))
       .def("events", &events, nb::arg("world"), nb::arg("start") = 0)
       .def("collision_pairs", &collision_pairs, nb::arg("world"))
+      .def("contacts", &contacts, nb::arg("world"))
+      .def("body", &body, nb::arg("row"))
+      .def("pieces", &pieces, nb::arg("row"))
       .def("goals", &goals_of, nb::arg("row"))
       .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))
       .def("set_initial", &set_initial, nb::arg("row"), nb::arg("pose"), nb::arg("control"))
       .def("initial_state", &initial_state, nb::arg("row"))
       .def("velocity_world", &velocity_of, nb::arg("row"))
+      .def("drive_velocity_world", &drive_velocity_of, nb::arg("row"))
       .def(
           "moved",
           [](S& self, int row) {

@@ -19,8 +19,9 @@ struct BoundState {
   World* world;
   State state;
   std::atomic<bool> busy{false};  // a thread is inside, without the GIL
-  nb::object pose, extra, control, twist, command, given, arrived, collided, stopped, radius, infeasible, goal, ranges,
-      hits, valid, beam_angles, velocities, explored, count, scene, noise, seed, failed_placement;
+  nb::object pose, extra, control, twist, command, drive, contact_time, air_time, touching, given, arrived, collided,
+      stopped, radius, infeasible, goal, ranges, hits, valid, beam_angles, velocities, explored, count, scene, noise,
+      seed, failed_placement;
 
   /// `state` for a call that names its world, too.
   State& of(const World& named);

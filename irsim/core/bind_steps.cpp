@@ -1,6 +1,7 @@
 // advance, rollout and the phases of a step.
 #include "batch.hpp"
 #include "bind_state.hpp"
+#include "contact/push.hpp"
 #include "features.hpp"
 #include "phases.hpp"
 #include "sensing.hpp"
@@ -122,6 +123,7 @@ void bind_steps(nb::module_& m) {
   phase("decide", [](W world, State& s, int w, Workspace& work) { decide(world, s, w, work); });
   phase("limit", [](W world, State& s, int w, Workspace&) { limit(world, s, w); });
   phase("integrate", [](W world, State& s, int w, Workspace&) { integrate(world, s, w); });
+  phase("push_apart", [](W world, State& s, int w, Workspace& work) { push_apart(world, s, w, work); });
   phase("finish", [](W world, State& s, int w, Workspace&) { finish(world, s, w); });
   phase("collide", [](W world, State& s, int w, Workspace&) { collide(world, s, w); });
   phase("arrive", [](W world, State& s, int w, Workspace&) { arrive(world, s, w); });
@@ -148,6 +150,35 @@ void bind_steps(nb::module_& m) {
         return std::make_tuple(u[0], u[1], u[2]);
       },
       nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("velocity"));
+  m.def(
+      "shift",
+      [](World& world, BoundState& bound, int row, Point by, double turn) {
+        State& state = bound.of(world);
+        bound.check_row(row);
+        const Vec2 centroid = bodies_of(world, state, row / world.objects).centroid[row % world.objects];
+        shift(world, state, row, {by.first, by.second}, turn, centroid);
+        const double per_second = 1.0 / world.step_time;
+        push(world, state, row, Vec2{by.first, by.second} * per_second, turn * per_second);
+      },
+      nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("by"), nb::arg("turn"));
+  m.def(
+      "push",
+      [](World& world, BoundState& bound, int row, Point change) {
+        State& state = bound.of(world);
+        bound.check_row(row);
+        push(world, state, row, {change.first, change.second}, 0.0);
+      },
+      nb::arg("world"), nb::arg("state"), nb::arg("row"), nb::arg("change"));
+  m.def(
+      "contact_step",
+      [](World& world, BoundState& bound, int w, const std::vector<std::pair<int, int>>& pairs, int sweeps, double slop,
+         double step_time) {
+        State& state = bound.of(world);
+        bound.check_world(w);
+        push_apart(world, state, w, state.workspaces.front(), {sweeps, slop, step_time}, &pairs);
+      },
+      nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("pairs"), nb::arg("sweeps"), nb::arg("slop"),
+      nb::arg("step_time"));
   m.def("neighbors", &near_objects, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"),
         nb::arg("reach"));
   m.def("walls", &near_walls, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("centre"), nb::arg("reach"),

@@ -11,9 +11,10 @@ void bind_world(nb::module_& m) {
   bind_fields<FogView>(m, "FogView");
   bind_fields<Fog>(m, "Fog");
   nb::class_<World>(m, "World")
-      .def(nb::init<double, int, std::vector<ObjectSpec>, std::vector<RandomPlacement>, int, std::optional<Fog>>(),
-           nb::kw_only(), nb::arg("step_time"), nb::arg("collision_mode"), nb::arg("objects"), nb::arg("placements"),
-           nb::arg("copies"), nb::arg("fog") = nb::none())
+      .def(nb::init<double, int, double, std::vector<ObjectSpec>, std::vector<RandomPlacement>, int,
+                    std::optional<Fog>>(),
+           nb::kw_only(), nb::arg("step_time"), nb::arg("collision_mode"), nb::arg("gravity"), nb::arg("objects"),
+           nb::arg("placements"), nb::arg("copies"), nb::arg("fog") = nb::none())
       .def_ro("copies", &World::copies)
       .def_ro("objects", &World::objects)
       .def_ro("step_time", &World::step_time)

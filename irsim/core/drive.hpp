@@ -3,6 +3,7 @@
 //   void    NAME(options, motion)        one period of motion (the function is named like the file)
 //   Vec3    deviation(options, control)  standard deviations of the motion noise
 //   Vec3    follow(options, wish)        controls that realise a wanted world-frame velocity
+//   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
 #pragma once
 
@@ -36,6 +37,12 @@ struct Wish {
   const double* extra;
   Vec2 direction;  // cosine and sine of the heading
   Turning turning;
+};
+
+/// Which components of a control are what.
+struct Rows {
+  int travel;  // so many, the first, are translation: forward, then lateral speed
+  int yaw;     // the one that is a yaw rate, -1 none
 };
 
 template <class Options>

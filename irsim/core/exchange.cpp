@@ -13,6 +13,10 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.control[row] = from.control[old_row];
   to.twist[row] = from.twist[old_row];
   to.command[row] = from.command[old_row];
+  to.drive[row] = from.drive[old_row];
+  to.contact_time[row] = from.contact_time[old_row];
+  to.air_time[row] = from.air_time[old_row];
+  to.touching[row] = from.touching[old_row];
   to.given[row] = from.given[old_row];
   to.arrived[row] = from.arrived[old_row];
   to.collided[row] = from.collided[old_row];
@@ -61,6 +65,7 @@ void settle(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) state.radius[w * world.objects + i] = scene.shapes->radius[i];
   scene.moving.resize(scene.shapes->size[0]);
   scene.fixed = nullptr;
+  scene.bodies = nullptr;
   place_fixed(world, state, w);
   place_moving(world, state, w);
 }
@@ -90,6 +95,7 @@ void go_on(const World& world, State& state, const World& world_before, const St
   }
   scene.shapes = std::move(shapes);
   scene.sweep.reset(world.moving);
+  scene.contacts.clear();
   scene.pairs = renamed(before.scenes[0].pairs, new_row);
   settle(world, state, 0);
   sense(world, state, 0, state.workspaces.front());

@@ -1,4 +1,5 @@
 // Limits and kinematics.
+#include "contact/respond.hpp"
 #include "phases.hpp"
 
 namespace irsim {
@@ -6,9 +7,12 @@ namespace irsim {
 void limit(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   Vec3& u = state.control[row];
-  const bool idle = !world.behaves[object] && !state.given[row];  // stands still at once, as in IR-SIM
-  if (world.is_static[object] || state.stopped[row] || idle) {
+  if (world.is_static[object] || state.stopped[row]) {
     u = {};
+    return;
+  }
+  if (!world.behaves[object] && !state.given[row]) {
+    u = without_command(world, state, row);
     return;
   }
   const Vec3& wanted = state.command[row];
@@ -20,6 +24,7 @@ void limit(const World& world, State& state, int w, int object) {
   }
   u = next;
   with(world.drive[object], [&](const auto& drive) { u = constrain(drive, u); });
+  if (world.collision_mode == kContact) u = respond(world, state, row, u);
 }
 
 void limit(const World& world, State& state, int w) {
@@ -32,6 +37,7 @@ void integrate(const World& world, State& state, int w, int object) {
     state.twist[row] = {};
     return;
   }
+  if (!world.matter[object].driven) return coast(world, state, row);
   with(world.drive[object], [&](const auto& drive) {
     Vec3 u = state.control[row];
     if (drive.noise) {

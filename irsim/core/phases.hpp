@@ -9,6 +9,8 @@ namespace irsim {
 void decide(const World& world, State& state, int w, Workspace& work);
 void limit(const World& world, State& state, int w);
 void integrate(const World& world, State& state, int w);
+/// The bodies that overlap are pushed apart (`collision_mode: contact`).
+void push_apart(const World& world, State& state, int w, Workspace& work);
 void finish(const World& world, State& state, int w);
 void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);

@@ -139,7 +139,7 @@ void place_randomly(const World& world, State& state, int w) {
     for (const int i : entry.objects) {
       if (world.wander[i]) continue;  // drawn at every reset
       Goal goal;
-      if (world.is_static[i]) {  // never reached, but IR-SIM has it
+      if (world.is_static[i] || !world.matter[i].driven) {  // never reached, but IR-SIM has it
         const auto u = Draws(key, Stream::placement, world.number[i]).uniforms(kGoalDraws);
         const auto &low = entry.range_low, &high = entry.range_high;
         state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],

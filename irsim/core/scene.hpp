@@ -8,6 +8,7 @@
 #include "collision/grid.hpp"
 #include "collision/points.hpp"
 #include "collision/sweep.hpp"
+#include "contact/contact.hpp"
 #include "orca/obstacles.hpp"
 #include "shapes.hpp"
 #include "walls.hpp"
@@ -46,6 +47,8 @@ struct Scene {
   Sweep sweep;                              // of the moving objects
   std::vector<Pair> pairs, previous_pairs;  // sorted
   std::vector<Event> events;                // since the last reset
+  std::shared_ptr<const Bodies> bodies;     // of `shapes`; null until contacts are looked for
+  std::vector<Contact> contacts;            // of the last step, in the order they were found
 };
 
 }  // namespace irsim

@@ -48,10 +48,14 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       control(rows),
       twist(rows),
       command(rows),
+      drive(rows),
+      contact_time(rows),
+      air_time(rows),
       given(rows),
       arrived(rows),
       collided(rows),
       stopped(rows),
+      touching(rows),
       radius(rows),
       infeasible(rows),
       goal(rows, {kNone, kNone, kNone}),
@@ -113,6 +117,9 @@ void restart_row(const World& world, State& state, int row) {
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
   state.control[row] = state.initial_control[row];
   state.twist[row] = state.command[row] = {};
+  state.drive[row] = world.matter[i].driven ? state.control[row] : Vec3{};
+  state.contact_time[row] = state.air_time[row] = 0.0;
+  state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
   state.radius[row] = state.scenes[w].shapes->radius[i];
   state.infeasible[row] = 0;
@@ -133,6 +140,7 @@ void restart(const World& world, State& state, int w) {
   scene.events.clear();
   scene.pairs.clear();
   if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
+  scene.contacts.clear();
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
   place_fixed(world, state, w);
   evaluate(world, state, w, true);
@@ -145,6 +153,7 @@ void draw_scene(const World& world, State& state, int w) {
   scene.moving.resize(scene.shapes->size[0]);
   scene.sweep.reset(world.moving);
   scene.fixed = nullptr;
+  scene.bodies = nullptr;
   state.failed_placement[w] = -1;
   if (!world.placements.empty()) place_randomly(world, state, w);
   restart(world, state, w);
@@ -190,6 +199,14 @@ void draw_wander_goal(const World& world, State& state, int w, int object) {
   state.sync_goal(row);
 }
 
+const Bodies& bodies_of(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  if (!scene.bodies) {
+    scene.bodies = world.bodies && scene.shapes == world.shapes ? world.bodies : make_bodies(world, *scene.shapes);
+  }
+  return *scene.bodies;
+}
+
 void moved(const World& world, State& state, int row) {
   if (world.is_static[row % world.objects]) place_fixed(world, state, row / world.objects);
 }
@@ -200,13 +217,18 @@ Vec2 velocity_world(const World& world, const State& state, int row) {
 }
 
 Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch) {
+  return velocity_of_control(world, state, row, state.control[row], scratch);
+}
+
+Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 control, std::vector<double>& scratch) {
   const int object = row % world.objects;
+  if (!world.matter[object].driven) return {control[0], control[1]};
   Vec3 twist = state.twist[row];
   with(world.drive[object], [&](const auto& drive) {
     Pose pose = state.pose[row];
     const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
     scratch.assign(extra, extra + state.extra_rows);
-    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), state.control[row], 0.0});
+    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0});
   });
   return {twist[0], twist[1]};
 }

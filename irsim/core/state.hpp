@@ -36,7 +36,10 @@ struct State {
   Array<Pose> pose;
   Array<double> extra;
   Array<Vec3> control, twist, command;
+  Array<Vec3> drive;                     // what the drives do, before contacts interfere (command frame)
+  Array<double> contact_time, air_time;  // since when an object touches something, or nothing [s]
   Array<std::uint8_t> given, arrived, collided, stopped;
+  Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
   Array<double> radius;
   Array<std::int32_t> infeasible;  // steps of this episode without a velocity that avoids everything
   Array<Goal> goal;                // head of the queue, x NaN without one
@@ -106,6 +109,8 @@ void refresh(const World& world, State& state);
 
 /// Build the geometry of the static objects where they stand, unless that is known.
 void place_fixed(const World& world, State& state, int w);
+/// The objects of world w as rigid bodies; made when first asked for.
+const Bodies& bodies_of(const World& world, State& state, int w);
 
 /// A pose was written from outside: the geometry of static objects follows at once, that of others with the next step.
 void moved(const World& world, State& state, int row);
@@ -113,6 +118,9 @@ void moved(const World& world, State& state, int row);
 Vec2 velocity_world(const World& world, const State& state, int row);
 /// The same, with scratch memory; the last true velocity for drives that are not native.
 Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch);
+
+/// World-frame velocity [m/s] that a control would give a row at its present pose.
+Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 control, std::vector<double>& scratch);
 
 /// Draw a goal for a wanderer.
 void draw_wander_goal(const World& world, State& state, int w, int object);

@@ -8,6 +8,7 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
     decide(world, state, w, work);  // goals renewed; behaviors -> wanted controls, all from one snapshot
     limit(world, state, w);         // speed and acceleration limits -> executed controls
     integrate(world, state, w);     // kinematics, noise -> poses
+    if (world.collision_mode == kContact) push_apart(world, state, w, work);
   }
   finish(world, state, w);       // the step counts, the history grows
   collide(world, state, w);      // broad phase, exact narrow phase, what the mode does about it

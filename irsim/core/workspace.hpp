@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/contact.hpp"
 #include "neighbors.hpp"
 #include "velocity_obstacles.hpp"
 #include "orca/crowd.hpp"
@@ -35,6 +36,7 @@ struct Workspace {
   std::vector<Vec2> velocities;  // of the objects of a world
   std::vector<double> extra;     // a row of State::extra
   Neighbors neighbors;
+  ContactBuffers contacts;
   std::vector<int> walls;  // those near
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;

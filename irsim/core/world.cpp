@@ -110,14 +110,16 @@ void check(const ObjectSpec& spec) {
   if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range needs two numbers");
   if (std::isnan(spec.angle_range[0]) || std::isnan(spec.angle_range[1]) || spec.angle_range[0] >= spec.angle_range[1])
     throw std::invalid_argument("angle_range must be an interval");
+  if (!(spec.mass > 0.0)) throw std::invalid_argument("mass must be positive");
 }
 
 }  // namespace
 
-World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> specs_,
+World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
              std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_)
     : step_time(step_time_),
       collision_mode(collision_mode_),
+      gravity(gravity_),
       copies(copies_),
       objects(static_cast<int>(specs_.size())),
       extra_rows(1),
@@ -147,6 +149,8 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
     group.push_back(s.group);
     number.push_back(s.number < 0 ? i : s.number);
     drive.push_back(s.drive);
+    matter.push_back(
+        {s.mass, s.friction, s.inertia, s.restitution, s.tau, s.driven, !s.is_static && std::isfinite(s.mass)});
     vel_min.push_back(padded(s.vel_min));
     vel_max.push_back(padded(s.vel_max));
     acce.push_back(padded(s.acce));
@@ -166,6 +170,7 @@ World::World(double step_time_, int collision_mode_, std::vector<ObjectSpec> spe
   if (fog) add_fog_beams(*this);
   if (random_shapes) return;
   shapes = make_shapes(*this, {});
+  if (collision_mode == kContact) bodies = make_bodies(*this, *shapes);
   if (random_statics) return;
   std::vector<Pose> poses;
   for (const int i : fixed_objects) poses.push_back(pose_of(specs[i].pose));

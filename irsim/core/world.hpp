@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "contact/bodies.hpp"
 #include "fog.hpp"
 #include "kinematics.gen.hpp"
 #include "scene.hpp"
@@ -32,17 +33,29 @@ struct Mount {
   std::vector<double> angle, cosine, sine;
 };
 
-enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2 };
+enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
+
+/// What contacts need to know of an object beside its shape.
+struct Matter {
+  double mass;         // [kg], may be infinite
+  double friction;     // with the ground
+  double inertia;      // [kg m^2], NaN: from shape and mass
+  double restitution;  // 0 to 1
+  double tau;          // lag of the drive [s]
+  bool driven;         // has a drive; what has none is pushed only
+  bool pushable;       // not static, of finite mass
+};
 
 struct World {
-  World(double step_time, int collision_mode, std::vector<ObjectSpec> specs, std::vector<RandomPlacement> placements,
-        int copies, std::optional<Fog> fog);
+  World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
+        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
   double step_time;    // [s]
   int collision_mode;  // CollisionMode
+  double gravity;      // [m/s^2]
   int copies;
   int objects;     // N
   int extra_rows;  // E
@@ -52,6 +65,7 @@ struct World {
   std::vector<int> group;
   std::vector<int> number;  // what draws and events call the object; equal to its id until others are taken out
   std::vector<Drive> drive;
+  std::vector<Matter> matter;
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;
   std::vector<Pose> range_low, range_high;
@@ -67,11 +81,18 @@ struct World {
   std::vector<RandomPlacement> placements;
 
   std::shared_ptr<const Shapes> shapes;  // null when some are drawn per scene
+  std::shared_ptr<const Bodies> bodies;  // of `shapes`; null until somebody needs them
   std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null when those or shapes are drawn
 
   /// Cell size of a grid that suits most of these objects.
   double cell(const Shapes& of, const std::vector<int>& ids) const;
 };
+
+/// Friction with the ground at most [N]; infinite for what has infinite mass.
+inline double ground_friction(const World& world, int object) {
+  const Matter& m = world.matter[object];
+  return m.friction > 0.0 ? m.friction * m.mass * world.gravity : 0.0;
+}
 
 /// The shapes of one scene: drawn where they are random.
 std::shared_ptr<const Shapes> make_shapes(const World& world, Key key);

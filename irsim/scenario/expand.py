@@ -128,6 +128,7 @@ def _scenery(world: WorldModel, object_id: int, shape: MapCells | Walls, name: s
         friction=world.friction,
         inertia=None,
         restitution=world.restitution,
+        drive_tau=0.0,
     )
 
 
@@ -212,7 +213,7 @@ class _Maker:
             angle_range=(angles[0], angles[0] + 2 * math.pi) if value["angle_range"] else (-math.pi, math.pi),
             goal_threshold=entry.goal_threshold,
             arrive_mode=value["arrive_mode"],
-            static=entry.static or kinematics is None,
+            static=entry.static or (kinematics is None and not (mass is not None and math.isfinite(mass))),
             unobstructed=entry.unobstructed,
             behavior=value["behavior"],
             group_behavior=value["group_behavior"],
@@ -233,8 +234,14 @@ class _Maker:
             friction=self.world.friction if value["friction"] is None else value["friction"],
             inertia=value["inertia"],
             restitution=self.world.restitution if value["restitution"] is None else value["restitution"],
+            drive_tau=self._tau(kinematics),
             tags=tuple(value["tags"]),
         )
+
+    def _tau(self, kinematics: KinematicsOptions | None) -> float:
+        if kinematics is None:
+            return 0.0
+        return self.world.drive_tau if kinematics.tau is None else kinematics.tau
 
     def _goals(self, value: dict[str, Any], placed: tuple[list[float], list[float]] | None) -> list[list[float]]:
         if value["waypoints"] is not None:

@@ -45,7 +45,7 @@ class ObjectRecord:
     angle_range: tuple[float, float]
     goal_threshold: float
     arrive_mode: Literal["position", "state"]
-    static: bool  # effective: also true without kinematics
+    static: bool  # effective: also true for what has neither kinematics nor a finite mass
     unobstructed: bool
     behavior: BaseModel | None
     group_behavior: BaseModel | None
@@ -66,6 +66,7 @@ class ObjectRecord:
     friction: float
     inertia: float | None
     restitution: float
+    drive_tau: float  # effective: kinematics first, then world
     tags: tuple[str, ...] = ()
     joined: bool = True  # follows the behavior of its group, if that has one
 

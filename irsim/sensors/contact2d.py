@@ -30,4 +30,7 @@ class Contact2d(SensorOptions):
     """Colour of marks and arrows."""
 
 
-SENSORS.register(Contact2d)
+@SENSORS.register(Contact2d)
+def contact2d(parent: Any, options: Contact2d, rng: Any) -> Any:
+    """Contacts of the last step as the object feels them: a list of :class:`irsim.contacts.ContactReport`."""
+    return parent.contact.reports

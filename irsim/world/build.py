@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ from irsim.behaviors._options import BehaviorOptions
 from irsim.maps._grid import MapCells, Walls
 from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
 from irsim.world.fog import build_fog
+from irsim.world.geometry import compound_centroid
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
 
-COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2}
+COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
 PLACEMENT_ATTEMPTS = 1000
 _ROLES = {"robot": 0, "obstacle": 1}
 _TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
@@ -71,12 +73,15 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
     return found
 
 
-def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = None) -> core.ObjectSpec:
+def build_object(
+    record: ObjectRecord, group_behavior: BehaviorOptions | None = None, *, contact: bool = False
+) -> core.ObjectSpec:
     """One object of the core's template world.
 
     Args:
         record: The object.
         group_behavior: What drives its group (:func:`group_behaviors`); wins over its own behavior.
+        contact: Whether contacts will be resolved, which needs the centroid of compounds.
     """
     if isinstance(record.shape, (MapCells, Walls)):
         parts = record.shape.parts()
@@ -96,7 +101,11 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
         )
     behavior = None
     options = record.behavior if group_behavior is None else group_behavior
-    if options is not None and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None:
+    if (
+        options is not None
+        and record.kinematics is not None
+        and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None
+    ):
         behavior = kernel_options(BEHAVIORS, options)
     return core.ObjectSpec(
         number=record.id,
@@ -124,18 +133,28 @@ def build_object(record: ObjectRecord, group_behavior: BehaviorOptions | None = 
         behavior=behavior,
         grouped=group_behavior is not None,
         sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
+        centroid=compound_centroid(parts) if contact and len(parts) > 1 else [],
+        mass=record.mass,
+        friction=record.friction,
+        inertia=math.nan if record.inertia is None else record.inertia,
+        restitution=record.restitution,
+        tau=record.drive_tau,
+        driven=record.kinematics is not None,
     )
 
 
 def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
     """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
     groups = group_behaviors(scenario.objects)
+    contact = scenario.world.collision_mode == "contact"
     row = {record.id: index for index, record in enumerate(scenario.objects)}
     return core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
+        gravity=scenario.world.gravity,
         objects=[
-            build_object(record, groups.get(record.group) if record.joined else None) for record in scenario.objects
+            build_object(record, groups.get(record.group) if record.joined else None, contact=contact)
+            for record in scenario.objects
         ],
         placements=[
             core.RandomPlacement(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
+__all__ = ["compound_centroid", "core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
 
 _QUADRANT_SEGMENTS = 16
 
@@ -95,3 +96,21 @@ def from_shapely(geometry: Any) -> list[core.Part]:
     if not parts:
         raise ValueError("the geometry is empty")
     return parts
+
+
+def compound_centroid(parts: Sequence[Any]) -> list[float]:
+    """Centre of the area that parts of a compound cover together, body frame; empty where a part is drawn per scene."""
+    import shapely
+
+    shapes: list[Any] = []
+    for part in parts:
+        if isinstance(part, core.Circle):
+            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_QUADRANT_SEGMENTS))
+        elif isinstance(part, core.Polygon):
+            shapes.append(shapely.Polygon(part.vertices))
+        elif isinstance(part, core.Linestring):
+            shapes.append(shapely.LineString(part.vertices))
+        else:
+            return []
+    centre = shapely.union_all(shapes).centroid
+    return [centre.x, centre.y]

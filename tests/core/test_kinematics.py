@@ -94,7 +94,7 @@ def test_static_and_stopped_objects_stay() -> None:
 
 
 def test_a_row_without_native_drive_is_left_to_the_caller() -> None:
-    world, state = scene(robot(drive=None, behavior=None, pose=[1, 2, 3]))
+    world, state = scene(robot(drive=None, driven=True, behavior=None, pose=[1, 2, 3]))
     state.twist[0] = [7, 8, 9]
     core.advance(world, state, 1)
     assert state.pose[0].tolist() == [1, 2, 3]

@@ -94,6 +94,13 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "arrive_mode": 0,
         "range_low": [0.0, 0.0, -PI],
         "range_high": [10.0, 10.0, PI],
+        "centroid": [],
+        "mass": 1.0,
+        "friction": 0.5,
+        "inertia": math.nan,
+        "restitution": 0.0,
+        "tau": 0.0,
+        "driven": overrides.get("drive", True) is not None,
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,
@@ -103,7 +110,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
 
 
 def obstacle(**overrides: Any) -> core.ObjectSpec:
-    return robot(**{"role": 1, "static": True, "drive": None, "behavior": None, **overrides})
+    return robot(**{"role": 1, "static": True, "mass": math.inf, "drive": None, "behavior": None, **overrides})
 
 
 def scene(
@@ -117,7 +124,13 @@ def scene(
 ) -> tuple[core.World, core.State]:
     """World and state of these objects; one copy per seed."""
     world = core.World(
-        step_time=step_time, collision_mode=mode, objects=objects, placements=placements, copies=len(seeds), fog=fog
+        step_time=step_time,
+        collision_mode=mode,
+        gravity=9.81,
+        objects=objects,
+        placements=placements,
+        copies=len(seeds),
+        fog=fog,
     )
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 

@@ -25,6 +25,7 @@ LAYERS = (
     actions
     batch
     body
+    contacts
     current
     env
     env_access
@@ -39,6 +40,7 @@ LAYERS = (
     hooks
     info
     map_view
+    matter
     navigation
     object_avoidance
     object_base

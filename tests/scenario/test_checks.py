@@ -175,8 +175,6 @@ def test_finds(data: dict[str, Any], severity: str, code: str, path: tuple[str |
 
 
 LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
-    ({"world": {"collision_mode": "contact"}}, ("world", "collision_mode")),
-    ({"world": {"control_mode": "keyboard"}}, ("world", "control_mode")),
     (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
 ]
 

@@ -20,6 +20,8 @@ inline void diff(const DiffOptions&, const Motion& m) {
   m.twist[2] = m.control[1];
 }
 
+inline Rows rows(const DiffOptions&) { return {1, 1}; }
+
 inline Vec3 deviation(const DiffOptions& options, Vec3 control) { return velocity_deviation(options.alpha, control); }
 
 inline Vec3 follow(const DiffOptions&, const Wish& wish) {

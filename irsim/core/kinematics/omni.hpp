@@ -19,6 +19,8 @@ inline void omni(const OmniOptions&, const Motion& m) {
   m.twist[2] = 0.0;
 }
 
+inline Rows rows(const OmniOptions&) { return {2, -1}; }
+
 inline Vec3 deviation(const OmniOptions& options, Vec3) {
   return {{std::sqrt(options.alpha[0]), std::sqrt(options.alpha[1]), 0.0}};
 }

@@ -20,6 +20,8 @@ inline void omni_angular(const OmniAngularOptions&, const Motion& m) {
   m.twist[2] = m.control[2];
 }
 
+inline Rows rows(const OmniAngularOptions&) { return {2, 2}; }
+
 inline Vec3 deviation(const OmniAngularOptions& options, Vec3) {
   return {{std::sqrt(options.alpha[0]), std::sqrt(options.alpha[1]), std::sqrt(options.alpha[2])}};
 }

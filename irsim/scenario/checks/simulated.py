@@ -27,8 +27,6 @@ def check(context: Context) -> Iterator[Finding]:
     name = getattr(world.obstacle_map, "name", None)
     if name is not None and not _computed(MAPS, name):
         yield _not_yet(("world", "obstacle_map"), f"maps of the kind '{name}'")
-    if world.collision_mode == "contact":
-        yield _not_yet(("world", "collision_mode"), "pushing and sliding contacts")
     seen: set[tuple[Any, ...]] = set()
     for path, feature in _uses(context):
         if (path, feature) not in seen:

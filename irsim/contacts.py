@@ -1,0 +1,145 @@
+"""Contacts of ``collision_mode: contact``: records of the last step, and what an object feels of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from irsim.simulation import Simulation
+    from irsim.views import ObjectView
+
+__all__ = ["Contact", "Contact2D", "ContactReport", "contacts_of"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Contact:
+    """Two objects that were pushed apart, or rested against each other, in the last step.
+
+    Attributes:
+        a, b: The objects; ``a`` has the lower id.
+        normal: (2,) unit vector from ``b`` to ``a``, world frame.
+        depth: Deepest overlap that was found [m].
+        point: (2,) middle of what overlapped, world frame [m].
+        force: What pushed them apart [N].
+    """
+
+    a: ObjectView
+    b: ObjectView
+    normal: Floats
+    depth: float
+    point: Floats
+    force: float
+
+
+@dataclass(eq=False)
+class ContactReport:
+    """A contact as one of its objects sees it: ``normal`` points to that object."""
+
+    other: ObjectView
+    point: Floats
+    normal: Floats
+    depth: float
+    force: float
+
+
+class Contact2D:
+    """What an object feels: contacts of the last step. Every object has one as ``contact``.
+
+    Attributes:
+        parent: The object.
+        force_scale, marker_size, linewidth, alpha, color: How a ``contact2d`` of the scenario is drawn.
+    """
+
+    sensor_type = "contact2d"
+
+    def __init__(self, parent: ObjectView, options: Any = None) -> None:
+        if options is None:
+            from irsim.sensors.contact2d import Contact2d
+
+            options = Contact2d()
+        self.parent = parent
+        self.options = options
+        self.obj_id = parent.id
+        self.force_scale: float = options.force_scale
+        self.marker_size: float = options.marker_size
+        self.linewidth: float = options.linewidth
+        self.alpha: float = options.alpha
+        self.color: Any = options.color
+
+    @property
+    def records(self) -> list[Contact]:
+        """The contacts of the last step that involve the object."""
+        return [c for c in contacts_of(self.parent._simulation, self.parent.world) if self.parent in (c.a, c.b)]
+
+    @property
+    def reports(self) -> list[ContactReport]:
+        """The same, seen from the object."""
+        mine = self.parent
+        return [
+            ContactReport(c.b, c.point, c.normal, c.depth, c.force)
+            if c.a is mine
+            else ContactReport(c.a, c.point, -c.normal, c.depth, c.force)
+            for c in self.records
+        ]
+
+    @property
+    def partners(self) -> list[ObjectView]:
+        """The objects touched, each once."""
+        return list(dict.fromkeys(report.other for report in self.reports))
+
+    @property
+    def force(self) -> Floats:
+        """(2, 1) sum of the contact forces on the object, world frame [N]."""
+        total = np.zeros((2, 1))
+        for report in self.reports:
+            total[:, 0] += report.force * report.normal
+        return total
+
+    @property
+    def in_contact(self) -> bool:
+        """Whether the object touched something in the last step."""
+        return bool(self._touching & 1)
+
+    @property
+    def started(self) -> bool:
+        """Whether the last step began a contact."""
+        return self._touching & 3 == 1
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last step ended all contact."""
+        return self._touching & 3 == 2
+
+    @property
+    def contact_time(self) -> float:
+        """How long the object has touched something [s]."""
+        return float(self.parent._simulation.state.contact_time[self.parent.row])
+
+    @property
+    def air_time(self) -> float:
+        """How long the object has touched nothing [s]."""
+        return float(self.parent._simulation.state.air_time[self.parent.row])
+
+    def step(self, state: Any = None) -> None:
+        """Nothing: contacts are found by the step of the world."""
+
+    @property
+    def _touching(self) -> int:
+        return int(self.parent._simulation.state.touching[self.parent.row])
+
+
+def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
+    """The contacts of the last step of one world, in the order in which they were found."""
+    from irsim.views import views
+
+    objects = views(simulation, world)
+    return [
+        Contact(objects[a], objects[b], np.array([nx, ny]), depth, np.array([x, y]), force)
+        for a, b, nx, ny, depth, x, y, force in simulation.state.contacts(world)
+    ]

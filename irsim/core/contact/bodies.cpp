@@ -1,0 +1,130 @@
+#include "contact/bodies.hpp"
+
+#include <array>
+
+#include "contact/triangulate.hpp"
+#include "geometry/predicates.hpp"
+#include "spec.hpp"
+#include "world.hpp"
+
+namespace irsim {
+namespace {
+
+bool is_convex(const std::vector<Vec2>& ring) {
+  const std::size_t n = ring.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (turn_of(ring[k], ring[(k + 1) % n], ring[(k + 2) % n]) < 0.0) return false;
+  }
+  return true;
+}
+
+void add_piece(Bodies& bodies, const Vec2* vertices, int count, double radius) {
+  bodies.pieces.push_back({static_cast<int>(bodies.vertices.size()), count, radius});
+  for (int k = 0; k < count; ++k) {
+    const Vec2 along = vertices[(k + 1) % count] - vertices[k];
+    const double length = norm(along);
+    bodies.vertices.push_back(vertices[k]);
+    bodies.normals.push_back(length > 0.0 ? Vec2{along.y, -along.x} * (1.0 / length) : Vec2{});
+  }
+}
+
+/// What lies behind one side of a convex room; `turn` as the ring goes.
+void add_wall(Bodies& bodies, Vec2 a, Vec2 b, double turn) {
+  constexpr double kThick = 10.0;  // [m]
+  const Vec2 along = (b - a) * (1.0 / norm(b - a)), out = Vec2{along.y, -along.x} * (turn < 0.0 ? -1.0 : 1.0);
+  const Vec2 from = a - along * kThick, to = b + along * kThick, away = out * kThick;
+  std::vector<Vec2> wall = {from, from + away, to + away, to};
+  if (twice_area(wall) < 0.0) std::reverse(wall.begin(), wall.end());
+  add_piece(bodies, wall.data(), 4, 0.0);
+}
+
+void add_part(Bodies& bodies, const Part& part, const Vec2* vertices) {
+  const Vec2* begin = vertices + part.first;
+  if (part.kind == Kind::circle) return add_piece(bodies, begin, 1, part.radius);
+  const int edges = part.last - part.first;
+  if (part.kind == Kind::cells) return;
+  if (part.kind == Kind::room) {
+    for (int k = 0; k < edges; ++k) add_wall(bodies, begin[k], begin[k + 1], part.turn);
+    return;
+  }
+  if (part.kind == Kind::linestring) {
+    for (int k = 0; k < edges; ++k) add_piece(bodies, begin + k, 2, 0.0);
+    return;
+  }
+  for (const std::vector<Vec2>& piece : convex_pieces({begin, begin + edges})) {
+    add_piece(bodies, piece.data(), static_cast<int>(piece.size()), 0.0);
+  }
+}
+
+struct Measure {
+  double size = 0.0;   // area, or length of lines
+  Vec2 moment;         // its first moment
+  double polar = 0.0;  // of a polygon: second moment about the origin
+};
+
+Measure measure(const Part& part, const Vec2* vertices) {
+  const Vec2* begin = vertices + part.first;
+  if (part.kind == Kind::circle) {
+    const double area = kPi * part.radius * part.radius;
+    return {area, *begin * area, 0.0};
+  }
+  Measure sum;
+  for (int k = 0; k < part.last - part.first; ++k) {
+    const Vec2 a = begin[k], b = begin[k + 1];
+    if (part.kind == Kind::linestring) {
+      const double length = norm(b - a);
+      sum.size += length;
+      sum.moment = sum.moment + (a + b) * (0.5 * length);
+    } else {
+      const double c = part.turn * cross(a, b);
+      sum.size += c / 2.0;
+      sum.moment = sum.moment + (a + b) * (c / 6.0);
+      sum.polar += c * (dot(a, a) + dot(a, b) + dot(b, b)) / 12.0;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::vector<Vec2>> convex_pieces(std::vector<Vec2> ring) {
+  if (twice_area(ring) < 0.0) std::reverse(ring.begin(), ring.end());
+  if (is_convex(ring)) return {ring};
+  std::vector<std::vector<Vec2>> pieces;
+  for (const Triangle& t : triangulate(ring)) pieces.push_back({ring[t[0]], ring[t[1]], ring[t[2]]});
+  return pieces;
+}
+
+std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shapes) {
+  auto bodies = std::make_shared<Bodies>();
+  for (int i = 0; i < world.objects; ++i) {
+    const Vec2* vertices = shapes.vertices.data() + shapes.body[i].vertex;
+    const int parts = shapes.part_count(i);
+    Measure whole;
+    for (int p = 0; p < parts; ++p) {
+      const Part& part = shapes.parts[shapes.body[i].part + p];
+      add_part(*bodies, part, vertices);
+      const Measure m = measure(part, vertices);
+      whole.size += m.size;
+      whole.moment = whole.moment + m.moment;
+      whole.polar += m.polar;
+    }
+    bodies->cells.push_back(shapes.is_map(i) ? shapes.parts[shapes.body[i].part].cells : nullptr);
+    bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
+    Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
+    const std::vector<double>& given = world.specs[i].centroid;
+    if (given.size() == 2) centre = {given[0], given[1]};
+    bodies->centroid.push_back(centre);
+    const Matter& matter = world.matter[i];
+    bodies->inverse_mass.push_back(matter.pushable ? 1.0 / matter.mass : 0.0);
+    double per_mass = 0.5 * shapes.radius[i] * shapes.radius[i];
+    const bool polygon = parts == 1 && shapes.parts[shapes.body[i].part].kind == Kind::polygon && whole.size > 0.0;
+    if (polygon) per_mass = whole.polar / whole.size - squared(centre);
+    bodies->gyration2.push_back(per_mass);
+    const double inertia = std::isnan(matter.inertia) ? matter.mass * per_mass : matter.inertia;
+    bodies->inverse_inertia.push_back(matter.pushable && inertia > 0.0 ? 1.0 / inertia : 0.0);
+  }
+  return bodies;
+}
+
+}  // namespace irsim
