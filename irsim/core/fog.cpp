@@ -6,6 +6,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kFarthest = 1e9;  // [m]
+
 struct Cells {
   std::uint8_t* explored;
   const Fog& fog;
@@ -38,6 +40,7 @@ struct Cells {
   void along(Vec2 from, Vec2 beam, double range) const {
     const double step = 0.5 * std::min(cell.x, cell.y);
     const auto [low, high] = over(from, beam);
+    if (!(low <= high && high < kFarthest)) return;  // beside the world, or so far away that steps drown in rounding
     const double last = std::min(range, high + step);
     for (double k = std::max(0.0, std::floor(low / step)); k * step < last; k += 1.0) mark(from + beam * (k * step));
     mark(from + beam * range);
@@ -45,6 +48,7 @@ struct Cells {
 
   /// The cells whose centre is within reach and within half an opening angle of the heading.
   void sector(const Pose& pose, double angle, double reach) const {
+    if (!(std::fabs(pose.x) < kFarthest && std::fabs(pose.y) < kFarthest && reach >= 0.0)) return;
     const auto index = [](double at, double size, int count) { return clip(std::floor(at / size), 0.0, count - 1.0); };
     const Vec2 at = pose.position() - origin;
     const int i0 = static_cast<int>(index(at.x - reach, cell.x, fog.columns));

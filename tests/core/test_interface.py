@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from irsim import _core as core
-from tests.core.worlds import DRIVES, circle, command, everything, lidar, line, obstacle, polygon, robot, scene
+from tests.core.worlds import DRIVES, circle, command, everything, fmcw, lidar, line, obstacle, polygon, robot, scene
 
 OPTIONS = [
     core.DiffOptions,
@@ -126,13 +126,21 @@ def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
                 static=data.draw(st.booleans()),
                 wander=data.draw(st.booleans()),
                 loop=data.draw(st.booleans()),
-                sensors=[lidar(data.draw(st.sampled_from([0, 1, 7])), range_max=data.draw(WILD), noise=True)],
+                sensors=[
+                    data.draw(st.sampled_from([lidar, fmcw]))(
+                        data.draw(st.sampled_from([0, 1, 7])), range_max=data.draw(WILD), noise=True
+                    )
+                ],
             )
         )
-    world, state = scene(*objects, mode=1)
+    views = [core.FogView(object=k, angle=3.0, reach=2.0, occlusion=bool(k % 2)) for k in range(len(objects))]
+    fog = core.Fog(origin=[0, 0], size=[60, 60], columns=12, rows=9, carriers=range(len(objects)), views=views)
+    world, state = scene(*objects, mode=1, fog=fog)
     command(state, [0.1, 0.0], *([data.draw(WILD)] * 3 for _ in objects[1:]))
     core.advance(world, state, 3)
     state.refresh()
+    for row in range(len(objects)):
+        state.in_view(row, data.draw(WILD), data.draw(WILD), data.draw(st.booleans()))
     assert np.isfinite(state.pose[0]).all()
     state.reset(np.ones(1, np.uint8), True)
 
