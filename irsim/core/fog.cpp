@@ -13,8 +13,8 @@ struct Cells {
   const Fog& fog;
   Vec2 origin, cell;
 
-  void mark(Vec2 p) const {
-    const double i = std::floor((p.x - origin.x) / cell.x), j = std::floor((p.y - origin.y) / cell.y);
+  /// The cell at a point, in cells from the origin.
+  void mark(double i, double j) const {
     if (i >= 0.0 && j >= 0.0 && i < fog.columns && j < fog.rows) {
       explored[static_cast<std::size_t>(i) * fog.rows + static_cast<std::size_t>(j)] = 1;
     }
@@ -42,8 +42,10 @@ struct Cells {
     const auto [low, high] = over(from, beam);
     if (!(low <= high && high < kFarthest)) return;  // beside the world, or so far away that steps drown in rounding
     const double last = std::min(range, high + step);
-    for (double k = std::max(0.0, std::floor(low / step)); k * step < last; k += 1.0) mark(from + beam * (k * step));
-    mark(from + beam * range);
+    const double x = (from.x - origin.x) / cell.x, dx = beam.x * step / cell.x;
+    const double y = (from.y - origin.y) / cell.y, dy = beam.y * step / cell.y;
+    for (double k = std::max(0.0, std::floor(low / step)); k * step < last; k += 1.0) mark(x + k * dx, y + k * dy);
+    mark(x + beam.x * range / cell.x, y + beam.y * range / cell.y);
   }
 
   /// The cells whose centre is within reach and within half an opening angle of the heading.

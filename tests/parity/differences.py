@@ -38,6 +38,11 @@ DIFFERENCES = {
         "make(), which evaluates them in the reference too; only the status before the first step is left out.",
         ("status",),
     ),
+    "D18": Difference(
+        "An object is seen when any part of it lies in the field of view; the reference looks at where its bounding "
+        "circle ends and can miss a large one straight ahead. Everything that the reference sees is seen.",
+        ("in_view", "detected"),
+    ),
     "format-17": Difference(
         "Headings of the circle distribution are wrapped into [-pi, pi). They are compared modulo a full turn.",
         ("state", "goal", "heading"),
@@ -72,6 +77,8 @@ def apply(ids: list[str], field: str, ours: np.ndarray, trace: np.ndarray) -> tu
     ours = ours.copy()
     if "D12" in ids and field == "status":
         ours, trace = ours[1:], trace[1:]
+    if "D18" in ids and field.startswith(("in_view", "detected")):
+        ours[~trace] = False
     if "format-17" in ids and field == "heading":
         ours = turned(ours, trace)
     elif "format-17" in ids and field in ("state", "goal"):

@@ -35,6 +35,7 @@ inline int velocity_rows(const FmcwLidar2dOptions&) { return 1; }
 /// A hit whose (noisy) range is outside the band is no measurement: its velocity is 0.
 inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
+  if (n == 0) return;
   // of a scan: n range errors, n direction errors, n velocity errors
   const std::uint64_t first_draw = 3 * s.scan_number() * static_cast<std::uint64_t>(n);
   const Fan fan = cast_beams(options, s, first_draw + n);
