@@ -92,8 +92,11 @@ def once(env: Any) -> dict[str, np.ndarray]:
         "max_speed": [float(o.max_speed) for o in objects],
     }
     for o in objects:
-        if o.vertices is not None:
+        if o.shape != "map" and o.vertices is not None:
             facts[f"vertices_{o.id}"] = np.array(o.vertices, dtype=float)
+    world = env._world
+    if world.grid_map is not None:
+        facts.update(grid_map=world.grid_map, cells=world.obstacle_positions, cell_size=world.reso)
     keys = ("angle_min", "angle_max", "angle_increment", "time_increment", "scan_time", "range_min", "range_max")
     for index, robot in enumerate(env.robot_list):
         if robot.lidar is not None:

@@ -11,6 +11,7 @@ recorded they are data: the tests never need the reference implementation.
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib.metadata import version
 from pathlib import Path
@@ -24,6 +25,7 @@ VERSION = "2.12.0"
 def main(names: list[str]) -> int:
     """Record; the number of scenarios that failed."""
     sys.path.insert(0, str(HERE))
+    os.chdir(HERE / "scenarios")  # where the pictures of maps are
     import yaml
     from play import play
 
