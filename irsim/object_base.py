@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import count
 from typing import Any, Literal
 
 from irsim.current import last_used
@@ -81,12 +80,6 @@ class ObjectBase(ObjectView, metaclass=_AnyObject):
         set_views(simulation, [self])
         if env is not None:
             self.surroundings = env._objects
-
-    @staticmethod
-    def reset_id_iter(start: int = 0, step: int = 1) -> None:
-        """Let the ids of new objects of the environment used last begin anew."""
-        if (env := last_used()) is not None:
-            env.env_param.id_iter = count(start, step)
 
 
 def _empty(**keys: Any) -> ResolvedScenario:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.current import last_used
 from irsim.world.geometry import from_shapely, touching, touching_circle
 
 if TYPE_CHECKING:
@@ -163,6 +165,28 @@ class ObjectStatus:
             geometry: shapely polygon or line, or a collection of them, in the body frame.
         """
         self._simulation.reshape(self.row, from_shapely(geometry))
+
+    # what it belongs to ----------------------------------------------------------------------------------------------
+    @property
+    def env_param(self) -> Any:
+        """``env_param`` of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "env_param", None)
+
+    @property
+    def world_param(self) -> Any:
+        """``world_param`` of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "world_param", None)
+
+    @property
+    def logger(self) -> Any:
+        """The logger of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "logger", None)
+
+    @staticmethod
+    def reset_id_iter(start: int = 0, step: int = 1) -> None:
+        """Let the ids of new objects of the environment used last begin anew."""
+        if (env := last_used()) is not None:
+            env.env_param.id_iter = count(start, step)
 
     # what behaviors are given ----------------------------------------------------------------------------------------
     @property

@@ -31,6 +31,10 @@ PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
 """Reads the sensors that are its own, in the worlds of the mask (None: all); called after the native sensors."""
 
 
+def _nobody() -> None:
+    """The owner of a simulation that no environment has made."""
+
+
 class Simulation:
     """``copies`` worlds of one scenario; row ``w * objects + i`` is object i of world w.
 
@@ -60,6 +64,7 @@ class Simulation:
         scene_drawn: Called with the indices of worlds that have begun their next scene.
         report: Told once about what goes wrong in code of users and does not end the run.
         revision: Grows whenever objects come, go or change their shape.
+        owner: Gives the environment it belongs to, or None.
         user: Whose draws ``rng`` gives: 0 those of an environment; an object on its own has a number of its own.
 
     Raises:
@@ -90,6 +95,7 @@ class Simulation:
         self._history = history
         self._reseeded = False
         self.user = 0
+        self.owner: Callable[[], Any] = _nobody
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
         self._check_placement()

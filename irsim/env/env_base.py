@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
+from weakref import ref
 
 from irsim.actions import assign_actions
 from irsim.current import use
@@ -131,6 +132,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         seed = fresh_seed() if chosen is None else check_seed(chosen)
         simulation = Simulation(scenario, [seed], history=True)
         simulation.report = self.logger.error_once
+        simulation.owner = ref(self)
         attach_python(simulation)
         self.scenario, self.step_mode, self.seed, self._simulation = scenario, mode, seed, simulation
         self._originals = views(simulation)

@@ -1,5 +1,6 @@
 """Helpers of scripts: angles, frames, polygons, lists, random numbers."""
 
+from irsim.env_messages import resolve_message_targets
 from irsim.util.angles import (
     WrapToPi,
     WrapToRegion,
@@ -28,12 +29,14 @@ from irsim.util.shapes import (
     random_point_range,
 )
 from irsim.util.values import (
+    bind_env,
     file_check,
     find_duplicates,
     find_file,
     find_object_by_identity,
     is_2d_list,
     normalize_actions,
+    plot_only,
     time_it,
     time_it2,
     to_numpy,
@@ -42,6 +45,7 @@ from irsim.util.values import (
 __all__ = [
     "WrapToPi",
     "WrapToRegion",
+    "bind_env",
     "cross_product",
     "diff_to_omni",
     "dist_hypot",
@@ -56,9 +60,11 @@ __all__ = [
     "is_convex_and_ordered",
     "normalize_actions",
     "omni_to_diff",
+    "plot_only",
     "random_point_range",
     "random_uniform",
     "relative_position",
+    "resolve_message_targets",
     "rng",
     "set_seed",
     "time_it",

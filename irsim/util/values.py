@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.current import last_used
+from irsim.current import last_used, use
 from irsim.log import Logger
 
 __all__ = [
+    "bind_env",
     "check_choice",
     "check_number",
     "check_unknown_kwargs",
@@ -39,6 +40,7 @@ __all__ = [
     "log_warning",
     "log_warning_once",
     "normalize_actions",
+    "plot_only",
     "points_to_xy_list",
     "time_it",
     "time_it2",
@@ -300,6 +302,27 @@ def normalize_actions(func: Function) -> Function:
         return func(self, slots)
 
     return step
+
+
+def bind_env(method: Function) -> Function:
+    """A decorator of methods of an environment: it is then the one used last."""
+
+    @functools.wraps(method)
+    def bound(self: Any, *args: Any, **kwargs: Any) -> Any:
+        use(self)
+        return method(self, *args, **kwargs)
+
+    return bound
+
+
+def plot_only(method: Function) -> Function:
+    """A decorator of methods of an environment that do nothing in headless mode."""
+
+    @functools.wraps(method)
+    def drawn(self: Any, *args: Any, **kwargs: Any) -> Any:
+        return None if self.headless else method(self, *args, **kwargs)
+
+    return drawn
 
 
 # files, time, log ----------------------------------------------------------------------------------------------------

@@ -24,8 +24,11 @@ NAMES = {
     "irsim.world.object_base": "ObjectBase ObjectInfo ObstacleInfo",
     "irsim.world.object_group": "ObjectGroup",
     "irsim.world.object_factory": "ObjectFactory",
+    "irsim.world.map": "Map EnvGridMap FogMap ObstacleMap GridMapGenerator ImageGridGenerator PerlinGridGenerator "
+    "resolve_obstacle_map build_grid_from_generator",
     "irsim.world.sensors": "Lidar2D FMCWLidar2D SensorFactory",
-    "irsim.util": "WrapToPi WrapToRegion relative_position distance dist_hypot omni_to_diff diff_to_omni time_it "
+    "irsim.util": "bind_env plot_only resolve_message_targets "
+    "WrapToPi WrapToRegion relative_position distance dist_hypot omni_to_diff diff_to_omni time_it "
     "time_it2 transform_point_with_state vertices_transform geometry_transform is_convex_and_ordered "
     "gen_inequal_from_vertex cross_product random_point_range file_check find_file is_2d_list",
     "irsim.util.util": "WrapTo2Pi get_transform to_numpy traj_to_xy_list points_to_xy_list convert_list_length "

@@ -140,6 +140,19 @@ def test_sensors_look_again(make: Make) -> None:
     assert (env.robot.get_lidar_scan()["ranges"] != before).any()
 
 
+def test_what_it_belongs_to(make: Make) -> None:
+    env = make(TEXT)
+    assert env.robot.world_param is env.world_param
+    assert env.robot.env_param is env.env_param
+    assert env.robot.logger is env.logger
+    made = env.create_robot()
+    assert made.logger is None
+    env.add_object(made)
+    assert made.logger is env.logger
+    env.reload()
+    assert env.robot.world_param is env.world_param
+
+
 def test_random_goals(make: Make) -> None:
     env = make(TEXT, seed=3)
     robot = env.robot

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = [
+    "EnvGridMap",
     "FogMap",
     "GridMapGenerator",
     "ImageGridGenerator",
+    "Map",
     "ObstacleMap",
     "PerlinGridGenerator",
     "build_grid_from_generator",
@@ -15,9 +17,11 @@ __all__ = [
 ]
 
 _HOMES = {
+    "EnvGridMap": "irsim.navigation.map",
     "FogMap": "irsim.world.fog",
     "GridMapGenerator": "irsim.maps._generators",
     "ImageGridGenerator": "irsim.maps._generators",
+    "Map": "irsim.navigation.map",
     "ObstacleMap": "irsim.map_view",
     "PerlinGridGenerator": "irsim.maps._generators",
     "build_grid_from_generator": "irsim.maps._generators",
