@@ -6,8 +6,8 @@
 
 #include "contact/contact.hpp"
 #include "neighbors.hpp"
-#include "velocity_obstacles.hpp"
 #include "orca/crowd.hpp"
+#include "velocity_obstacles.hpp"
 
 namespace irsim {
 
