@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Literal
 
 import typer
 
@@ -11,10 +12,17 @@ from irsim.cli.options import Json
 
 __all__ = ["templates"]
 
+_SHEET_STEPS = 50
+_OVERLAYS: tuple[Literal["goals", "paths", "sensors"], ...] = ("goals", "paths", "sensors")
+
 
 def templates(
     words: Annotated[
         list[str] | None, typer.Argument(help="Only templates about these words.", show_default=False)
+    ] = None,
+    sheet: Annotated[
+        Path | None,
+        typer.Option(help="Draw them, each some seconds after its start, into one picture.", show_default=False),
     ] = None,
     json_output: Json = False,
 ) -> None:
@@ -22,6 +30,16 @@ def templates(
     from irsim.templates import find
 
     found = find(words or ())
+    if sheet is not None:
+        from irsim.render.sheet import contact_sheet
+        from irsim.snapshot import snapshot
+        from irsim.templates import scenario_file
+
+        steps = [(template.name, scenario_file(template.name)) for template in found]
+        pictures = ((name, snapshot(path, seed=1, steps=_SHEET_STEPS, overlays=_OVERLAYS).png) for name, path in steps)
+        typer.echo(f"wrote {contact_sheet(pictures, sheet)}", err=json_output)
+        if not json_output:
+            return
     if json_output:
         listed = [template.model_dump(mode="json", exclude={"text", "sets"}) for template in found]
         typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))

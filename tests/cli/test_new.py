@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from PIL import Image
 import yaml
 
 from irsim import resources
@@ -90,4 +91,16 @@ def test_templates_are_listed(irsim: Run) -> None:
     ],
 )
 def test_templates_are_found_by_the_words_of_users(irsim: Run, words: list[str], expected: str) -> None:
-    assert [template["name"] for template in json.loads(irsim("templates", "--json", *words).stdout)] == [expected]
+    found = [template["name"] for template in json.loads(irsim("templates", "--json", *words).stdout)]
+    assert expected in found
+    assert len(found) <= 8
+
+
+def test_a_contact_sheet_of_templates(irsim: Run, tmp_path: Path) -> None:
+    result = irsim("templates", "parking", "--sheet", str(tmp_path / "sheet.png"))
+    assert result.exit_code == 0
+    with Image.open(tmp_path / "sheet.png") as sheet:
+        assert sheet.width > 1000
+        colors = sheet.convert("RGB").getcolors(1 << 20)
+    assert colors is not None
+    assert len(colors) > 100
