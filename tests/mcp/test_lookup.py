@@ -149,4 +149,4 @@ async def test_names_are_completed(empty: Path) -> None:
     async with connected(empty) as client:
         ref = ResourceTemplateReference(type="ref/resource", uri="irsim://templates/{name}")
         found = await client.complete(ref, {"name": "name", "value": "c"})
-    assert found.completion.values == ["car-park", "circle-swap", "corridor-passing", "crossing"]
+    assert {"car-park", "circle-swap", "corridor-passing", "crossing"} <= set(found.completion.values)
