@@ -11,7 +11,10 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.lib._worlds import behavior_options, dash, decide, decide_among
-from irsim.lib.behavior.behavior_registry import behaviors_map
+from irsim.lib.algorithm.rvo import reciprocal_vel_obs
+from irsim.lib.algorithm.social_force_model import social_force_model
+from irsim.lib.behavior.behavior_registry import behaviors_map, register_behavior
+from irsim.util import WrapToPi, relative_position, vel_world2diff, vel_world2omni
 
 __all__ = [
     "AckerDash",
@@ -21,6 +24,7 @@ __all__ = [
     "OmniDash",
     "OmniRVO",
     "SFMVelocity",
+    "WrapToPi",
     "beh_acker_dash",
     "beh_diff_dash",
     "beh_diff_rvo",
@@ -29,6 +33,12 @@ __all__ = [
     "beh_omni_dash",
     "beh_omni_rvo",
     "beh_omni_sfm",
+    "reciprocal_vel_obs",
+    "register_behavior",
+    "relative_position",
+    "social_force_model",
+    "vel_world2diff",
+    "vel_world2omni",
 ]
 
 Floats = NDArray[np.float64]
