@@ -30,7 +30,7 @@ LIMIT = 5.0  # longest episode, in times the straight way takes
 BEHAVIORS: dict[str, dict[str, Any]] = {
     "orca": {"neighborDist": 10.0, "maxNeighbors": 10, "timeHorizon": 5.0, "timeHorizonObst": 5.0, "maxSpeed": SPEED},
     "rvo": {"vxmax": SPEED, "vymax": SPEED},
-    "sfm": {"vmax": SPEED},
+    "sfm": {"vmax": SPEED, "safety_radius": RADIUS + 0.1},
 }
 DRIVES: dict[str, dict[str, Any]] = {
     "omni": {"kinematics": {"name": "omni"}, "vel_max": [SPEED, SPEED]},
@@ -193,7 +193,7 @@ def main() -> None:
             for robots in arguments.robots:
                 out = swap(robots, behavior, drive, range(arguments.seeds), arguments.options, arguments.threads)
                 print(table_row(behavior, drive, out), flush=True)
-    print(LEGEND)
+    print(LEGEND, flush=True)
 
 
 if __name__ == "__main__":
