@@ -292,3 +292,20 @@ def test_turning_and_shifting_the_world_turns_and_shifts_the_answer() -> None:
         return np.asarray(state.command[:6, :2].copy())
 
     np.testing.assert_allclose(answer(True), answer(False), atol=1e-9)
+
+
+@pytest.mark.parametrize("drive", ["steer", "angular"])
+def test_a_car_that_faces_a_wall_backs_off_if_it_can_reverse(drive: str) -> None:
+    wall = obstacle(parts=[rectangle(0.2, 2.0)], pose=[1.0, 0.0, 0.0])
+    for vel_min, moves in ((-1.0, True), (0.0, False)):
+        world, state = scene(
+            agent((0.4, 0.0, 0.1), (0.4, 4.0), drive, vel_min=[vel_min, -1.0, 0.0], vel_max=[1.0, 1.0, 0.0]),
+            wall,
+            mode=1,
+        )
+        reversed_once = False
+        for _ in range(300):
+            core.advance(world, state, 1)
+            reversed_once |= bool(state.control[0, 0] < 0)
+            assert not state.collided[0]
+        assert reversed_once == moves

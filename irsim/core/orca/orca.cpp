@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kLeastSpeed = 1e-6;  // slower wishes are rounding [m/s]
 constexpr double kCarAngle = 1.2;     // farther off its heading a car does not look for a velocity [rad]
+constexpr double kCarStuck = 0.1;     // share of its speed below which a car backs off
+constexpr double kCarBack = 0.3;      // share of its speed at which it wants to back off
+constexpr double kCarTurn = 0.5;      // largest steering angle while it backs off [rad]
 constexpr double kCarCreep = 0.2;     // least share of a wanted speed at which a car drives on to be able to turn
 
 /// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
@@ -85,6 +88,24 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
     if (rate < 0.0) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
   }
   return most;
+}
+
+/// Controls of a car whose way ahead is blocked: back as far as what is behind allows, turning toward `preferred`.
+/// False when that is no faster than `ahead` [m/s]. The first two planes are those of `face_ahead`, which are turned
+/// round.
+bool back_off(const AckerOptions& car, const World& world, const State& state, int row, double speed, int hard,
+              double ahead, Vec2 preferred, OrcaCrowd& all, Vec3& control) {
+  const Vec2 heading = state.heading(row), behind = heading * -1.0;
+  for (int k = 0; k < 2; ++k) all.planes[k].direction = all.planes[k].direction * -1.0;
+  Vec2 found;
+  choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, behind * (kCarBack * speed),
+                  all.scratch, found);
+  const double back = std::min(dot(found, behind), fastest_along(behind, all.planes.data(), hard));
+  if (back <= ahead) return false;
+  const double psi = state.extra[static_cast<std::size_t>(row) * state.extra_rows];
+  const double target = -clip(std::atan2(cross(heading, preferred), dot(heading, preferred)), -kCarTurn, kCarTurn);
+  control = {{-back, car.mode == Steering::steer ? target : (target - psi) / world.step_time, 0.0}};
+  return true;
 }
 
 /// Whether `viewer` is shown an object of another group.
@@ -179,9 +200,17 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     Turning turning = turning_for(world, i, squared(velocity - preferred) > 0.0);
     // the way it faces may lead into a wall even if the way it wants to go does not
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
-    intents[k] = car != nullptr
-                     ? Intent::of_control(car_control(*car, world, state, row, velocity, turning.max_forward))
-                     : Intent::of_velocity(velocity, turning);
+    if (car != nullptr) {
+      Vec3 control;
+      const double ahead = std::min(norm(velocity), turning.max_forward);
+      const bool stuck = ahead < kCarStuck * norm(preferred) && world.vel_min[i][0] < 0.0;
+      if (!stuck || !back_off(*car, world, state, row, speed, hard, ahead, preferred, all, control)) {
+        control = car_control(*car, world, state, row, velocity, turning.max_forward);
+      }
+      intents[k] = Intent::of_control(control);
+    } else {
+      intents[k] = Intent::of_velocity(velocity, turning);
+    }
     intents[k].infeasible = !free;
   }
 }
