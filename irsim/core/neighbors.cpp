@@ -8,7 +8,7 @@
 namespace irsim {
 namespace {
 
-constexpr std::size_t kFew = 32;  // so few are looked at one by one
+constexpr std::size_t kFew = 64;  // so few are looked at one by one
 
 bool is_line(const Shapes& shapes, int object) {
   return shapes.parts[shapes.body[object].part].kind == Kind::linestring;

@@ -61,8 +61,13 @@ void cut(double edge, bool above, int count, int& low, int& high, Holds&& holds)
   }
 }
 
+/// Rows low .. high of a column.
+struct Rows {
+  int low, high;
+};
+
 /// Rows of the column at x that a cone blocks.
-VelocityObstacles::Span blocked_rows(const Cone& cone, double x, const Axis& y) {
+Rows blocked_rows(const Cone& cone, double x, const Axis& y) {
   int low = 0, high = y.count - 1;
   const double across = x - cone.apex.x, inverse = 1.0 / y.spacing;
   const auto row_of = [&](Vec2 edge) { return (cone.apex.y + edge.y * across / edge.x - y.first) * inverse; };
@@ -81,14 +86,17 @@ VelocityObstacles::Span blocked_rows(const Cone& cone, double x, const Axis& y) 
   return {low, high};
 }
 
-/// First row from j on, in direction `step`, that no span covers.
-int next_free(const std::vector<VelocityObstacles::Span>& spans, int j, int step) {
-  bool moved = true;
-  while (moved) {
-    moved = false;
-    for (const auto& span : spans) {
-      if (span.low <= j && j <= span.high) j = step > 0 ? span.high + 1 : span.low - 1, moved = true;
-    }
+/// First row of the column at x from j on, in direction `step`, that no cone blocks; beyond the column if there is
+/// none. Cones that block go to the front: they are likely to block the next column, too.
+int next_free(std::vector<Cone>& cones, double x, const Axis& y, int j, int step) {
+  while (j >= 0 && j < y.count) {
+    const Vec2 w{x, y.at(j)};
+    std::size_t k = 0;
+    while (k < cones.size() && !cones[k].blocks(w)) ++k;
+    if (k == cones.size()) return j;
+    const Rows rows = blocked_rows(cones[k], x, y);
+    j = step > 0 ? rows.high + 1 : rows.low - 1;
+    if (k > 0) std::swap(cones[k], cones[k / 2]);
   }
   return j;
 }
@@ -97,15 +105,10 @@ Best nearest_free(VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desir
   Best best;
   const int middle = y.nearest(desired.y);
   const auto column = [&](int i, double dx2) {
-    o.spans.clear();
     const double at = x.at(i);
-    for (const Cone& cone : o.cones) {
-      const auto span = blocked_rows(cone, at, y);
-      if (span.low <= span.high) o.spans.push_back(span);
-    }
     for (const int step : {1, -1}) {
       for (int j = step > 0 ? middle : middle - 1;; j += step) {
-        j = next_free(o.spans, j, step);
+        j = next_free(o.cones, at, y, j, step);
         if (j < 0 || j >= y.count) break;
         const double dy = y.at(j) - desired.y, cost = dx2 + dy * dy;
         if (cost > best.cost) break;
@@ -128,7 +131,7 @@ double urgency(const VelocityObstacles& o, Vec2 w, bool walls) {
       urgent = 1.0 / kAtOnce;
       continue;
     }
-    const double speed2 = squared(w * 2.0 - other.sum) / (other.gap * other.gap);
+    const double speed2 = squared(w * 2.0 - other.sum) * other.inverse2;
     if (speed2 >= most) most = speed2, first = &other;
   }
   if (first != nullptr) urgent = std::max(urgent, (norm(w * 2.0 - first->sum) + kStandstill) / first->gap);
@@ -142,36 +145,81 @@ double urgency(const VelocityObstacles& o, Vec2 w, bool walls) {
   return urgent;
 }
 
-/// No sample of the grid is less urgent than this.
-double least_urgency(const VelocityObstacles& o, const Axis& x, const Axis& y) {
-  double least = 0.0;
-  for (const Approach& other : o.approaches) {
-    if (other.gap == 0.0) {
-      least = std::max(least, 1.0 / kAtOnce);
-      continue;
-    }
-    const Vec2 to = other.sum * 0.5;
-    const Vec2 near{clip(to.x, x.first, x.at(x.count - 1)), clip(to.y, y.first, y.at(y.count - 1))};
-    least = std::max(least, 2.0 * norm(near - to) / other.gap);
-  }
-  return least * (1.0 - 1e-9);
-}
+/// Search for the least penalty: blocks of samples that cannot hold it are left out as a whole.
+class Penalties {
+ public:
+  Penalties(const VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor, bool walls)
+      : o_(obstacles), x_(x), y_(y), desired_(desired), factor_(factor), walls_(walls) {}
 
-Best least_penalty(const VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desired, double factor, bool walls) {
-  Best best;
-  const double least = factor * least_urgency(o, x, y);
-  const auto worth = [&](double distance2) { return least + std::sqrt(distance2) <= best.cost; };
-  outwards(x, desired.x, worth, [&](int i, double dx2) {
-    outwards(
-        y, desired.y, [&](double dy2) { return worth(dx2 + dy2); },
-        [&](int j, double dy2) {
-          const Vec2 w{x.at(i), y.at(j)};
-          if (!walls && o.walled(w)) return;
-          best.offer(factor * urgency(o, w, walls) + std::sqrt(dx2 + dy2), i, j);
-        });
-  });
-  return best;
-}
+  Best best() {
+    const Block all{0, x_.count, 0, y_.count};
+    visit(all, least(all));
+    return best_;
+  }
+
+ private:
+  static constexpr int kLeaf = 2;  // samples along each side of a block that is looked at one by one
+  struct Block {
+    int i0, i1, j0, j1;  // columns i0 .. i1 - 1, rows j0 .. j1 - 1
+  };
+
+  /// No sample of a block costs less: both terms by their distance from its box.
+  double least(const Block& b) const {
+    const Vec2 low{x_.at(b.i0), y_.at(b.j0)}, high{x_.at(b.i1 - 1), y_.at(b.j1 - 1)};
+    const auto beyond2 = [&](Vec2 p) {
+      const double dx = std::max(std::max(low.x - p.x, p.x - high.x), 0.0);
+      const double dy = std::max(std::max(low.y - p.y, p.y - high.y), 0.0);
+      return dx * dx + dy * dy;
+    };
+    double urgent = 0.0, most2 = 0.0;
+    for (const Approach& other : o_.approaches) {
+      if (other.gap == 0.0) {
+        urgent = 1.0 / kAtOnce;
+      } else {
+        most2 = std::max(most2, beyond2(other.sum * 0.5) * other.inverse2);
+      }
+    }
+    urgent = std::max(urgent, 2.0 * std::sqrt(most2));
+    return (factor_ * urgent + std::sqrt(beyond2(desired_))) * (1.0 - 1e-12);
+  }
+
+  void visit(const Block& b, double bound) {
+    if (bound > best_.cost) return;
+    const int columns = b.i1 - b.i0, rows = b.j1 - b.j0;
+    if (columns <= kLeaf && rows <= kLeaf) {
+      for (int i = b.i0; i < b.i1; ++i)
+        for (int j = b.j0; j < b.j1; ++j) look_at(i, j);
+      return;
+    }
+    Block one = b, two = b;
+    if (columns >= rows) {
+      one.i1 = two.i0 = b.i0 + columns / 2;
+    } else {
+      one.j1 = two.j0 = b.j0 + rows / 2;
+    }
+    const double first = least(one), second = least(two);
+    if (first <= second) {
+      visit(one, first);
+      visit(two, second);
+    } else {
+      visit(two, second);
+      visit(one, first);
+    }
+  }
+
+  void look_at(int i, int j) {
+    const Vec2 w{x_.at(i), y_.at(j)};
+    if (!walls_ && o_.walled(w)) return;
+    best_.offer(factor_ * urgency(o_, w, walls_) + norm(w - desired_), i, j);
+  }
+
+  const VelocityObstacles& o_;
+  const Axis &x_, &y_;
+  Vec2 desired_;
+  double factor_;
+  bool walls_;
+  Best best_;
+};
 
 }  // namespace
 
@@ -232,8 +280,8 @@ bool VelocityObstacles::walled(Vec2 w) const {
 
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor) {
   Best best = nearest_free(obstacles, x, y, desired);
-  if (best.i < 0) best = least_penalty(obstacles, x, y, desired, factor, false);
-  if (best.i < 0) best = least_penalty(obstacles, x, y, desired, factor, true);
+  if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, false).best();
+  if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, true).best();
   return {x.at(best.i), y.at(best.j)};
 }
 

@@ -18,8 +18,9 @@ struct Cone {
 
 /// What the penalty reads of a disc: the time to reach it at velocity w is gap / ||2 w - sum||.
 struct Approach {
-  Vec2 sum;    // of both velocities [m/s]
-  double gap;  // length of the tangent to the disc [m], 0 inside
+  Vec2 sum;         // of both velocities [m/s]
+  double gap;       // length of the tangent to the disc [m], 0 inside
+  double inverse2;  // 1 / gap^2
 };
 
 /// A segment of a linestring, seen from the ego.
@@ -58,11 +59,6 @@ struct VelocityObstacles {
   std::vector<Stretch> stretches;
   std::vector<Barrier> barriers;
   double horizon = 0;  // a wall is in the way if it is reached sooner [s]
-
-  struct Span {
-    int low, high;
-  };
-  std::vector<Span> spans;  // blocked rows of one column
 
   void clear();
   bool walled(Vec2 w) const;

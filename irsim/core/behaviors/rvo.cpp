@@ -31,8 +31,8 @@ void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, Vel
   Cone cone{{}, rotate(towards, {cosine, sine}), rotate(towards, {cosine, -sine})};
   cone.apex = apex_of(options.mode, ego, disc, cone, sine, cosine);
   obstacles.cones.push_back(cone);
-  obstacles.approaches.push_back(
-      {ego.velocity + disc.velocity, std::sqrt(std::max(distance * distance - radius * radius, 0.0))});
+  const double gap2 = std::max(distance * distance - radius * radius, 0.0);
+  obstacles.approaches.push_back({ego.velocity + disc.velocity, std::sqrt(gap2), 1.0 / gap2});
 }
 
 /// Cone from the clockwise end of a segment to the other, wider by the radius of the ego at both.
