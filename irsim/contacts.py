@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim import _core as core
+
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["Contact", "Contact2D", "ContactReport", "contacts_of"]
+__all__ = ["Contact", "Contact2D", "ContactReport", "contact_step", "contacts_of"]
 
 Floats = NDArray[np.float64]
 
@@ -143,3 +146,34 @@ def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
         Contact(objects[a], objects[b], np.array([nx, ny]), depth, np.array([x, y]), force)
         for a, b, nx, ny, depth, x, y, force in simulation.state.contacts(world)
     ]
+
+
+def contact_step(
+    pairs: Sequence[tuple[ObjectView, ObjectView]],
+    iterations: int = 32,
+    slop: float = 1e-6,
+    margin: float = 0.0,
+    step_time: float | None = None,
+) -> list[Contact]:
+    """Push apart pairs of objects where they overlap, as a step with ``collision_mode: contact`` does.
+
+    Args:
+        pairs: Objects of one environment.
+        iterations: Sweeps over the pairs, at most.
+        slop: Gap that is left between them [m].
+        margin: Not needed here; pairs that are apart cost nothing.
+        step_time: Period in which they are pushed apart [s], from which velocities follow; None is the world's.
+
+    Raises:
+        ValueError: Objects of several environments.
+    """
+    if not pairs:
+        return []
+    first = pairs[0][0]
+    simulation, world = first._simulation, first.world
+    if any((o._simulation, o.world) != (simulation, world) for pair in pairs for o in pair):
+        raise ValueError("contact_step takes objects of one environment")
+    numbers = [(a.row % simulation.objects, b.row % simulation.objects) for a, b in pairs]
+    dt = simulation.world.step_time if step_time is None else float(step_time)
+    core.contact_step(simulation.world, simulation.state, world, numbers, int(iterations), float(slop), dt)
+    return contacts_of(simulation, world)

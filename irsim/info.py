@@ -47,7 +47,7 @@ class ObjectInfo(_Extensible):
     name: str
     mass: float
     friction: float
-    inertia: float | None
+    inertia: float
     restitution: float
 
     @classmethod
@@ -72,7 +72,7 @@ class ObjectInfo(_Extensible):
             view.name,
             record.mass,
             record.friction,
-            record.inertia,
+            view.inertia,
             record.restitution,
         )
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.contacts import Contact2D
 from irsim.render.beams import draw_scan
 from irsim.render.bodies import Body, Pose, arrow, box, ellipse, place, read_body
+from irsim.render.forces import draw_forces
 from irsim.render.palette import Palette
 from irsim.render.scene import (
     Circle,
@@ -244,6 +246,11 @@ class SceneBuilder:
                 continue
             lidars = ((i, sensor) for i, sensor in enumerate(view.sensors) if isinstance(sensor, Lidar2D))
             scene.beams += [draw_scan(lidar, i) for i, lidar in lidars]
+            for i, sensor in enumerate(view.sensors):
+                if isinstance(sensor, Contact2D):
+                    marks, beams = draw_forces(sensor, i)
+                    scene.marks += marks
+                    scene.beams += beams
 
     def _fog(self) -> Fog | None:
         explored = self.simulation.state.explored[self.world]

@@ -19,7 +19,7 @@ from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line,
 
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "layer_key", "rgba"]
 
-_PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow")
+_PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow", "contact")
 """Order of drawing within one zorder."""
 
 _RANK = 1e-3

@@ -103,8 +103,7 @@ class Solver {
       body.placed = false;
       body.driven = matter.driven && matter.pushable;
       body.passive = !matter.driven && matter.pushable;
-      const Vec3& twist = state_.twist[first_ + i];
-      body.start_velocity = {twist[0], twist[1]};
+      body.start_velocity = world_.is_static[i] ? Vec2{} : velocity(i);
     }
     for (const int i : world_.moving) place(i);
   }
@@ -344,10 +343,10 @@ class Solver {
     return moved;
   }
 
-  /// A driver with enough traction keeps its motion while the body gives way; otherwise it stalls.
+  /// A driver with enough traction keeps its motion while the body can be shifted; otherwise it stalls.
   void settle(int driver, Share& to_driver, int body, Share& to_body, Vec2 push) {
     const bool strong = ground_friction(world_, driver) >= load(body, push);
-    if (strong && to_body.total() > 0.0) {
+    if (strong && to_body.translation > 1e-9 * bodies_.inverse_mass[body]) {
       to_driver = {};
     } else {
       to_body = {};
@@ -405,9 +404,10 @@ class Solver {
     }
   }
 
-  Vec2 velocity(int object) const {
-    const Vec3& twist = state_.twist[first_ + object];
-    return {twist[0], twist[1]};
+  /// What the control gives at the present pose, world frame [m/s].
+  Vec2 velocity(int object) {
+    const int row = first_ + object;
+    return velocity_of_control(world_, state_, row, state_.control[row], work_.neighbors.extra);
   }
 
   /// A driver that pushes into a contact cannot press harder than its traction.

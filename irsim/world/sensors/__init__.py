@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["FMCWLidar2D", "Lidar2D", "SensorFactory"]
+__all__ = ["Contact2D", "FMCWLidar2D", "Lidar2D", "SensorFactory"]
 
 _HOMES = {
+    "Contact2D": "irsim.contacts",
     "FMCWLidar2D": "irsim.scans",
     "Lidar2D": "irsim.scans",
     "SensorFactory": "irsim.sensor_factory",
