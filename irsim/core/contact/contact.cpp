@@ -343,13 +343,13 @@ class Solver {
     return moved;
   }
 
-  /// A driver with enough traction keeps its motion while the body can be shifted; otherwise it stalls.
+  /// A driver with too little traction stalls; one with enough keeps its motion while the body can be shifted. A body
+  /// that can only turn and a strong driver both give way.
   void settle(int driver, Share& to_driver, int body, Share& to_body, Vec2 push) {
-    const bool strong = ground_friction(world_, driver) >= load(body, push);
-    if (strong && to_body.translation > 1e-9 * bodies_.inverse_mass[body]) {
-      to_driver = {};
-    } else {
+    if (ground_friction(world_, driver) < load(body, push)) {
       to_body = {};
+    } else if (to_body.translation > 1e-9 * bodies_.inverse_mass[body]) {
+      to_driver = {};
     }
   }
 
