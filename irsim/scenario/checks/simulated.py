@@ -24,8 +24,6 @@ from irsim.scenario.findings import Finding, error
 def check(context: Context) -> Iterator[Finding]:
     """Features without a kernel, and modes that nothing implements."""
     world = context.scenario.world
-    if world.collision_mode == "contact" and (world.obstacle_map is not None or world.boundary != "none"):
-        yield _not_yet(("world", "collision_mode"), "pushing against maps and walls round the world")
     name = getattr(world.obstacle_map, "name", None)
     if name is not None and not _computed(MAPS, name):
         yield _not_yet(("world", "obstacle_map"), f"maps of the kind '{name}'")
