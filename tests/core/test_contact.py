@@ -6,6 +6,9 @@ import math
 
 import numpy as np
 import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from irsim import _core as core
 from tests.core.worlds import (
@@ -279,3 +282,42 @@ def test_mass_properties_are_exact() -> None:
         assert per_mass == pytest.approx(gyration2)
         assert i == pytest.approx(1 / (2.0 * gyration2))
         assert (x, y) == pytest.approx(tuple(centre), abs=1e-12)
+
+
+# anything ------------------------------------------------------------------------------------------------------------
+def outline_of(state: core.State, row: int) -> shapely.Geometry:
+    kinds = state.parts(row)
+    if kinds == ["circle"]:
+        x, y, radius = state.circle(row, 0, True)
+        return shapely.Point(x, y).buffer(radius, quad_segs=64)
+    return shapely.Polygon(state.vertices(row, 0, True))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000), st.sampled_from(["diff", "omni", "omni_angular", "steer"]))
+def test_whatever_is_pushed_stays_apart_and_the_same_every_time(seed: int, name: str) -> None:
+    rng = np.random.default_rng(seed)
+    shapes = [circle(0.2), rectangle(0.4, 0.3), polygon((-0.2, -0.2), (0.25, -0.1), (0.0, 0.25))]
+    bodies = [
+        body(
+            parts=[shapes[int(rng.integers(3))]],
+            pose=[1.0 + 0.75 * (k % 3), 0.75 * (k // 3 - 1) + rng.uniform(-0.1, 0.1), rng.uniform(-3, 3)],
+            mass=float(rng.uniform(0.3, 3.0)),
+            friction=float(rng.uniform(0.1, 0.6)),
+        )
+        for k in range(9)
+    ]
+    objects = [driver(drive=DRIVES[name], extra=[0.0]), *bodies]
+
+    def run() -> core.State:
+        world, state = scene(*objects, mode=CONTACT)
+        drive(world, state, 25, [0.8, 0.05, 0.02][: 3 if name == "omni_angular" else 2])
+        return state
+
+    state = run()
+    assert np.isfinite(state.pose).all()
+    placed = [outline_of(state, row) for row in range(len(objects))]
+    for i, one in enumerate(placed):
+        for other in placed[:i]:
+            assert not one.buffer(-1e-3).intersects(other), (i, seed)
+    assert state.pose.tolist() == run().pose.tolist()
