@@ -272,3 +272,19 @@ def test_maps_are_drawn(tmp_path) -> None:
     [grid] = SceneBuilder(env.simulation).build().as_dict()["grids"]
     assert sum(grid["runs"][1::2]) == env.simulation.state.cells(1).count
     assert sum(grid["runs"]) == 7 * 11
+
+
+@pytest.mark.parametrize("goal", [(15, 7), (-3, 7), (5, 12), (5, -9)])
+def test_walls_round_the_world_hold_in_contact_mode(tmp_path, goal) -> None:
+    (tmp_path / "room.yaml").write_text(
+        "world: {width: 12, height: 8, collision_mode: contact, boundary: walls}\n"
+        "robot: {kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [5, 4, 0],\n"
+        f"        behavior: {{name: dash}}, goal: [{goal[0]}, {goal[1]}]}}\n"
+    )
+    env = irsim.make(tmp_path / "room.yaml", headless=True, log_level="ERROR")
+    for _ in range(150):
+        env.step()
+    x, y = env.robot.state[:2, 0]
+    assert 0.3 - 1e-3 <= x <= 11.7 + 1e-3
+    assert 0.3 - 1e-3 <= y <= 7.7 + 1e-3
+    assert min(x, 12 - x, y, 8 - y) < 0.31

@@ -44,7 +44,8 @@ void add_part(Bodies& bodies, const Part& part, const Vec2* vertices) {
   const int edges = part.last - part.first;
   if (part.kind == Kind::cells) return;
   if (part.kind == Kind::room) {
-    for (int k = 0; k < edges; ++k) add_wall(bodies, begin[k], begin[k + 1], part.turn);
+    const double turn = twice_area({begin, begin + edges}) > 0.0 ? 1.0 : -1.0;
+    for (int k = 0; k < edges; ++k) add_wall(bodies, begin[k], begin[k + 1], turn);
     return;
   }
   if (part.kind == Kind::linestring) {
