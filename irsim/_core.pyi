@@ -118,6 +118,11 @@ class PrmOptions(_Options):
 Cells = tuple[tuple[float, float], tuple[float, float], int, int]
 """Origin, cell size [m], columns, rows."""
 
+class RouteOptions(_Options):
+    """How an object plans a path for its behavior to follow; 0 for `replan` and `lookahead` is none."""
+
+    def __init__(self, *, planner: object, replan: float, lookahead: float) -> None: ...
+
 class Terrain:
     """What stands in the way of planning, within a rectangle that footprints must not leave.
 
@@ -315,6 +320,7 @@ class ObjectSpec:
         target_roles: 0 all, 1 robots, 2 obstacles.
         behavior: Options of a native behavior, or None.
         grouped: The behavior is that of the group: it decides for all members at once.
+        route: How it plans a path for its behavior to follow, or None.
         sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
         centroid: x, y in the body frame, what contacts turn it about; empty follows from the shape, where overlaps
             of parts count twice.
@@ -354,6 +360,7 @@ class ObjectSpec:
         target_roles: int,
         behavior: _Options | None,
         grouped: bool,
+        route: RouteOptions | None,
         sensors: Sequence[_Options | None],
         centroid: Sequence[float],
         mass: float,
@@ -423,6 +430,7 @@ class World:
     objects: int  # N
     step_time: float
     collision_mode: int  # may be set at run time
+    extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m], where paths are looked for; may be set
     def scans(self) -> list[tuple[int, int, int]]:
         """(object, first beam, beams) of each native sensor of one world, in order.
 
@@ -508,6 +516,8 @@ class State:
     def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
     def set_initial(self, row: int, pose: bool, control: bool) -> None:
         """Make the row's present pose (and extra rows), or control, or both, those that reset() returns to."""
+    def route(self, row: int) -> Floats | None:
+        """(K, 2) corners of the path that a row follows, from where it was planned to the goal; None without one."""
     def initial_state(self, row: int) -> Floats:
         """(3 + E,) pose and extra rows that reset() returns to."""
     def velocity_world(self, row: int) -> tuple[float, float]:

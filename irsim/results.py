@@ -80,8 +80,8 @@ class ValidationReport(Result):
 class EventRecord(Result):
     """Something that happened in an episode."""
 
-    kind: Literal["arrival", "waypoint", "collision"]
-    """``collision`` is reported when contact begins."""
+    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    """``collision`` is reported when contact begins; ``no_path`` when ``follow`` finds none."""
     time: float
     """Simulated time [s]."""
     step: int

@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
 from irsim.registry import BEHAVIORS, PLANNERS
 from irsim.selection import Select
@@ -13,7 +14,13 @@ from irsim.units import Meters, Seconds
 
 
 class Follow(BehaviorOptions):
-    """Get there through the maze: plan on the map inflated by the footprint, then follow the path."""
+    """Get there through the maze: plan on the map inflated by the footprint, then follow the path.
+
+    The path keeps clear of everything that stands still and is not `unobstructed`: obstacles, cells of the map, walls
+    round the world. It is planned once per goal, and anew when the object has been pushed off it. Commands that would
+    run into something that stands still are slowed down. Without a path the object stands still, and a `no_path` event
+    says so.
+    """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}
 
@@ -23,11 +30,11 @@ class Follow(BehaviorOptions):
     local: Annotated[
         Any, Select(BEHAVIORS, exclude=("follow",), short=(None, "name")), Field(validate_default=True)
     ] = "dash"
-    """Behavior that drives from one path point to the next: its name, or a mapping with its name and options."""
+    """Behavior that drives from one corner to the next: its name, or a mapping with its name and options."""
     replan: Annotated[Seconds, Field(gt=0)] | None = None
-    """Plan anew after this time; null plans once per goal."""
+    """Plan anew after this time; null plans once per goal, and when the path is lost."""
     lookahead: Annotated[Meters, Field(gt=0)] | None = None
-    """Distance along the path of the point headed for; null is the object's goal threshold beyond the next corner."""
+    """Distance along the path of the point headed for; null is the farthest corner in sight."""
 
 
-BEHAVIORS.register(Follow)
+BEHAVIORS.register(Follow, kernel=core.RouteOptions)

@@ -352,6 +352,17 @@ void bind_state(nb::module_& m) {
       .def("goals", &goals_of, nb::arg("row"))
       .def("set_goals", &set_goals, nb::arg("row"), nb::arg("goals"), nb::arg("init"))
       .def("set_initial", &set_initial, nb::arg("row"), nb::arg("pose"), nb::arg("control"))
+      .def(
+          "route",
+          [](const S& self, int row) -> nb::object {
+            self.check_row(row);
+            if (self.state.routes.empty() || self.state.routes[row].path.empty()) return nb::none();
+            const std::vector<Vec2>& path = self.state.routes[row].path;
+            std::vector<double> out;
+            for (const Vec2& p : path) out.insert(out.end(), {p.x, p.y});
+            return own(std::move(out), {path.size(), 2});
+          },
+          nb::arg("row"))
       .def("initial_state", &initial_state, nb::arg("row"))
       .def("velocity_world", &velocity_of, nb::arg("row"))
       .def("drive_velocity_world", &drive_velocity_of, nb::arg("row"))

@@ -6,6 +6,7 @@
 namespace irsim {
 
 void bind_world(nb::module_& m) {
+  bind_fields<RouteOptions>(m, "RouteOptions");
   bind_fields<ObjectSpec>(m, "ObjectSpec");
   bind_fields<RandomPlacement>(m, "RandomPlacement");
   bind_fields<FogView>(m, "FogView");
@@ -19,6 +20,7 @@ void bind_world(nb::module_& m) {
       .def_ro("objects", &World::objects)
       .def_ro("step_time", &World::step_time)
       .def_rw("collision_mode", &World::collision_mode)
+      .def_rw("extent", &World::extent)
       .def_ro("beams_per_world", &World::beams_per_world)
       .def_ro("velocities_per_world", &World::velocities_per_world)
       .def("scans",

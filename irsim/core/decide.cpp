@@ -3,6 +3,7 @@
 
 #include "features.hpp"
 #include "phases.hpp"
+#include "route.hpp"
 
 namespace irsim {
 namespace {
@@ -62,6 +63,7 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     if (state.arrived[row]) renew(world, state, w, i);
     if (!state.given[row]) state.command[row] = {};
   }
+  find_routes(world, state, w, work);
   for (const BehaviorGroup& group : world.behaviors) {
     work.objects.clear();
     for (const int i : group.objects) {
@@ -69,16 +71,19 @@ void decide(const World& world, State& state, int w, Workspace& work) {
     }
     if (!work.objects.empty()) choose(world, state, w, group, work);
   }
+  keep_routes(world, state, w, work);
 }
 
 void decide(const World& world, State& state, int w, Workspace& work, int object) {
   work.neighbors.known = work.orca.known = false;
   state.command[w * world.objects + object] = {};
+  find_routes(world, state, w, work, object);
   for (const BehaviorGroup& group : world.behaviors) {
     if (std::find(group.objects.begin(), group.objects.end(), object) == group.objects.end()) continue;
     work.objects.assign(1, object);
     choose(world, state, w, group, work);
   }
+  keep_routes(world, state, w, work, object);
 }
 
 }  // namespace irsim

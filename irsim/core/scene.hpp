@@ -30,8 +30,8 @@ struct Fixed {
   Obstacles obstacles;        // all of these as `orca` sees them
 };
 
-enum class EventKind { arrival, waypoint, collision };
-constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision"};
+enum class EventKind { arrival, waypoint, collision, no_path };
+constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision", "no_path"};
 
 struct Event {
   EventKind kind;

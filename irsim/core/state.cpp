@@ -82,6 +82,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       fresh(worlds),
       event_count(worlds) {
   workspaces.emplace_back();
+  if (!world.routed.empty()) routes.resize(rows), target.resize(rows);
   std::copy(seeds, seeds + worlds, seed.data);
   for (int w = 0; w < worlds; ++w) {
     for (const Scan& scan : world.scans) {
@@ -124,6 +125,7 @@ void restart_row(const World& world, State& state, int row) {
   state.radius[row] = state.scenes[w].shapes->radius[i];
   state.infeasible[row] = 0;
   state.goal_draws[row] = 0;
+  if (!state.routes.empty()) state.routes[row] = {};
   if (state.keep_history) state.history[row].clear();
   if (world.wander[i]) {
     draw_wander_goal(world, state, w, i);

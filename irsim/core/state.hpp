@@ -7,6 +7,7 @@
 
 #include "array.hpp"
 #include "random.hpp"
+#include "route.hpp"
 #include "scene.hpp"
 #include "workspace.hpp"
 #include "world.hpp"
@@ -58,6 +59,8 @@ struct State {
   std::vector<Vec2> direction;            // (R,) cosine and sine of `direction_of`
   std::vector<double> direction_of;       // (R,) the heading they belong to
   std::vector<GoalQueue> goals;           // (R,)
+  std::vector<Route> routes;              // (R,), none if nobody follows one
+  std::vector<Goal> target;               // likewise: where behaviors head
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
   std::vector<Pose> initial_pose;         // (R,)
   std::vector<double> initial_extra;
@@ -70,6 +73,8 @@ struct State {
 
   /// Scene and noise of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
+  /// Where the behavior of a row heads: its goal, or a point of its route there.
+  const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
   /// Cosine and sine of the heading of a row.
   Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
   Footprint footprint(const World& world, int w, int object) const {

@@ -23,7 +23,7 @@ Ego ego_of(const Decision& decision, int k) {
   const Disc& disc = near.discs[scene.shapes->placed[i].object];
   const Vec2 position = decision.state.pose[row].position();
   Ego ego{i, row, position, disc.velocity, {}, disc.radius + kPadding};
-  const Vec2 way = decision.state.goal[row].position() - position;
+  const Vec2 way = decision.state.destination(row).position() - position;
   const double distance = norm(way);
   if (!(distance > kAtGoal)) return ego;
   const Vec2 top = std::visit([&](const auto& drive) { return top_speeds(drive, world.vel_max[i]); }, world.drive[i]);

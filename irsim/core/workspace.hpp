@@ -7,6 +7,7 @@
 #include "contact/contact.hpp"
 #include "neighbors.hpp"
 #include "orca/crowd.hpp"
+#include "planning/problem.hpp"
 #include "velocity_obstacles.hpp"
 
 namespace irsim {
@@ -40,6 +41,8 @@ struct Workspace {
   std::vector<int> walls;  // those near
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
+  SearchMemory search;  // of planners
+  Outlines ghost;       // moving objects where they might be
 };
 
 }  // namespace irsim

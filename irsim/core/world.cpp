@@ -163,6 +163,7 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     (s.is_static ? fixed_objects : moving).push_back(i);
     if (s.role == 0) robots.push_back(i);
     if (!s.unobstructed) visible.push_back(i);
+    if (s.route && !s.is_static) routed.push_back(i);
     add_to_group(*this, i, s);
     add_scans(*this, i, s);
   }

@@ -16,8 +16,8 @@ class Event:
     """One thing that happened.
 
     Attributes:
-        kind: ``arrival`` (last goal reached), ``waypoint`` (a goal reached with more to come) or ``collision``
-            (contact of two objects begins; reported once per contact, not per step).
+        kind: ``arrival`` (last goal reached), ``waypoint`` (a goal reached with more to come), ``collision`` (contact
+            of two objects begins; reported once per contact, not per step) or ``no_path`` (``follow`` found none).
         time: Simulated time [s].
         step: Steps executed when it was seen; 0 is the initial state.
         object: Name of the object; of the first of the two for a collision.
@@ -25,7 +25,7 @@ class Event:
         x, y: Where [m, world frame]: position of the object, or a point of the contact.
     """
 
-    kind: Literal["arrival", "waypoint", "collision"]
+    kind: Literal["arrival", "waypoint", "collision", "no_path"]
     time: float
     step: int
     object: str

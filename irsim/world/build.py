@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
 from irsim.behaviors._options import BehaviorOptions
+from irsim.behaviors.follow import Follow
 from irsim.maps._grid import MapCells, Walls
-from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, SENSORS, SHAPES, Feature, Registry
+from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, PLANNERS, SENSORS, SHAPES, Feature, Registry
 from irsim.world.fog import build_fog
 from irsim.world.geometry import compound_centroid
 
@@ -99,8 +100,10 @@ def build_object(
             wheelbase=record.wheelbase or 1.0,
             psi_max=float("inf") if psi_max is None else psi_max,
         )
-    behavior = None
-    options = record.behavior if group_behavior is None else group_behavior
+    behavior = route = None
+    options: Any = record.behavior if group_behavior is None else group_behavior
+    if isinstance(options, Follow):
+        route, options = build_route(options), options.local
     if (
         options is not None
         and record.kinematics is not None
@@ -132,6 +135,7 @@ def build_object(
         target_roles=_TARGETS[record.target_roles if group_behavior is None else group_behavior.target_roles],
         behavior=behavior,
         grouped=group_behavior is not None,
+        route=route,
         sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
         centroid=compound_centroid(parts) if contact and len(parts) > 1 else [],
         mass=record.mass,
@@ -143,12 +147,22 @@ def build_object(
     )
 
 
+def build_route(options: Follow) -> core.RouteOptions:
+    """How the core plans for an object with the behavior ``follow``."""
+    resolved = {"resolution": getattr(options.planner, "resolution", None) or 0.0}
+    return core.RouteOptions(
+        planner=kernel_options(PLANNERS, options.planner, **resolved),
+        replan=options.replan or 0.0,
+        lookahead=options.lookahead or 0.0,
+    )
+
+
 def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
     """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
     groups = group_behaviors(scenario.objects)
     contact = scenario.world.collision_mode == "contact"
     row = {record.id: index for index, record in enumerate(scenario.objects)}
-    return core.World(
+    world = core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
         gravity=scenario.world.gravity,
@@ -169,3 +183,6 @@ def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
         copies=copies,
         fog=build_fog(scenario),
     )
+    x0, y0, x1, y1 = scenario.world.bounds
+    world.extent = x0, y0, x1, y1
+    return world

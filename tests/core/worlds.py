@@ -104,6 +104,7 @@ def robot(**overrides: Any) -> core.ObjectSpec:
         "target_roles": 0,
         "behavior": DASH,
         "grouped": False,
+        "route": None,
         "sensors": [],
     }
     return core.ObjectSpec(**{**options, **overrides})

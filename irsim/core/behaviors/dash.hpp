@@ -77,7 +77,7 @@ inline void dash(const DashOptions& options, const Decision& decision, Intent* i
   const World& world = decision.world;
   for (int k = 0; k < decision.count; ++k) {
     const int i = decision.objects[k], row = decision.row(k);
-    const Goal& goal = decision.state.goal[row];
+    const Goal& goal = decision.state.destination(row);
     if (std::isnan(goal.x)) {
       intents[k] = Intent::of_control({});
       continue;

@@ -30,7 +30,7 @@ double top_speed(const OrcaOptions& options, const World& world, int object) {
 /// Full speed to the goal; nothing without one, or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
 /// unequal limits leans toward the axis of the world that has the larger one.
 Vec2 preferred_velocity(const World& world, const State& state, int row, int object, double speed) {
-  const Goal& goal = state.goal[row];
+  const Goal& goal = state.destination(row);
   if (std::isnan(goal.x)) return {};
   Vec2 way = goal.position() - state.pose[row].position();
   const double distance = norm(way);

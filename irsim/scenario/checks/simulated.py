@@ -48,6 +48,9 @@ def _uses(context: Context) -> Iterator[tuple[Path, str]]:
                 continue
             if not _computed(BEHAVIORS, options.name):
                 yield (*context.entry_path(record, key), "name"), f"the behavior '{options.name}'"
+            local: Any = getattr(options, "local", None)
+            if options.name == "follow" and not _native(local):
+                yield (*context.entry_path(record, key), "local"), f"following a path with '{local.name}'"
         for index, sensor in enumerate(record.sensors):
             name: str = getattr(sensor, "name", "")
             if not _computed(SENSORS, name):
@@ -65,6 +68,11 @@ def _posed_random_parts(path: Path, shape: Any) -> Iterator[tuple[Path, str]]:
 def _computed(registry: Registry, name: str) -> bool:
     feature = registry.get(name)
     return feature is not None and feature.simulated
+
+
+def _native(options: Any) -> bool:
+    feature = BEHAVIORS.get(options.name)
+    return feature is not None and feature.kernel is not None
 
 
 def _not_yet(path: Path, what: str) -> Finding:
