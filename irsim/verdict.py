@@ -203,6 +203,10 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult) -> str:
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
+    if any(event.kind == "no_path" and event.object == robot.name for event in env.events[-_MAX_EVENTS:]) and (
+        speed < _STANDING
+    ):
+        return f"stands still {place}: there is no path to it"
     if speed >= _STANDING:
         return f"still moved at {speed:.2g} m/s, {place}"
     if record.kinematics is None:

@@ -8,14 +8,15 @@
 namespace irsim {
 namespace {
 
-constexpr double kMargin = 0.3;      // room beside a path that is wished for, as a share of the radius
-constexpr double kMostMargin = 0.3;  // [m]
-constexpr double kNear = 0.05;       // a corner this near counts as reached [m]
-constexpr double kFacing = 0.35;     // larger heading errors are turned away in place [rad]
-constexpr double kPatience = 1.0;    // between plans because the path was lost [s]
-constexpr int kTries = 10;           // of a planner that draws samples
-constexpr int kBackingSteps = 8;     // once begun
-constexpr int kMostBraking = 40;     // steps of braking looked ahead
+constexpr double kMargin = 0.3;                      // room beside a path that is wished for, as a share of the radius
+constexpr double kMostMargin = 0.3;                  // [m]
+constexpr double kShares[] = {1.0, 0.3, 0.05, 0.0};  // of the margin, tried in turn
+constexpr double kNear = 0.05;                       // a corner this near counts as reached [m]
+constexpr double kFacing = 0.35;                     // larger heading errors are turned away in place [rad]
+constexpr double kPatience = 1.0;                    // between plans because the path was lost [s]
+constexpr int kTries = 10;                           // of a planner that draws samples
+constexpr int kBackingSteps = 8;                     // once begun
+constexpr int kMostBraking = 40;                     // steps of braking looked ahead
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;
 
 /// Distances of a body from its origin: farthest, and farthest to the side.
@@ -132,21 +133,25 @@ class Follower {
     if (std::holds_alternative<OmniOptions>(world_.drive[object_])) {
       const double theta = state_.pose[row_].theta;
       const Body tight = Body::of(shapes_, object_, theta, 0.0);
-      if (!attempt(Body::of(shapes_, object_, theta, margin), tight)) attempt(tight, tight);
+      for (const double share : kShares) {
+        if (attempt(Body::of(shapes_, object_, theta, share * margin), tight, true)) break;
+      }
     } else {
       const double side = std::min(extent.side, extent.reach);
-      const Body ahead = Body::disc(side);
-      if (!attempt(Body::disc(extent.reach + margin), ahead) && !attempt(Body::disc(extent.reach), ahead) &&
-          side < extent.reach && !attempt(Body::disc(side + 0.5 * margin), ahead)) {
-        attempt(ahead, ahead);
-      }
+      const Body ahead = Body::disc(side), easy = Body::disc(side * (1.0 + 0.5 * kMargin));
+      const bool round = side == extent.reach;
+      bool found = !round && attempt(easy, ahead, false);
+      for (const double share : kShares)
+        found = found || attempt(Body::disc(extent.reach + share * margin), ahead, true);
+      found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
     }
     if (!route_.path.empty() || route_.told) return;
     route_.told = true;
     state_.log(world_, w_, EventKind::no_path, object_, -1, position());
   }
 
-  bool attempt(const Body& wide, const Body& tight) {
+  /// Look for a path for a body, wider than that for which sight is asked for; `search`: not only the straight one.
+  bool attempt(const Body& wide, const Body& tight, bool search) {
     route_.bodies.assign({wide, tight});
     const Vec2 start = position(), goal = route_.goal;
     const Box box = bounds();
@@ -155,6 +160,7 @@ class Follower {
       route_.path = {start, goal};
       return true;
     }
+    if (!search) return false;
     const std::optional<Lattice> own = lattice_of_map(world_, shapes_, box);
     const int tries = draws_samples(options_.planner) ? kTries : 1;
     for (int k = 0; k < tries && route_.path.empty(); ++k) {

@@ -19,8 +19,8 @@ struct Workspace;
 
 struct RouteOptions {
   Planner planner;
-  double replan;                 // plan anew after this time [s]; 0: only for a new goal, or when the path is lost
-  double lookahead;              // head for the point this far along the path [m]; 0: for the next corner in sight
+  double replan;     // plan anew after this time [s]; 0: only for a new goal, or when the path is lost
+  double lookahead;  // head for the point this far along the path [m]; 0: for the next corner in sight
   static constexpr auto fields() {
     return std::make_tuple(field("planner", &RouteOptions::planner), field("replan", &RouteOptions::replan),
                            field("lookahead", &RouteOptions::lookahead));

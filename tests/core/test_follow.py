@@ -1,0 +1,141 @@
+"""follow: plans once, drives along the path on every drive, stands still and says so where there is none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.scenario.opening import or_raise
+from irsim.scenario.read import read
+from irsim.simulation import Simulation
+
+WALLS = """
+  - {shape: {name: rectangle, length: 8, width: 0.2}, state: [4, 2.5, 0]}
+  - {shape: {name: rectangle, length: 8, width: 0.2}, state: [6, 5, 0]}
+  - {shape: {name: rectangle, length: 8, width: 0.2}, state: [4, 7.5, 0]}
+  - {shape: {name: circle, radius: 0.4}, state: [5, 6.2, 0]}
+  - {shape: {name: linestring, vertices: [[3, 2.6], [3, 3.6]]}, state: [0, 0, 0]}
+"""
+DRIVES = {"diff": 2, "omni": 2, "omni_angular": 3}
+
+
+def maze(
+    drive: str = "diff",
+    shape: str = "{name: circle, radius: 0.2}",
+    follow: str = "planner: astar",
+    goal: str = "[9, 9, 0]",
+    more: str = "",
+    walls: str = WALLS,
+) -> str:
+    return (
+        "world: {width: 10, height: 10}\nrobot:\n"
+        f"  - kinematics: {{name: {drive}}}\n    shape: {shape}\n    state: [1, 1, 0]\n    goal: {goal}\n"
+        f"    vel_max: {[1.0] * DRIVES.get(drive, 2)}\n    vel_min: {[-1.0] * DRIVES.get(drive, 2)}\n"
+        f"    behavior: {{name: follow, {follow}}}\n{more}obstacle:{walls}"
+    )
+
+
+def simulation(text: str, seed: int = 3) -> Simulation:
+    scenario, _ = or_raise(read(text, strict=True))
+    return Simulation(scenario, [seed])
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "{name: circle, radius: 0.2}",
+        "{name: rectangle, length: 0.6, width: 0.3}",
+        "{name: polygon, vertices: [[-0.2, -0.2], [0.3, 0], [-0.2, 0.2], [-0.1, 0]]}",
+    ],
+)
+def test_through_a_maze(drive: str, shape: str) -> None:
+    result = irsim.run(text=maze(drive, shape), seed=1, steps=1200)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+    assert result.sim_time < 45
+
+
+def test_a_car_through_a_maze() -> None:
+    shape = "{name: rectangle, length: 0.6, width: 0.3, wheelbase: 0.4}"
+    assert irsim.run(text=maze("acker", shape), seed=1, steps=1200).outcome == "success"
+
+
+@pytest.mark.parametrize("planner", ["jps", "{name: rrt, max_iter: 3000}", "{name: rrt_star, max_iter: 3000}", "prm"])
+def test_every_planner(planner: str) -> None:
+    result = irsim.run(text=maze(follow=f"planner: {planner}"), seed=1, steps=1500)
+    assert result.outcome == "success", result.reason
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+def test_slow_to_speed_up_and_brake(drive: str) -> None:
+    acce = f"    acce: {[0.5] * DRIVES[drive]}\n"
+    result = irsim.run(text=maze(drive, more=acce), seed=1, steps=1500)
+    assert result.outcome == "success", result.reason
+
+
+@pytest.mark.parametrize("drive", ["diff", "omni"])
+def test_with_orca(drive: str) -> None:
+    result = irsim.run(text=maze(drive, follow="local: orca"), seed=1, steps=1500)
+    assert result.outcome == "success", result.reason
+
+
+@pytest.mark.parametrize(("gap", "fits"), [(0.48, True), (0.39, False)])
+@pytest.mark.parametrize("drive", ["diff", "omni"])
+def test_a_gap_is_passed_if_the_robot_fits(drive: str, gap: float, fits: bool) -> None:
+    low, high = 5.05 - gap / 2, 5.05 + gap / 2
+    walls = (
+        f"\n  - {{shape: {{name: rectangle, length: 0.3, width: {low}}}, state: [5, {low / 2}, 0]}}"
+        f"\n  - {{shape: {{name: rectangle, length: 0.3, width: {10 - high}}}, state: [5, {(10 + high) / 2}, 0]}}\n"
+    )
+    result = irsim.run(text=maze(drive, walls=walls), seed=1, steps=900)
+    assert (result.outcome == "success") == fits, result.reason
+
+
+def test_no_path() -> None:
+    result = irsim.run(text=maze(goal="[4, 2.5]"), seed=1, steps=50)
+    assert result.outcome == "timeout"
+    assert [(event.kind, event.step) for event in result.events] == [("no_path", 0)]
+    assert result.robots[0].path_length == 0
+    assert "no path" in str(result.reason)
+
+
+def test_replans_only_for_a_reason() -> None:
+    sim = simulation(maze())
+    sim.step()
+    path = sim.state.route(0)
+    assert path is not None
+    assert np.allclose(path[[0, -1]], [[1, 1], [9, 9]])
+    for _ in range(20):
+        sim.step()
+    assert np.array_equal(path, sim.state.route(0))
+    sim.state.set_goals(0, [[9.0, 1.0]], False)
+    sim.step()
+    changed = sim.state.route(0)
+    assert changed is not None
+    assert np.allclose(changed[-1], [9, 1])
+    sim.reset()
+    assert sim.state.route(0) is None
+    sim.step()
+    assert np.array_equal(path, sim.state.route(0))
+
+
+def test_batches_equal_single_runs() -> None:
+    text = maze(follow="planner: {name: rrt, max_iter: 3000}")
+    scenario, _ = or_raise(read(text, strict=True))
+    together = Simulation(scenario, [3, 4, 5], threads=2)
+    together.advance(150)
+    for k, seed in enumerate((3, 4, 5)):
+        alone = simulation(text, seed)
+        alone.advance(150)
+        assert np.array_equal(alone.pose[0], together.pose[k * together.objects])
+
+
+def test_waypoints_and_loop() -> None:
+    sim = simulation(maze(follow="loop: true").replace("goal: [9, 9, 0]", "waypoints: [[9, 3.7], [1, 6.2], [1, 1]]"))
+    sim.advance(900)
+    kinds = [event[0] for event in sim.state.events(0, 0)]
+    assert kinds.count("waypoint") >= 3
+    assert "arrival" in kinds
+    assert "collision" not in kinds
