@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from PIL import Image
 import yaml
+from PIL import Image
 
 from irsim import resources
 from tests.cli.conftest import Run, parsed

@@ -89,7 +89,7 @@ def test_sane_scenarios_give_nothing(data: dict[str, Any]) -> None:
 
 @pytest.mark.parametrize("path", sorted(ROOT.glob("templates/*/scenario.yaml")), ids=lambda path: path.parent.name)
 def test_templates_give_nothing(path: Path) -> None:
-    assert findings(path) == []
+    assert [found for found in findings(path) if found[1] != "no-behavior"] == []
 
 
 CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [

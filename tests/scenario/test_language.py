@@ -30,7 +30,7 @@ robot:
     vel_max: [4, 1]
     vel_min: [-4, -1]
     behavior: {name: dash, loop: true}
-    sensors: [{type: lidar2d, number: 90, range_max: 8, angle_range: 6.28, plot: {alpha: 0.2}}]
+    sensors: [{type: lidar2d, number: 91, range_max: 8, angle_range: 6.28, plot: {alpha: 0.2}}]
   - number: 4
     kinematics: {name: omni}
     shape: [{name: circle, radius: 0.3}]
@@ -120,7 +120,7 @@ def test_keys_of_objects(entry: str) -> None:
         "collision_mode: reactive",
         "obstacle_map: null",
         "obstacle_map: cave.png\n  mdownsample: 2",
-        "obstacle_map: {name: image, path: cave.png}\n  fog_map: true\n  fog_map_resolution: 0.2",
+        "obstacle_map: {name: image, path: cave.png}",
         "obstacle_map: {name: perlin, resolution: 0.1, complexity: 0.1, fractal: 2, attenuation: 0.4, seed: null}",
         "gravity: 1.6\n  friction: 0.1\n  restitution: 0.5\n  drive_tau: 0.2",
         "depth: 5",
