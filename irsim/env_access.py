@@ -96,8 +96,9 @@ class EnvAccess:
 
     @property
     def config(self) -> dict[str, Any]:
-        """The scenario as parsed, ``custom`` included."""
-        return self.scenario.document
+        """Sections of the scenario as parsed; without ``robot`` or ``obstacle`` those are None, others empty."""
+        empty: dict[str, Any] = {"world": {}, "gui": {}, "robot": None, "obstacle": None, "custom": {}}
+        return {**empty, **self.scenario.document}
 
     def get_object_by_name(self, name: str) -> ObjectView | None:
         """The object of that name, or None."""

@@ -110,8 +110,8 @@ class EnvConfig:
 
     @property
     def parse(self) -> dict[str, Any]:
-        """Sections of the file: ``world``, ``gui``, ``robot``, ``obstacle``, ``custom``; None where it has none."""
-        return {**dict.fromkeys(("world", "gui", "robot", "obstacle", "custom")), **self._env.scenario.document}
+        """Sections of the file: ``world``, ``gui``, ``robot``, ``obstacle``, ``custom``; see ``env.config``."""
+        return self._env.config
 
     @property
     def world_name(self) -> str:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.body import column
+from irsim.current import last_used
 from irsim.map_view import grid_values
 from irsim.world.build import COLLISION_MODES
 from irsim.world.fog import FogMap, fog_resolution
@@ -95,6 +96,7 @@ class WorldView:
         self.sample_time: float = world.sample_time if world.sample_time is not None else world.step_time
         self.steps_per_sample = max(1, int(round(self.sample_time / self.step_time, 9)))
         self.plot_parse = world.plot
+        self._logger: Logger | None = None
         self._fog: FogMap | None = None
         if world.fog_map:
             resolution = fog_resolution(simulation.scenario)
@@ -124,6 +126,66 @@ class WorldView:
     def sampling(self) -> bool:
         """Whether this step is one that is drawn."""
         return self.count % self.steps_per_sample == 0
+
+    # a world by itself -----------------------------------------------------------------------------------------------
+    def step(self, objects: Any = None) -> None:
+        """Let one period pass in which nothing moves by itself; environments do this in their own ``step``.
+
+        Args:
+            objects: Accepted as it was before; the world knows what is in it.
+        """
+        self._simulation.step_external()
+
+    def reset(self) -> None:
+        """Time 0, and fog everywhere; objects stay where they are."""
+        self._simulation.count[0] = 0
+        if self._fog is not None:
+            self._simulation.state.explored[0] = 0
+
+    def gen_grid_map(self, obstacle_map: Any, mdownsample: int = 1) -> tuple[Any, Any, Any]:
+        """The grid that a value of ``obstacle_map`` stands for in this world.
+
+        Args:
+            obstacle_map: None, an array, a picture file name, or a mapping with the name of a generator.
+            mdownsample: Keep every so many rows and columns.
+
+        Returns:
+            (nx, ny) occupancies, (2, M) indices of the occupied cells, (2, M) their centres [m]; None each for None.
+        """
+        from irsim.maps._generators import resolve_obstacle_map
+
+        values = resolve_obstacle_map(obstacle_map, self.width, self.height)
+        if values is None:
+            return None, None, None
+        values = values[::mdownsample, ::mdownsample]
+        index = np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+        cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
+        return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell
+
+    def get_map(self, resolution: float = 0.1, obstacle_list: Sequence[Any] | None = None) -> Any:
+        """The world as a map to plan on; see :meth:`irsim.env.env_base.Env.get_map`.
+
+        Args:
+            resolution: Size of the cells [m].
+            obstacle_list: What stands in it besides the grid.
+        """
+        from irsim.navigation.map import world_map
+
+        low = float(self.offset[0]), float(self.offset[1])
+        return world_map(self.width, self.height, low, self.grid_map, resolution, obstacle_list)
+
+    @property
+    def logger(self) -> Logger:
+        """The logger of its environment, or of the one used last, or one of its own."""
+        owner = self._simulation.owner() or last_used()
+        if owner is not None:
+            found: Logger = owner.logger
+            return found
+        if self._logger is None:
+            from irsim.log import Logger as Own
+
+            self._logger = Own()
+        return self._logger
 
     @property
     def fog_map(self) -> FogMap | None:

@@ -16,6 +16,7 @@ from irsim.hooks import ObjectHooks
 from irsim.info import ObjectInfo, ObstacleInfo
 from irsim.matter import ObjectMatter
 from irsim.object_avoidance import ObjectAvoidance
+from irsim.object_drawing import ObjectDrawing
 from irsim.object_status import ObjectStatus
 from irsim.scans import Lidar2D
 from irsim.sensing import attach_sensors, sensors_of
@@ -30,7 +31,7 @@ __all__ = ["ObjectView", "set_views", "views"]
 Floats = NDArray[np.float64]
 
 
-class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoidance):
+class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoidance, ObjectDrawing):
     """One robot or obstacle.
 
     Arrays are columns, (n, 1), read-only snapshots: keep them as long as you like, write through ``set_state``,
@@ -340,9 +341,9 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
 
     @property
     def beh_config(self) -> dict[str, Any]:
-        """The behavior's keys, or those of the group behavior."""
+        """The behavior's keys as written, or those of the group behavior."""
         options = self.record.behavior or self.record.group_behavior
-        return {} if options is None else options.model_dump()
+        return {} if options is None else options.model_dump(exclude_unset=True)
 
     @property
     def plot_kwargs(self) -> Any:

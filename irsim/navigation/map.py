@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 import zlib
 from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
@@ -13,11 +14,13 @@ from irsim import _core as core
 from irsim.body import ObjectBody
 from irsim.navigation.outlines import body_parts, parts_of
 
-__all__ = ["OCCUPIED", "EnvGridMap", "Map", "terrain_of"]
+__all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarser", "terrain_of", "world_map"]
 
 Floats = NDArray[np.float64]
 OCCUPIED = 50
 """Cells with a larger value are occupied."""
+_COARSER, _FINER = 1.05, 0.95
+"""Resolutions this much off that of the world's grid count as equal."""
 
 
 @runtime_checkable
@@ -116,6 +119,65 @@ class Map:
     def is_collision(self, geometry: Any) -> bool:
         """Whether a shapely geometry leaves the map or meets an occupied cell or an obstacle; touching counts."""
         return terrain_of(self).collides(parts_of(geometry), (0.0, 0.0, 0.0))
+
+
+def world_map(
+    width: float,
+    height: float,
+    corner: tuple[float, float],
+    grid: Any,
+    resolution: float,
+    obstacles: Sequence[Any] | None = None,
+) -> Map:
+    """The map of a world.
+
+    Args:
+        width: Extent along x [m].
+        height: Extent along y [m].
+        corner: Lower left corner [m].
+        grid: (nx, ny) occupancies of the world, None without a grid.
+        resolution: Size of the cells [m]; those of a grid may be joined to coarser ones (occupied where one of them is)
+            but not divided; not positive: those of the grid.
+        obstacles: What stands in the world.
+    """
+    if grid is None:
+        if not resolution > 0:
+            raise ValueError("a world without a grid needs a positive resolution")
+        return Map(width, height, resolution, obstacles, None, corner)
+    own = width / grid.shape[0]
+    told = f"the grid of the world has cells of {own:g} m"
+    if not resolution > 0:
+        resolution = own
+    elif resolution > _COARSER * own:
+        warnings.warn(f"{told}: they are joined to cells of {resolution:g} m", UserWarning, stacklevel=3)
+        grid = coarser(grid, round(width / resolution), round(height / resolution))
+    elif resolution < _FINER * own:
+        warnings.warn(f"{told}: they are not divided into {resolution:g} m", UserWarning, stacklevel=3)
+        resolution = own
+    return Map(width, height, resolution, obstacles, grid, corner)
+
+
+def coarser(grid: Any, columns: int, rows: int) -> Any:
+    """The largest value of each block of cells.
+
+    Args:
+        grid: (nx, ny) values.
+        columns: Blocks along x, at most nx.
+        rows: Blocks along y, at most ny.
+
+    Returns:
+        (columns, rows) array.
+    """
+    values = np.asarray(grid)
+    columns, rows = min(max(1, columns), values.shape[0]), min(max(1, rows), values.shape[1])
+    # a cell counts for every block that it overlaps
+    for axis, count in ((0, columns), (1, rows)):
+        size = values.shape[axis]
+        first = np.arange(count) * size // count
+        last = -(-(np.arange(1, count + 1) * size) // count)
+        blocks = [np.take(values, range(a, b), axis=axis).max(axis=axis) for a, b in zip(first, last, strict=True)]
+        values = np.stack(blocks, axis=axis)
+    return values
 
 
 def terrain_of(env_map: Any) -> core.Terrain:

@@ -228,15 +228,45 @@ class SceneBuilder:
         if trail is None or trail.style is not style or trail.body is not body or trail.states > len(states):
             trail = self._trails[object_id] = _Trail(style, body)
         every = max(1, int(style.trail_freq))
-        shape = _trail_shape(body, style.trail_type)
-        fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
         for index in range(-(-trail.states // every) * every, len(states), every):
             x, y, theta = states[index].tolist()
-            stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
-            geometry = place(shape, (x, y, theta))
-            trail.marks.append(Mark(object_id, "trail", geometry, fill, stroke, style.trail_alpha, style.trail_zorder))
+            trail.marks.append(_trail_mark(object_id, body, style, (x, y, theta)))
         trail.states = len(states)
         return trail.marks[-style.keep_trail_length :]
+
+    def drawn_alone(
+        self,
+        view: ObjectView,
+        overrides: Mapping[str, Any],
+        pose: Pose | None = None,
+        goal: Sequence[float] | None = None,
+    ) -> tuple[list[Mark], list[Label], Picture | None]:
+        """Body, goal, arrow, view sector, labels and image of one object, somewhere else if asked.
+
+        Args:
+            view: The object.
+            overrides: Plot keys over its own.
+            pose: x, y [m], heading [rad]; default: where it is.
+            goal: x, y [m], heading [rad]; default: its present goal.
+        """
+        body, style = self.body(view), self.style(view, overrides)
+        placed: Pose = tuple(self.simulation.pose[view.row].tolist()) if pose is None else pose
+        heading = self._heading(view, placed) if pose is None and style.show_arrow else placed[2]
+        shown = self.simulation.goal[view.row].tolist() if goal is None else list(goal)
+        drawn = _draw(view, body, style, placed, heading, shown, (), self._has_picture)
+        return drawn.marks, drawn.labels, drawn.picture
+
+    def path_of(self, view: ObjectView, states: Floats, overrides: Mapping[str, Any]) -> Mark:
+        """The line through (N, 3 or more) states of an object."""
+        return _trajectory(view.id, self.body(view), self.style(view, overrides), states)
+
+    def trail_mark(self, view: ObjectView, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
+        """One snapshot of an object at a pose."""
+        return _trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
+
+    def grid(self, view: ObjectView) -> GridImage:
+        """The image of a map."""
+        return self._grid(view)
 
     # sensors ---------------------------------------------------------------------------------------------------------
     def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:
@@ -338,6 +368,13 @@ def _trajectory(number: int, body: Body, style: ObjectStyle, states: Floats) -> 
         round_caps=body.kind == "circle",
     )
     return Mark(number, "trajectory", Line(points), None, stroke, style.traj_alpha, style.traj_zorder)
+
+
+def _trail_mark(number: int, body: Body, style: ObjectStyle, pose: Pose) -> Mark:
+    shape = _trail_shape(body, style.trail_type)
+    fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
+    stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
+    return Mark(number, "trail", place(shape, pose), fill, stroke, style.trail_alpha, style.trail_zorder)
 
 
 def _trail_shape(body: Body, kind: str) -> Geometry:

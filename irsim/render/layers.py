@@ -17,7 +17,7 @@ from matplotlib.transforms import Affine2D
 from irsim.render.palette import Color
 from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Sector
 
-__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "layer_key", "rgba"]
+__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "rgba"]
 
 _PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow", "contact")
 """Order of drawing within one zorder."""
@@ -71,7 +71,9 @@ class MarkLayer:
         self.version += 1
         self.rested = 0
         self._marks, self._scale = list(marks), points_per_metre
-        self.artist.set_paths([*self.artist.get_paths()[:same], *(_path(mark.geometry) for mark in marks[same:])])
+        self.artist.set_paths(
+            [*self.artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])]
+        )
         self.artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
         self.artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
         widths = [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
@@ -202,7 +204,8 @@ def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:
     return np.array(levels, dtype=np.float64)
 
 
-def _path(geometry: Geometry) -> Path:
+def geometry_path(geometry: Geometry) -> Path:
+    """The outline of a mark."""
     if isinstance(geometry, Circle):
         return _scaled(_UNIT, geometry)
     if isinstance(geometry, Line):

@@ -44,6 +44,7 @@ LAYERS = (
     navigation
     object_avoidance
     object_base
+    object_drawing
     object_factory
     object_status
     observers

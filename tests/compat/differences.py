@@ -1,0 +1,5 @@
+"""Facts of the scripts that differ on purpose: script → fact → the id in :data:`irsim.compatibility.DIFFERENCES`."""
+
+KNOWN: dict[str, dict[str, str]] = {
+    "shapes": {"sizes": "D2"},  # radius of the compound, whose round part is a 64-gon there
+}
