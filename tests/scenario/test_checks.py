@@ -175,7 +175,10 @@ def test_finds(data: dict[str, Any], severity: str, code: str, path: tuple[str |
 
 
 LATER: list[tuple[dict[str, Any], tuple[str | int, ...]]] = [
-    (robot(behavior={"name": "follow", "planner": {"name": "rrt"}, "local": "dash"}), ("robot", 0, "behavior", "name")),
+    (
+        robot(shape={"name": "compound", "parts": [{"name": "polygon", "random_shape": True, "pose": [1, 0, 0]}]}),
+        ("robot", 0, "shape", "parts", 0, "pose"),
+    ),
 ]
 
 
