@@ -41,13 +41,14 @@ def extremes(template: Template) -> list[dict[str, object]]:
 
 
 SITUATIONS = [
-    *("head-on", "crossing", "overtaking", "doorway", "bottleneck", "group", "exploration", "sorting", "parking"),
-    *("mixed fleet", "wandering", "CrowdNav", "fmcw", "crowd", "training", "compound", "lidar"),
+    *("head-on", "crossing", "overtaking", "doorway", "bottleneck", "T-junction", "group", "queue", "exploration"),
+    *("pushing", "sorting", "parking", "planner", "mixed fleet", "wandering", "CrowdNav", "perlin", "image map", "fmcw"),
+    *("maze", "warehouse", "crowd", "training", "compound", "lidar"),
 ]
 
 
 def test_there_are_many() -> None:
-    assert len(ALL) >= 20
+    assert len(ALL) >= 24
 
 
 @pytest.mark.parametrize("words", SITUATIONS)
