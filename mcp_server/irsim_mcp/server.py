@@ -30,8 +30,8 @@ is one YAML document with the keys world, robot and obstacle; lengths are m, tim
 Work in this order: lookup (index, then the nearest template; for a file of the user only what you change) -> edit \
 the YAML -> validate_scenario until valid -> \
 render_snapshot and look -> run_episode -> if it failed, look at that moment, edit, and again. Do not guess keys: \
-lookup explains them, and misspelt ones are errors. What this version cannot simulate is an error too \
-(not-yet-simulated): say so instead of leaving it out.
+lookup explains them, and misspelt ones are errors. Say what cannot be done \
+instead of leaving it out.
 Scenarios are given as text (scenario_yaml) or as a file (scenario_path) inside the workspace {workspace}. The server \
 writes no files; save YAML yourself if it is to be kept. The same scenario and seed give the same result."""
 _HOUR = 3_600_000
