@@ -192,28 +192,22 @@ def terrain_of(env_map: Any) -> core.Terrain:
         (parts_of(thing), (0.0, 0.0, 0.0))
         for thing in env_map.obstacle_list
         if not getattr(thing, "unobstructed", False)
+        and not (env_map.grid is not None and getattr(thing, "shape", None) == "map")  # the grid stands for it
     ]
-    things += [([run], (0.0, 0.0, 0.0)) for run in _runs(env_map)]
+    things += [([cells], (0.0, 0.0, 0.0)) for cells in _grid(env_map)]
     terrain = core.Terrain((x, y, x + env_map.width, y + env_map.height), things)
     if isinstance(env_map, Map):
         env_map._terrain = signature, terrain
     return terrain
 
 
-def _runs(env_map: Any) -> list[Any]:
-    """Neighbouring occupied cells of each row of the grid as one rectangle."""
+def _grid(env_map: Any) -> list[Any]:
+    """The grid as a part of the core; nothing without occupied cells."""
     if env_map.grid is None:
         return []
-    occupied = np.asarray(env_map.grid) > OCCUPIED
-    edges = np.diff(np.pad(occupied.astype(np.int8), ((1, 1), (0, 0))), axis=0).T
-    rows, first = np.nonzero(edges > 0)
-    last = np.nonzero(edges < 0)[1]
-    (ox, oy), (rx, ry), _, _ = cells_of(env_map)
-    runs = []
-    for j, a, b in zip(rows.tolist(), first.tolist(), last.tolist(), strict=True):
-        x0, x1, y0, y1 = ox + a * rx, ox + b * rx, oy + j * ry, oy + (j + 1) * ry
-        runs.append(core.Polygon(vertices=[(x0, y0), (x1, y0), (x1, y1), (x0, y1)]))
-    return runs
+    occupied = np.ascontiguousarray(np.asarray(env_map.grid) > OCCUPIED, dtype=np.uint8)
+    origin, cell, _, _ = cells_of(env_map)
+    return [core.GridCells(grid=core.OccupancyGrid(occupied, origin, cell))] if occupied.any() else []
 
 
 def cells_of(env_map: Any) -> tuple[tuple[float, float], tuple[float, float], int, int]:

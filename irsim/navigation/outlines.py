@@ -53,8 +53,11 @@ def _rows(body: ObjectBody, *, world_frame: bool) -> list[Any]:
         if kind == "circle":
             x, y, radius = state.circle(row, part, world_frame)
             parts.append(core.Circle(radius=radius, center=(x, y)))
+        elif kind == "cells":
+            cells = state.cells(row)
+            parts += [] if cells is None else [core.GridCells(grid=cells)]
         else:
-            made = core.Polygon if kind == "polygon" else core.Linestring
+            made: Any = {"polygon": core.Polygon, "room": core.Room}.get(kind, core.Linestring)
             parts.append(made(vertices=state.vertices(row, part, world_frame).tolist()))
     return parts
 

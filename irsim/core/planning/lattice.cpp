@@ -29,6 +29,14 @@ bool OpenCells::free(int i, int j) {
   return known & kFree;
 }
 
+/// Whether an object is a map of which these are the cells.
+bool OpenCells::own_cells(const Shapes& shapes, int id) const {
+  if (!shapes.is_map(id)) return false;
+  const OccupancyGrid& grid = *shapes.parts[shapes.body[id].part].cells;
+  const Vec2 cell = lattice_.cell, gap = grid.origin() - lattice_.origin;
+  return norm(grid.cell() - cell) <= 1e-9 * norm(cell) && norm(gap) <= 1e-6 * norm(cell);
+}
+
 /// Whether nothing is near enough to matter for steps to and from a node, and no cells of a map but those of this very
 /// lattice (steps between its free nodes meet none of its cells: each is as large as a step).
 bool OpenCells::clear_around(int i, int j) const {
@@ -37,7 +45,8 @@ bool OpenCells::clear_around(int i, int j) const {
   const Box around{p.x + own.x0 - lattice_.cell.x, p.y + own.y0 - lattice_.cell.y, p.x + own.x1 + lattice_.cell.x,
                    p.y + own.y1 + lattice_.cell.y};
   bool clear = true;
-  space_.blockers.grid.query(around, [&](int id) { clear = clear && !space_.blockers.counts(id); });
+  space_.blockers.grid.query(
+      around, [&](int id) { clear = clear && (!space_.blockers.counts(id) || own_cells(space_.blockers.shapes, id)); });
   return clear;
 }
 

@@ -50,6 +50,7 @@ class OpenCells {
   static constexpr std::uint8_t kFreeKnown = 1, kFree = 2, kOpenKnown = 4, kOpen = 8;
   void find(int i, int j);
   bool free(int i, int j);
+  bool own_cells(const Shapes& shapes, int id) const;
   bool clear_around(int i, int j) const;
 
   const Lattice& lattice_;
