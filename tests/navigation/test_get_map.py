@@ -13,7 +13,7 @@ from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import EnvGridMap, Map, coarser
 
 SCENE = """
-world: {width: 10, height: 10, offset: [-2, 0], obstacle_map: {name: perlin, resolution: 0.1, fill: 0.25, seed: 3}}
+world: {width: 10, height: 10, offset: [-2, 0], obstacle_map: {name: perlin, resolution: 0.1, fill: 0.12, seed: 3}}
 robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [-1, 1, 0], goal: [7, 9]}
 obstacle:
   - {shape: {name: rectangle, length: 1, width: 1}, state: [3, 5, 0]}
@@ -53,10 +53,8 @@ def test_resolutions(env: irsim.Env) -> None:
 
 def test_planners_plan_for_the_robot(env: irsim.Env) -> None:
     env_map = env.get_map(0.1)
-    free = [p for p in ((-1.0, 1.0), (7.0, 9.0)) if not env_map.is_collision(shapely.Point(*p).buffer(0.25))]
     paths = [cls(env_map).planning((-1, 1), (7, 9), show_animation=False) for cls in (AStarPlanner, JPSPlanner)]
-    if len(free) < 2 or paths[0] is None:
-        pytest.skip("this noise leaves no room")
+    assert paths[0] is not None
     assert paths[1] is not None
     lengths = [np.linalg.norm(np.diff(path, axis=1), axis=0).sum() for path in paths]
     assert lengths[0] == pytest.approx(lengths[1])
