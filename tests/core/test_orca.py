@@ -111,7 +111,7 @@ def test_where_nothing_is_free_the_largest_violation_is_least(planes: Any, walls
     x, y, free = core.best_velocity(hard + planes, len(hard), max_speed, (1.0, 0.0))
     assume(not free)
     v, soft = np.array([x, y]), np.array(planes)
-    assert np.linalg.norm(v) <= max_speed + 1e-9
+    assert np.linalg.norm(v) <= max_speed + 1e-7  # half-planes that nearly face each other lose digits
     assert all((depths(np.array([h]), v) >= -1e-7).all() for h in hard)
     found = -depths(soft, v).min()
     # nothing in a fine fan of velocities is better

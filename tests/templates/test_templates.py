@@ -42,8 +42,8 @@ def extremes(template: Template) -> list[dict[str, object]]:
 
 SITUATIONS = [
     *("head-on", "crossing", "overtaking", "doorway", "bottleneck", "T-junction", "group", "queue", "exploration"),
-    *("pushing", "sorting", "parking", "planner", "mixed fleet", "wandering", "CrowdNav", "perlin", "image map", "fmcw"),
-    *("maze", "warehouse", "crowd", "training", "compound", "lidar"),
+    *("pushing", "sorting", "parking", "planner", "mixed fleet", "wandering", "CrowdNav", "perlin", "image map"),
+    *("fmcw", "maze", "warehouse", "crowd", "training", "compound", "lidar"),
 ]
 
 

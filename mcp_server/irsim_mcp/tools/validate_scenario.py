@@ -18,7 +18,8 @@ _DESCRIPTION = """
     Check a scenario without running it. Use it after every edit, before drawing or running. Returns all problems at
     once; an invalid scenario is a normal result with valid=false. Each issue has a code, the path and line, what is
     wrong and how to fix it. Errors must be fixed (misspelt keys are errors too); warnings run, but likely not as
-    meant; hints are worth knowing. not-yet-simulated means that this version cannot do it: tell the user. Next: apply the fixes and validate again; once valid, look at it with render_snapshot.
+    meant; hints are worth knowing. not-yet-simulated means that this version cannot do it: tell the user. Next: apply
+    the fixes and validate again; once valid, look at it with render_snapshot.
 """
 
 
