@@ -74,6 +74,8 @@ class Contact2D:
         self.linewidth: float = options.linewidth
         self.alpha: float = options.alpha
         self.color: Any = options.color
+        self._axes: Any = None
+        self._drawn: list[Any] = []
 
     @property
     def records(self) -> list[Contact]:
@@ -131,6 +133,37 @@ class Contact2D:
 
     def step(self, state: Any = None) -> None:
         """Nothing: contacts are found by the step of the world."""
+
+    # drawing by hand: environments draw ``contact2d`` of the scenario by themselves -----------------------------------
+    def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
+        """Draw the contact forces into some axes.
+
+        Args:
+            ax: Matplotlib axes in world coordinates.
+            state: Accepted as for other sensors; contacts are where they are.
+            **kwargs: ``force_scale``, ``marker_size``, ``linewidth``, ``alpha``, ``color``: kept.
+        """
+        from irsim.render.forces import draw_forces
+        from irsim.render.single import add_dots, add_mark
+
+        self.plot_clear()
+        for name in ("force_scale", "marker_size", "linewidth", "alpha", "color"):
+            setattr(self, name, kwargs.get(name, getattr(self, name)))
+        marks, dots = draw_forces(self)
+        self._axes = ax
+        self._drawn = [add_mark(ax, mark) for mark in marks]
+        self._drawn += [add_dots(ax, beams.dots) for beams in dots if beams.dots is not None]
+
+    def step_plot(self) -> None:
+        """Bring what ``plot`` has drawn up to date."""
+        if self._axes is not None:
+            self.plot(self._axes)
+
+    def plot_clear(self) -> None:
+        """Remove what ``plot`` has drawn."""
+        for artist in self._drawn:
+            artist.remove()
+        self._drawn, self._axes = [], None
 
     @property
     def _touching(self) -> int:

@@ -30,15 +30,20 @@ class Logger:
         self.level = LEVELS[name]
         self.file = Path(file) if file is not None else None
         self._once: set[str] = set()
+        self._closed = False
 
     def _write(self, name: str, message: object) -> None:
-        if LEVELS[name] < self.level:
+        if self._closed or LEVELS[name] < self.level:
             return
         line = f"{time.strftime('%Y-%m-%d %H:%M')} | {name:<8} | {message}"
         print(line, file=sys.stdout)
         if self.file is not None:
             with self.file.open("a", encoding="utf-8") as stream:
                 stream.write(line + "\n")
+
+    def close(self) -> None:
+        """Write nothing from now on."""
+        self._closed = True
 
     def trace(self, message: object) -> None:
         """Log at TRACE."""

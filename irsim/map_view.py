@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.body import column
 from irsim.views import ObjectView
+from irsim.world.cells import grid_collision_geometry
 
 if TYPE_CHECKING:
     from irsim import _core as core
@@ -82,22 +83,8 @@ class ObstacleMap(ObjectView):
         Args:
             geometry: In the world frame [m].
         """
-        import shapely
-
         grid = self.cells
-        (x, y), (dx, dy), (nx, ny) = grid.origin, grid.cell, grid.shape
-        if geometry.is_empty:
-            return False
-        low_x, low_y, high_x, high_y = geometry.bounds
-        # one cell more on every side: whether an edge touches is decided exactly below
-        i0, i1 = (int(np.clip(np.floor((v - x) / dx), -1, nx)) for v in (low_x, high_x))
-        j0, j1 = (int(np.clip(np.floor((v - y) / dy), -1, ny)) for v in (low_y, high_y))
-        i0, j0 = max(i0 - 1, 0), max(j0 - 1, 0)
-        i, j = np.nonzero(grid.occupied[i0 : i1 + 2, j0 : j1 + 2])
-        i, j = i + i0, j + j0
-        boxes = shapely.box(x + i * dx, y + j * dy, x + (i + 1) * dx, y + (j + 1) * dy)
-        shapely.prepare(geometry)
-        return bool(shapely.intersects(geometry, boxes).any())
+        return grid_collision_geometry(grid.occupied * 100, grid.cell, geometry, grid.origin)
 
     def is_collision(self, geometry: Any) -> bool:
         """The same: cells are closed squares, so their outline adds nothing."""

@@ -140,6 +140,11 @@ class ObjectGroup(Sequence[ObjectView]):
         """Keys of the group behavior of the first member; empty without one."""
         return self.members[0].group_behavior_dict if self.members else {}
 
+    @property
+    def logger(self) -> Any:
+        """The logger of the environment of the first member; None without one."""
+        return self.members[0].logger if self.members else None
+
     def gen_group_vel(self) -> list[Any]:
         """The control each member would choose now, (vel_dim, 1) each; None for those that never move."""
         return [None if view.static else view.gen_behavior_vel() for view in self.members]

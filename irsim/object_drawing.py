@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,34 @@ if TYPE_CHECKING:
 
 __all__ = ["ObjectDrawing"]
 
-_PARTS = ("show_goal", "show_text", "show_arrow", "show_trajectory", "show_trail", "show_sensor", "show_fov")
-_NO_GOAL = (float("nan"),) * 3
+
+class PlotKeys(dict[str, Any]):
+    """The plot keys of one object as written; setting one changes how the object is drawn from then on.
+
+    Args:
+        view: The object.
+    """
+
+    def __init__(self, view: Any) -> None:
+        super().__init__(view.record.plot.model_dump(exclude_unset=True))
+        self._view = view
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        super().__setitem__(key, value)
+        self._tell()
+
+    def __delitem__(self, key: str) -> None:
+        super().__delitem__(key)
+        self._tell()
+
+    def update(self, *args: Any, **kwargs: Any) -> None:
+        """Set several."""
+        super().update(*args, **kwargs)
+        self._tell()
+
+    def _tell(self) -> None:
+        record = self._view.record
+        self._view.record = replace(record, plot=type(record.plot).model_validate(dict(self)))
 
 
 class ObjectDrawing:
@@ -47,6 +74,11 @@ class ObjectDrawing:
     arrow_patch: Any = None
     fov_patch: Any = None
     trajectory_line: Any = None
+
+    @property
+    def plot_kwargs(self) -> PlotKeys:
+        """Its plot keys as written; those that are set count from the next frame on."""
+        return PlotKeys(self)
 
     @property
     def plot_patch_list(self) -> list[Any]:
@@ -115,7 +147,8 @@ class ObjectDrawing:
             if wanted:
                 draw_at(axes, state, **kwargs)
         for sensor in self.sensors if style.show_sensor else ():
-            sensor.plot(axes, self.state if state is None else state)  # type: ignore[attr-defined]
+            if hasattr(sensor, "plot"):
+                sensor.plot(axes, self.state if state is None else state)  # type: ignore[attr-defined]
 
     def plot_object(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
         """Draw the body; of a map, its cells. ``vertices`` as in :meth:`plot`."""
@@ -295,7 +328,8 @@ class ObjectDrawing:
                 _remove(artist)
             artists.clear()
         for sensor in self.sensors:
-            sensor.plot_clear()
+            if hasattr(sensor, "plot_clear"):
+                sensor.plot_clear()
 
     # -----------------------------------------------------------------------------------------------------------------
     def _artists(self, kind: str) -> list[Any]:

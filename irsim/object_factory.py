@@ -6,13 +6,16 @@ from collections.abc import Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from irsim.current import last_used
 from irsim.exchange import alone
-from irsim.object_base import ObjectBase
+from irsim.object_base import ObjectBase, ObjectGroup
 from irsim.scenario.opening import open_scenario, or_raise
 from irsim.scenario.read import read
 from irsim.simulation import Simulation
 from irsim.views import ObjectView, views
+from irsim.world.cells import OCCUPIED
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -91,6 +94,44 @@ class ObjectFactory:
         goals = [[] if view.goal is None else view.goal[:, 0].tolist() for view in made]
         return [view.state[:, 0].tolist() for view in made], goals
 
+    def create_from_map(
+        self, points: Any, reso: Any, grid_map: Any = None, world_offset: Sequence[float] | None = None
+    ) -> list[ObjectView]:
+        """The obstacle that the occupied cells of a map make together.
+
+        Args:
+            points: (2, M) centres of the occupied cells [m]; without any there is no obstacle.
+            reso: Extent of a cell along x and y [m].
+            grid_map: (nx, ny) occupancies; default: ``points`` on a grid over the world.
+            world_offset: Lower left corner [m]; default: that of the world.
+
+        Returns:
+            One :class:`irsim.map_view.ObstacleMap`, or nothing.
+        """
+        centres = np.empty((2, 0)) if points is None else np.asarray(points, dtype=np.float64)
+        if not centres.size:
+            return []
+        cell = np.broadcast_to(np.asarray(reso, dtype=np.float64).reshape(-1), (2,))
+        extent = self._extent() or {"width": 10.0, "height": 10.0, "offset": [0.0, 0.0]}
+        corner = np.asarray(extent["offset"] if world_offset is None else world_offset, dtype=np.float64)[:2]
+        grid = None if grid_map is None else np.asarray(grid_map, dtype=np.float64)
+        if grid is None or not (grid > OCCUPIED).any():
+            wide = extent["width"] / cell[0], extent["height"] / cell[1]
+            size = grid.shape if grid is not None else (max(1, round(wide[0])), max(1, round(wide[1])))
+            grid = np.zeros(size)
+            i, j = np.floor((centres - corner[:, None]) / cell[:, None]).astype(int)
+            inside = (i >= 0) & (j >= 0) & (i < size[0]) & (j < size[1])
+            grid[i[inside], j[inside]] = 100.0
+        width, height = (float(v) for v in grid.shape * cell)
+        world = {"width": width, "height": height, "offset": corner.tolist(), "obstacle_map": grid}
+        scenario, _ = or_raise(read({"world": world}, name="create_from_map"))
+        made = views(Simulation(scenario, [0], history=True))[-1:]
+        for view in made:
+            env = last_used()
+            view.id = 0 if env is None else next(env.env_param.id_iter)
+            view.name = f"obstacle_{view.id}"
+        return made
+
     def _extent(self) -> dict[str, Any]:
         env = last_used()
         world = self.world if self.world is not None else None if env is None else env._world
@@ -134,6 +175,24 @@ class EnvConfig:
         name = self.world_name if world_name is None else world_name
         open_scenario(name)
         self._env.world_name = name
+
+    def initialize_objects(self) -> tuple[Any, ...]:
+        """Begin the next scene with the objects of the file.
+
+        Returns:
+            (world, objects, plot or None in headless mode, robots, obstacles, maps, groups).
+        """
+        env = self._env
+        env.reset(random=True)
+        maps = [view for view in env.obstacle_list if view.shape == "map"]
+        obstacles = [view for view in env.obstacle_list if view.shape != "map"]
+        members: dict[Any, list[ObjectView]] = {}
+        for view in env.objects:
+            if view.shape != "map":
+                members.setdefault(view.group, []).append(view)
+        groups = [ObjectGroup(views, number) for number, views in members.items()]
+        plot = None if env.headless else env._env_plot
+        return env._world, env.objects, plot, env.robot_list, obstacles, maps, groups
 
     def reload_objects(self) -> list[ObjectView]:
         """Begin the next scene with the objects of the file; returns them."""

@@ -112,6 +112,23 @@ class Lidar2D:
         """(3, 1) pose of the sensor in the world frame."""
         return self._placed(self._simulation.pose[self.parent.row])
 
+    @property
+    def cast_angles(self) -> Floats:
+        """(number,) the nominal angles [rad]; noise on them (``angle_std``) is drawn within each scan. A copy."""
+        return self.angle_list.copy()
+
+    @property
+    def state(self) -> Floats:
+        """(3, 1) pose of the carrier in the world frame."""
+        return column(self._simulation.pose[self.parent.row])
+
+    def init_geometry(self, state: Any) -> None:
+        """Nothing: the engine knows the beams, and where they start follows from the carrier.
+
+        Args:
+            state: Accepted as it was before.
+        """
+
     def step(self, state: Any = None) -> None:
         """Take the scan anew.
 

@@ -44,7 +44,6 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         index: Place among the objects of its world, which changes when earlier ones are taken out.
         row: Row in the simulation's arrays.
         surroundings: The objects of the environment an object was made for, as long as it is not added.
-        plot_kwargs: Drawing options, may be changed at any time.
     """
 
     def __init__(self, simulation: Simulation, index: int, world: int = 0) -> None:
@@ -344,11 +343,6 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         """The behavior's keys as written, or those of the group behavior."""
         options = self.record.behavior or self.record.group_behavior
         return {} if options is None else options.model_dump(exclude_unset=True)
-
-    @property
-    def plot_kwargs(self) -> Any:
-        """Drawing options."""
-        return self.record.plot
 
     @property
     def info(self) -> ObjectInfo:

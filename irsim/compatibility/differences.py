@@ -216,5 +216,28 @@ NAME_DIFFERENCES: dict[str, str] = {
 }
 """By ``Class.name``."""
 
-ABSENT: dict[str, str] = {}
+_SEARCH = "the search runs in the engine: `planning` gives the path, `node_list` what was searched"
+_SEARCH_STEPS = {
+    "AStarPlanner": "Node calc_final_path calc_grid_index calc_grid_position calc_heuristic calc_xy_index check_node "
+    "get_motion_model verify_node",
+    "JPSPlanner": "calc_grid_index_from_xy calc_grid_position calc_xy_index is_collision",
+    "PRMPlanner": "check_node dijkstra_planning generate_road_map is_collision plot_road_map sample_points",
+    **dict.fromkeys(
+        ("RRT", "RRTStar", "InformedRRTStar"),
+        "AreaBounds Node calc_dist_to_goal calc_distance_and_angle draw_graph get_random_node is_collision steer",
+    ),
+}
+
+ABSENT: dict[str, str] = {
+    "irsim.env.env_logger:EnvLogger.CONSOLE_FORMAT": "lines are written without loguru, in this same format",
+    **dict.fromkeys(
+        (f"irsim.world.sensors:Contact2D.{name}" for name in ("add", "add_force", "clear", "reset", "tick")),
+        "the step of the engine writes contacts; read `reports`, `records`, `force`",
+    ),
+    **{
+        f"irsim.lib.path_planners:{planner}.{name}": _SEARCH
+        for planner, names in _SEARCH_STEPS.items()
+        for name in names.split()
+    },
+}
 """Names of 2.12 that are not here, and the reason."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dis
 import importlib
 import json
 from functools import cache
@@ -29,5 +30,18 @@ def missing_names() -> list[str]:
         except (ImportError, AttributeError):
             missing.append(place)
             continue
-        missing += [f"{place}.{name}" for name in names if not hasattr(home, name)]
+        own = _assigned(home) if isinstance(home, type) else frozenset()
+        missing += [f"{place}.{name}" for name in names if not hasattr(home, name) and name not in own]
     return missing
+
+
+def _assigned(home: type) -> frozenset[str]:
+    """Attributes that instances have: fields that are declared, and what methods assign."""
+    found: set[str] = set()
+    for base in home.__mro__:
+        found |= set(vars(base).get("__annotations__", ()))
+        for method in vars(base).values():
+            code = getattr(method, "__code__", None)
+            if code is not None:
+                found |= {step.argval for step in dis.get_instructions(code) if step.opname == "STORE_ATTR"}
+    return frozenset(found)

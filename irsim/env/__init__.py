@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from irsim._names import submodule
 from irsim.env.env_base import Env, EnvBase, make
 
 if TYPE_CHECKING:
@@ -15,4 +16,6 @@ def __getattr__(name: str) -> Any:
         from irsim.env.env_base3d import EnvBase3D
 
         return EnvBase3D
+    if (module := submodule(__name__, name)) is not None:
+        return module
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -170,6 +170,13 @@ class KeyboardControl:
             self.listener.stop()
             self.listener = None
 
+    close = stop
+
+    @property
+    def logger(self) -> Logger:
+        """The logger of the environment."""
+        return self.env_ref.logger
+
     # what keys do ----------------------------------------------------------------------------------------------------
     def press(self, key: str) -> None:
         """A key goes down; names are those of Matplotlib: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""

@@ -34,10 +34,10 @@ class MouseControl:
         self.set_zoom_factor(zoom_factor)
         canvas = ax.figure.canvas
         events = {
-            "motion_notify_event": self._move,
-            "button_press_event": self._press,
-            "button_release_event": self._release,
-            "scroll_event": self._scroll,
+            "motion_notify_event": self.on_move,
+            "button_press_event": self.on_click,
+            "button_release_event": self.on_release,
+            "scroll_event": self.on_scroll,
             "axes_leave_event": self._leave,
         }
         self._connections = [(canvas, canvas.mpl_connect(name, call)) for name, call in events.items()]
@@ -68,13 +68,15 @@ class MouseControl:
             return None
         return round(float(event.xdata), 2), round(float(event.ydata), 2)
 
-    def _move(self, event: Any) -> None:
+    def on_move(self, event: Any) -> None:
+        """The pointer has moved."""
         self.mouse_pos = self._place(event)
 
     def _leave(self, _: Any) -> None:
         self.mouse_pos = None
 
-    def _press(self, event: Any) -> None:
+    def on_click(self, event: Any) -> None:
+        """A button goes down."""
         place = self._place(event)
         if place is None:
             return
@@ -85,13 +87,14 @@ class MouseControl:
         elif event.button == _MIDDLE:
             self.reset_zoom()
 
-    def _release(self, event: Any) -> None:
+    def on_release(self, event: Any) -> None:
+        """A button goes up."""
         if event.button == _LEFT:
             self.left_click_pos = None
         elif event.button == _RIGHT:
             self.right_click_pos = None
 
-    def _scroll(self, event: Any) -> None:
+    def on_scroll(self, event: Any) -> None:
         """Zoom about the point under the pointer, which stays where it is."""
         if event.inaxes is not self.ax or event.xdata is None:
             return

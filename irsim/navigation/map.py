@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from irsim import _core as core
 from irsim.body import ObjectBody
 from irsim.navigation.outlines import body_parts, parts_of
+from irsim.world.cells import OCCUPIED, grid_occupied
 
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarser", "terrain_of", "world_map"]
 
 Floats = NDArray[np.float64]
-OCCUPIED = 50
-"""Cells with a larger value are occupied."""
 _COARSER, _FINER = 1.05, 0.95
 """Resolutions this much off that of the world's grid count as equal."""
 
@@ -107,14 +106,7 @@ class Map:
         """
         if self.grid is None:
             return None
-        x0, y0, x1, y1 = self.bounds
-        if x - margin_x < x0 or y - margin_y < y0 or x + margin_x > x1 or y + margin_y > y1:
-            return True
-        rx, ry = self.width / self.grid.shape[0], self.height / self.grid.shape[1]
-        nx, ny = self.grid.shape
-        i0, i1 = (min(max(int((v - x0) / rx), 0), nx - 1) for v in (x - margin_x, x + margin_x))
-        j0, j1 = (min(max(int((v - y0) / ry), 0), ny - 1) for v in (y - margin_y, y + margin_y))
-        return bool((self.grid[i0 : i1 + 1, j0 : j1 + 1] > threshold).any())
+        return grid_occupied(self.grid, self.bounds, x, y, margin_x, margin_y, threshold)
 
     def is_collision(self, geometry: Any) -> bool:
         """Whether a shapely geometry leaves the map or meets an occupied cell or an obstacle; touching counts."""

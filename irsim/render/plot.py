@@ -20,6 +20,7 @@ from irsim.render.overlay import Overlay
 from irsim.render.palette import Palette
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels, from_image, to_image
+from irsim.render.plot_steps import PlotSteps
 from irsim.render.png import png_bytes
 from irsim.render.recording import Pictured, Recording
 from irsim.render.scene import Scene
@@ -52,7 +53,7 @@ _SAVE_OPTIONS = frozenset(
 _QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
 
 
-class EnvPlot:
+class EnvPlot(PlotSteps):
     """Draws one environment.
 
     Pictures show the state at the moment they are made, whenever that is; ``update`` only notes how to draw it.
@@ -98,6 +99,7 @@ class EnvPlot:
         self._window: Window | None = None
         self._recording = Recording(env)
         self._unknown: set[str] = set()
+        self._hidden: set[int] = set()
         self._saved_size: tuple[int, int] | None = None
         self._begin()
 
@@ -106,6 +108,7 @@ class EnvPlot:
         self.show_title: bool = self._options.show_title
         self.viewpoint: Any = self._options.viewpoint
         self._mode = "all"
+        self._hidden.clear()
         self._overrides: dict[str, Any] = {}
 
     # the figure ------------------------------------------------------------------------------------------------------
@@ -174,9 +177,10 @@ class EnvPlot:
 
     def scene(self) -> Scene:
         """What the picture shows, as data."""
-        return self._builder.build(
+        scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
+        return self._without_hidden(scene)
 
     def _title(self) -> str | None:
         if not self.show_title:
@@ -207,6 +211,7 @@ class EnvPlot:
             raise ValueError(f"unknown render mode {mode!r}: choose one of {', '.join(MODES)}")
         self._note_unknown(overrides)
         self._mode, self._overrides = mode, overrides
+        self._hidden.clear()
         self._overlay.next_frame()
 
     def _note_unknown(self, overrides: Mapping[str, Any]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
@@ -14,9 +16,9 @@ from irsim.render.grids import GridLayer
 from irsim.render.layers import geometry_path, rgba
 from irsim.render.patches import linewidth_from_data_units
 from irsim.render.pictures import Pictures
-from irsim.render.scene import GridImage, Label, Line, Mark, Picture
+from irsim.render.scene import Dots, GridImage, Label, Line, Mark, Picture
 
-__all__ = ["add_grid", "add_label", "add_mark", "add_picture"]
+__all__ = ["add_dots", "add_grid", "add_label", "add_mark", "add_picture"]
 
 
 def add_mark(ax: Axes, mark: Mark) -> Artist:
@@ -39,6 +41,21 @@ def add_mark(ax: Axes, mark: Mark) -> Artist:
     )
     ax.add_artist(patch)
     return patch
+
+
+def add_dots(ax: Axes, dots: Dots) -> Artist:
+    """Round marks."""
+    colors: Any = dots.colors
+    edge = rgba(dots.edge_color)
+    return ax.scatter(
+        dots.points[:, 0],
+        dots.points[:, 1],
+        s=dots.area,
+        c=colors,
+        edgecolors=[edge],
+        linewidths=dots.edge_width,
+        zorder=dots.zorder,
+    )
 
 
 def add_label(ax: Axes, label: Label) -> Text:

@@ -1,5 +1,7 @@
 """All helpers in one place; plain re-exports."""
 
+from math import pi
+
 from irsim.util.angles import (
     ClipTo2Pi,
     WrapTo2Pi,
@@ -98,6 +100,7 @@ __all__ = [
     "log_warning_once",
     "normalize_actions",
     "omni_to_diff",
+    "pi",
     "points_to_xy_list",
     "random_point_range",
     "relative_position",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim import _core as core
+from irsim.world.cells import OCCUPIED, grid_collision_geometry, grid_occupied
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
@@ -72,6 +73,8 @@ class FogMap:
 
     Attributes:
         cells: (nx, ny) flags, 1 where explored.
+        obstacle_list: Things that :meth:`is_collision` asks: shapely geometries, or anything with a ``geometry``.
+        grid: (nx, ny) occupancies that ``grid_occupied`` and ``is_collision`` ask, None by default.
 
     Raises:
         ValueError: ``resolution`` is not a positive number.
@@ -90,6 +93,8 @@ class FogMap:
         x, y = (0.0, 0.0) if world_offset is None else world_offset[:2]
         self.world_offset = (float(x), float(y))
         nx, ny = fog_shape(width, height, resolution)
+        self.obstacle_list: list[Any] = []
+        self.grid: NDArray[np.float64] | None = None
         self.cells: NDArray[np.uint8] = np.zeros((nx, ny), dtype=np.uint8)
         self._size = np.array([width / nx, height / ny])
 
@@ -156,6 +161,32 @@ class FogMap:
             off = (np.arctan2(dy, dx) - heading + math.pi) % _FULL_TURN - math.pi
             seen &= np.abs(off) <= fov / 2
         self.cells[seen] = 1
+
+    def grid_occupied(
+        self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
+    ) -> bool | None:
+        """Whether a cell of ``grid`` is occupied near (x, y); see :meth:`irsim.navigation.map.Map.grid_occupied`."""
+        if self.grid is None:
+            return None
+        x0, y0 = self.world_offset
+        return grid_occupied(
+            self.grid, (x0, y0, x0 + self.width, y0 + self.height), x, y, margin_x, margin_y, threshold
+        )
+
+    def is_collision(self, geometry: Any) -> bool:
+        """Whether a shapely geometry leaves the map, or meets an occupied cell or a thing in ``obstacle_list``."""
+        x0, y0 = self.world_offset
+        low_x, low_y, high_x, high_y = geometry.bounds
+        if low_x < x0 or low_y < y0 or high_x > x0 + self.width or high_y > y0 + self.height:
+            return True
+        if self.grid is not None:
+            cell = self.width / self.grid.shape[0], self.height / self.grid.shape[1]
+            if grid_collision_geometry(self.grid, cell, geometry, self.world_offset):
+                return True
+        return any(geometry.intersects(getattr(thing, "geometry", thing)) for thing in self.obstacle_list)
+
+    def plot_clear(self) -> None:
+        """Nothing: the picture of an environment draws its fog by itself."""
 
     def to_rgba(self, color: Sequence[float] = FOG_COLOR, alpha: float = 1.0) -> NDArray[np.float64]:
         """(nx, ny, 4) colour and opacity of each cell; explored ones are transparent."""

@@ -13,6 +13,7 @@ __all__ = [
     "ObstacleMap",
     "PerlinGridGenerator",
     "build_grid_from_generator",
+    "grid_collision_geometry",
     "resolve_obstacle_map",
 ]
 
@@ -25,6 +26,7 @@ _HOMES = {
     "ObstacleMap": "irsim.map_view",
     "PerlinGridGenerator": "irsim.maps._generators",
     "build_grid_from_generator": "irsim.maps._generators",
+    "grid_collision_geometry": "irsim.world.cells",
     "resolve_obstacle_map": "irsim.maps._generators",
 }
 

@@ -1,0 +1,77 @@
+"""Questions about occupancy grids that need no engine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+__all__ = ["OCCUPIED", "grid_collision_geometry", "grid_occupied"]
+
+OCCUPIED = 50
+"""Cells with a larger value are occupied."""
+
+
+def grid_occupied(
+    grid: Any,
+    extent: tuple[float, float, float, float],
+    x: float,
+    y: float,
+    margin_x: float = 0.0,
+    margin_y: float = 0.0,
+    threshold: float = OCCUPIED,
+) -> bool:
+    """Whether a cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
+
+    Args:
+        grid: (nx, ny) occupancies.
+        extent: Lower left and upper right corner of the grid [m].
+        x: Middle of the box along x [m].
+        y: Along y [m].
+        margin_x: Half its side along x [m].
+        margin_y: Along y [m].
+        threshold: Larger values are occupied.
+
+    Returns:
+        True outside the grid, too.
+    """
+    x0, y0, x1, y1 = extent
+    if x - margin_x < x0 or y - margin_y < y0 or x + margin_x > x1 or y + margin_y > y1:
+        return True
+    nx, ny = grid.shape
+    rx, ry = (x1 - x0) / nx, (y1 - y0) / ny
+    i0, i1 = (min(max(int((v - x0) / rx), 0), nx - 1) for v in (x - margin_x, x + margin_x))
+    j0, j1 = (min(max(int((v - y0) / ry), 0), ny - 1) for v in (y - margin_y, y + margin_y))
+    return bool((grid[i0 : i1 + 1, j0 : j1 + 1] > threshold).any())
+
+
+def grid_collision_geometry(
+    grid: Any, grid_reso: Sequence[float], geometry: Any, world_offset: Sequence[float] = (0.0, 0.0)
+) -> bool:
+    """Whether a shapely geometry meets an occupied cell; touching counts, and cells are closed squares.
+
+    Args:
+        grid: (nx, ny) occupancies, above 50 is occupied; None has none.
+        grid_reso: Extent of a cell along x and y [m].
+        geometry: In the world frame [m].
+        world_offset: Lower left corner [m].
+    """
+    import shapely
+
+    if grid is None or geometry.is_empty:
+        return False
+    x, y = (float(v) for v in world_offset[:2])
+    dx, dy = (float(v) for v in np.asarray(grid_reso).reshape(-1)[:2])
+    occupied = np.asarray(grid) > OCCUPIED
+    nx, ny = occupied.shape
+    low_x, low_y, high_x, high_y = geometry.bounds
+    # one cell more on every side: whether an edge touches is decided exactly below
+    i0, i1 = (int(np.clip(np.floor((v - x) / dx), -1, nx)) for v in (low_x, high_x))
+    j0, j1 = (int(np.clip(np.floor((v - y) / dy), -1, ny)) for v in (low_y, high_y))
+    i0, j0 = max(i0 - 1, 0), max(j0 - 1, 0)
+    i, j = np.nonzero(occupied[i0 : i1 + 2, j0 : j1 + 2])
+    i, j = i + i0, j + j0
+    boxes = shapely.box(x + i * dx, y + j * dy, x + (i + 1) * dx, y + (j + 1) * dy)
+    shapely.prepare(geometry)
+    return bool(shapely.intersects(geometry, boxes).any())

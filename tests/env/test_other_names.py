@@ -1,0 +1,191 @@
+"""Names beside the loop: messages from objects, worlds and maps by themselves, factories, loggers, mouse and keys."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+import irsim
+from irsim.log import Logger
+from irsim.msg import LaserScan, ObjectState, Odometry, WorldState
+from irsim.world import World
+from irsim.world.map import FogMap, ObstacleMap, grid_collision_geometry
+
+YAML = """
+world: {width: 10, height: 8}
+robot:
+  - kinematics: {name: acker}
+    shape: {name: rectangle, length: 1, width: 0.5, wheelbase: 0.6}
+    state: [3, 4, 0.5, 0.2]
+    goal: [9, 7, 0]
+    sensors: [{name: lidar2d, number: 5}]
+    behavior: {name: dash}
+obstacle:
+  - {shape: {name: circle, radius: 0.3}, state: [6, 6, 0]}
+custom: {note: 3}
+"""
+
+
+@pytest.fixture
+def env(tmp_path: Path) -> Iterator[Any]:
+    path = tmp_path / "other.yaml"
+    path.write_text(YAML, encoding="utf-8")
+    made = irsim.make(str(path), headless=True, log_level="ERROR")
+    yield made
+    made.end(0)
+
+
+# messages
+def test_messages_of_objects_are_those_of_the_environment(env: Any) -> None:
+    env.step()
+    message = env.get_msg()
+    state = ObjectState.from_object(env.robot, stamp=0.1, seq=1)
+    assert state == message.robots[0]
+    assert WorldState.from_env(env) == message
+    assert Odometry.from_object(env.robot, stamp=0.1, seq=1) == message.robots[0].odom
+    scan = LaserScan.from_sensor(env.robot.lidar)
+    assert (scan.header.frame_id, state.scan.header.frame_id) == ("lidar2d", "robot_0/laser")
+    np.testing.assert_array_equal(scan.ranges, state.scan.ranges)
+    assert state.sensors == state.scans
+    assert (Odometry.ros_type, LaserScan.ros_type) == ("nav_msgs/Odometry", "sensor_msgs/LaserScan")
+    assert "ros_type" not in scan.to_dict()
+
+
+def test_odometry_says_state_and_control(env: Any) -> None:
+    env.step()
+    odometry = Odometry.from_object(env.robot)
+    state, velocity = odometry.to_state_velocity(env.robot)
+    np.testing.assert_allclose(state, env.robot.state, atol=1e-12)
+    assert velocity[0, 0] == pytest.approx(env.robot.velocity[0, 0])
+    assert np.tan(velocity[1, 0]) == pytest.approx(np.tan(env.robot.state[3, 0]))
+    assert odometry != Odometry.from_object(env.obstacle_list[0])
+
+
+def test_native_odometry_is_copied() -> None:
+    at = SimpleNamespace(x=1, y=2, z=0)
+    pose = SimpleNamespace(position=at, orientation=SimpleNamespace(x=0, y=0, z=math.sin(0.25), w=math.cos(0.25)))
+    twist = SimpleNamespace(linear=SimpleNamespace(x=1, y=0, z=0), angular=SimpleNamespace(x=0, y=0, z=0.5))
+    stamp = SimpleNamespace(sec=2, nanosec=500_000_000)
+    native = SimpleNamespace(
+        header=SimpleNamespace(stamp=stamp, frame_id="odom"),
+        child_frame_id="base",
+        pose=SimpleNamespace(pose=pose),
+        twist=SimpleNamespace(twist=twist),
+    )
+    copied = Odometry.from_msg(native)
+    assert (copied.header.stamp, copied.header.frame_id, copied.child_frame_id) == (2.5, "odom", "base")
+    assert copied.pose.pose.orientation.to_yaw() == pytest.approx(0.5)
+    assert copied.twist.twist.angular.z == 0.5
+    assert Odometry.from_msg(copied) == copied
+    with pytest.raises(TypeError, match="pose"):
+        Odometry.from_msg(3)
+
+
+# worlds and maps
+def test_a_world_steps_resets_and_gives_maps() -> None:
+    world = World("small", width=6, height=4, step_time=0.2, offset=[1, 2])
+    world.step()
+    assert (world.time, world.count) == (0.2, 1)
+    world.reset()
+    assert (world.time, world.count) == (0, 0)
+    assert world.gen_grid_map(None) == (None, None, None)
+    values = np.zeros((6, 4))
+    values[2, 3] = 100
+    grid, index, centres = world.gen_grid_map(values)
+    assert grid.shape == (6, 4)
+    np.testing.assert_array_equal(index, [[2], [3]])
+    np.testing.assert_allclose(centres, [[3.5], [5.5]])
+    assert world.gen_grid_map(values, 2)[0].shape == (3, 2)
+    made = world.get_map(0.5, [shapely.Point(3, 3).buffer(0.5)])
+    assert (made.resolution, made.world_offset) == (0.5, (1, 2))
+    assert made.is_collision(shapely.Point(3.4, 3).buffer(0.2))
+    assert not made.is_collision(shapely.Point(5, 5).buffer(0.2))
+
+
+def test_a_fog_map_answers_like_a_map() -> None:
+    fog = FogMap(4, 2, 0.5)
+    assert fog.grid is None
+    assert fog.grid_occupied(1, 1) is None
+    assert not fog.is_collision(shapely.Point(1, 1).buffer(0.2))
+    assert fog.is_collision(shapely.Point(0.1, 1).buffer(0.2))
+    fog.obstacle_list = [shapely.Point(1, 1)]
+    assert fog.is_collision(shapely.Point(1, 1).buffer(0.2))
+    fog.obstacle_list, fog.grid = [], np.zeros((8, 4))
+    fog.grid[4, 2] = 100
+    assert fog.grid_occupied(2.2, 1.2) is True
+    assert fog.grid_occupied(1.2, 1.2) is False
+    assert fog.is_collision(shapely.Point(2.2, 1.2).buffer(0.1))
+
+
+@pytest.mark.parametrize(("x", "touches"), [(0.55, True), (0.69, True), (0.71, False), (9.0, False)])
+def test_a_geometry_meets_cells(x: float, touches: bool) -> None:
+    grid = np.zeros((20, 20))
+    grid[5, 5] = 100
+    assert grid_collision_geometry(grid, (0.1, 0.1), shapely.Point(x, 0.55).buffer(0.1)) is touches
+    assert not grid_collision_geometry(None, (0.1, 0.1), shapely.Point(x, 0.55).buffer(0.1))
+
+
+def test_cells_become_one_obstacle(env: Any) -> None:
+    factory = env.object_factory
+    assert factory.create_from_map(np.empty((2, 0)), [0.5, 0.5]) == []
+    (made,) = factory.create_from_map(np.array([[1.25], [2.25]]), np.array([[0.5], [0.5]]))
+    assert isinstance(made, ObstacleMap)
+    assert (made.role, made.shape, made.static) == ("obstacle", "map", True)
+    assert made.grid_map.shape == (20, 16)
+    assert made.is_collision(shapely.Point(1.2, 2.2))
+    assert not made.is_collision(shapely.Point(1.2, 1.8))
+    grid = np.zeros((4, 4))
+    grid[3, 0] = 100
+    (other,) = factory.create_from_map(np.array([[1.75], [0.25]]), [0.5, 0.5], grid, [0, 0])
+    assert other.grid_map[3, 0] == 100
+    assert len({made.id, other.id, *(o.id for o in env.objects)}) == 4
+
+
+# the environment
+def test_the_configuration_has_every_section(env: Any) -> None:
+    assert sorted(env.config) == ["custom", "gui", "obstacle", "robot", "world"]
+    assert (env.config["gui"], env.config["custom"]) == ({}, {"note": 3})
+    assert env.env_config.parse == env.config
+
+
+def test_behaviors_are_told_as_written(env: Any) -> None:
+    assert env.robot.beh_config == {"name": "dash"}
+    assert env.robot.obj_behavior.behavior_dict == {"name": "dash"}
+
+
+def test_objects_are_initialized_anew(env: Any) -> None:
+    env.step()
+    world, objects, plot, robots, obstacles, maps, groups = env.env_config.initialize_objects()
+    assert (world.count, plot, maps) == (0, None, [])
+    assert objects == env.objects == [*robots, *obstacles]
+    assert [group.number for group in groups] == [1, 1]
+    assert groups[0].logger is env.logger
+
+
+def test_a_closed_logger_writes_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    logger = Logger()
+    logger.info("before")
+    logger.close()
+    logger.error("after")
+    assert "before" in (told := capsys.readouterr().out)
+    assert "after" not in told
+
+
+def test_lidars_tell_angles_and_carrier(env: Any) -> None:
+    lidar = env.robot.lidar
+    np.testing.assert_array_equal(lidar.cast_angles, lidar.angle_list)
+    np.testing.assert_array_equal(lidar.state, env.robot.state[:3])
+
+
+def test_modules_are_attributes_of_their_packages() -> None:
+    assert irsim.env.env_plot.EnvPlot.__name__ == "EnvPlot"
+    assert irsim.world.object_group.ObjectGroup.__name__ == "ObjectGroup"
+    with pytest.raises(AttributeError):
+        _ = irsim.world.nothing_of_the_kind
