@@ -64,6 +64,7 @@ class ObjectDrawing:
         world: int
         row: int
         shape: Any
+        kinematics: Any
         sensors: list[Any]
         description: Any
         trajectory: Any
@@ -231,7 +232,7 @@ class ObjectDrawing:
         Args:
             ax: Matplotlib axes.
             state: Where.
-            velocity: Accepted as it was before; the arrow shows the heading.
+            velocity: Control whose direction the arrow of an ``omni`` drive shows; by default the present one.
             arrow_theta: Direction [rad].
             arrow_length: Length [m].
             arrow_width: Width [m].
@@ -245,6 +246,9 @@ class ObjectDrawing:
         keys = {"arrow_length": arrow_length, "arrow_width": arrow_width, "arrow_color": arrow_color}
         keys = {**kwargs, **keys, "arrow_zorder": arrow_zorder, "show_arrow": True}
         where = state
+        if arrow_theta is None and velocity is not None and self.kinematics == "omni":
+            forward, lateral = np.asarray(velocity, dtype=float).reshape(-1)[:2]
+            arrow_theta = float(np.arctan2(lateral, forward)) + self._pose_of(state)[2]
         if arrow_theta is not None:
             where = (*self._pose_of(state)[:2], float(arrow_theta))
         self.arrow_patch = self._add(axes, self._mark("arrow", where, keys))

@@ -101,6 +101,12 @@ DIFFERENCES: dict[str, Difference] = {
         "an object is seen when any part of it lies in the sector; occlusion is optional",
         "correct",
     ),
+    "D19": Difference(
+        "`object_patch`, `goal_patch`, … of an object are artists of the environment's figure",
+        "the figure draws all objects together; these are what a script has drawn with `plot`, `plot_goal`, …; "
+        "`plot_kwargs` and `render(…)` change looks",
+        "pictures of many objects stay fast",
+    ),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and is driven by its group behavior",
         "the same, with a warning; the map is in no group",
@@ -206,6 +212,11 @@ NAME_DIFFERENCES: dict[str, str] = {
     "ObjectBase.get_fov_detected_objects": "D18",
     "ObjectBase.check_collision": "D2, D15",
     "ObjectBase.set_random_goal": "D10",
+    "ObjectBase.plot": "D19",
+    "ObjectBase.plot_clear": "D19",
+    "EnvPlot.step": "D19",
+    "EnvPlot.clear_components": "D19",
+    "EnvPlot.draw_components": "D19",
     "AStarPlanner.planning": "D15, api-18",
     "JPSPlanner.planning": "D15",
     "RRT.planning": "D17",

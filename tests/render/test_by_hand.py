@@ -194,3 +194,13 @@ def test_objects_of_others_are_drawn_too(env: Any) -> None:
     loose = env.create_obstacle(shape={"name": "circle", "radius": 0.5}, state=[2, 3, 0])
     env._env_plot.init_objects_plot([*env.objects, loose])
     assert loose.object_patch in env._env_plot.ax.get_children()
+
+
+def test_the_arrow_of_an_omni_drive_shows_its_control(tmp_path: Path, ax: Axes) -> None:
+    path = tmp_path / "omni.yaml"
+    path.write_text("robot: {kinematics: {name: omni}, state: [3, 3, 0], goal: [9, 9, 0]}", encoding="utf-8")
+    env = irsim.make(str(path), headless=True, log_level="ERROR")
+    env.robot.plot_arrow(ax, velocity=[[0], [1]], arrow_length=2.0, arrow_width=0.2)
+    low_x, low_y, high_x, high_y = extent(env.robot.arrow_patch)
+    assert high_y - low_y > 5 * (high_x - low_x)
+    env.end(0)
