@@ -11,9 +11,11 @@
 namespace irsim {
 namespace {
 
-constexpr double kResting = 1e-5;   // a smaller gap counts as contact [m]
-constexpr double kStraight = 1e-6;  // a push this near to the centroid does not turn [m]
-constexpr double kStill = 1e-12;    // smaller corrections are none [m]
+constexpr double kResting = 1e-5;      // a smaller gap counts as contact [m]
+constexpr double kStraight = 1e-6;     // a push this near to the centroid does not turn [m]
+constexpr double kVisible = 5e-4;      // overlap that is never left [m]
+constexpr int kMostExtraSweeps = 480;  // for that
+constexpr double kStill = 1e-12;       // smaller corrections are none [m]
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
@@ -42,18 +44,29 @@ class Solver {
     take_pairs();
     if (b_.pairs.empty()) return;
     order_pairs();
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-      b_.blocks.clear();
-      bool moved = false;
-      for (Buffers::Pair& pair : b_.pairs) moved = resolve(pair) || moved;
-      if (!moved) break;
-    }
+    bool moved = true;
+    for (int sweep = 0; moved && sweep < options_.sweeps; ++sweep) moved = sweep_all();
+    // Jams of many bodies may need more; nobody may be left visibly inside another.
+    for (int extra = 0; moved && extra < kMostExtraSweeps && deepest() > kVisible; ++extra) moved = sweep_all();
     change_velocities();
     bounce();
     measure_forces();
   }
 
  private:
+  bool sweep_all() {
+    b_.blocks.clear();
+    bool moved = false;
+    for (Buffers::Pair& pair : b_.pairs) moved = resolve(pair) || moved;
+    return moved;
+  }
+
+  double deepest() {
+    double most = 0.0;
+    for (Buffers::Pair& pair : b_.pairs) most = std::max(most, overlap(pair).depth);
+    return most;
+  }
+
   struct Share {
     Vec2 direction;      // of the translation per unit of scale and inverse mass
     double translation;  // along the normal
