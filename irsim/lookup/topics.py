@@ -62,8 +62,9 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     name = " ".join(words)
     if not topic.strip():
         return _index()
-    if name in ("codes", "templates"):
-        return _codes() if name == "codes" else _templates()
+    lists = {"codes": _codes, "guides": _guides, "templates": _templates}
+    if name in lists:
+        return lists[name]()
     if topic.strip() in _all_codes():
         return _code(topic.strip())
     if name in templates.names():
@@ -322,8 +323,10 @@ def _index() -> Answer:
             "sections of a scenario": [Key(name=section.name, text=section.text) for section in sections],
             "components": kinds,
             "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
-            "guides": [Key(name=name, text=guide.title) for name, guide in GUIDES.items()],
-            "codes": [Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings")],
+            "more": [
+                Key(name="guides", text=f"short texts: {', '.join(GUIDES)}"),
+                Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings"),
+            ],
         },
         example="irsim describe robot.sensors.lidar2d",
     )
@@ -336,6 +339,11 @@ def _overview(registry: Registry) -> str:
     names = [", ".join(feature.name for feature in features if feature.simulated)]
     names += [f"not simulated yet: {', '.join(later)}"] if later else []
     return "; ".join(part for part in names if part)
+
+
+def _guides() -> Answer:
+    lines = [Key(name=name, text=guide.title) for name, guide in GUIDES.items()]
+    return Answer(topic="guides", kind="index", title="Guides", groups={"guides": lines})
 
 
 def _guide(name: str) -> Answer:

@@ -41,7 +41,7 @@ async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
         ("lidar2d", ["range_max", "angle_range", "For example"]),
         ("robot", ["kinematics", "behavior", "goal_threshold"]),
         ("vel_max", ["Upper limits"]),
-        ("behavior", ["dash", "not simulated yet"]),
+        ("behavior", ["dash", "orca"]),
         ("unknown-key", ["not part of the language"]),
         ("out-of-time", ["stopped"]),
         ("codes", ["unknown-key", "path-outside-workspace", "busy"]),
