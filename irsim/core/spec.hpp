@@ -36,7 +36,7 @@ struct ObjectSpec {
   std::vector<double> range_low, range_high;
   int target_roles;  // 0 all, 1 robots, 2 obstacles
   Behavior behavior;
-  bool grouped;  // the behavior is that of the group and decides for all its members at once
+  bool grouped;                       // the behavior is that of the group and decides for all its members at once
   std::optional<RouteOptions> route;  // plans a path for its behavior to follow
   std::vector<Sensor> sensors;
   std::vector<double> centroid;                      // x, y in the body frame; empty: from the shape
@@ -54,10 +54,9 @@ struct ObjectSpec {
         field("goal_threshold", &S::goal_threshold), field("arrive_mode", &S::arrive_mode),
         field("range_low", &S::range_low), field("range_high", &S::range_high), field("target_roles", &S::target_roles),
         field("behavior", &S::behavior), field("grouped", &S::grouped), field("route", &S::route),
-        field("sensors", &S::sensors),
-        field("centroid", &S::centroid), field("mass", &S::mass), field("friction", &S::friction),
-        field("inertia", &S::inertia), field("restitution", &S::restitution), field("tau", &S::tau),
-        field("driven", &S::driven));
+        field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
+        field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
+        field("tau", &S::tau), field("driven", &S::driven));
   }
 };
 

@@ -53,9 +53,9 @@ struct World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  double step_time;    // [s]
-  int collision_mode;  // CollisionMode
-  double gravity;      // [m/s^2]
+  double step_time;                // [s]
+  int collision_mode;              // CollisionMode
+  double gravity;                  // [m/s^2]
   std::array<double, 4> extent{};  // x0, y0, x1, y1 of the world [m]: paths are looked for in there
   int copies;
   int objects;     // N
@@ -74,7 +74,7 @@ struct World {
 
   // object ids
   std::vector<int> moving, fixed_objects, robots, visible;  // visible: not unobstructed
-  std::vector<int> routed;  // with a route to follow
+  std::vector<int> routed;                                  // with a route to follow
   std::vector<BehaviorGroup> behaviors;
   std::vector<Scan> scans;
   int beams_per_world = 0, velocities_per_world = 0;
