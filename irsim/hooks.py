@@ -91,6 +91,7 @@ class ObjectHooks:
         """
         simulation, row = self._simulation, self.row
         hooks = simulation.hooks
+        wanted: NDArray[np.float64]
         if velocity is not None:
             wanted = np.asarray(velocity, dtype=np.float64).reshape(-1)
             if wanted.size != self.vel_dim:

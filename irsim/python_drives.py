@@ -135,12 +135,14 @@ class PythonDrives:
         record, handler = self._of(row)
         if row % self._simulation.objects not in self._led:
             return np.zeros(record.vel_dim)
-        return control_from(handler, self.state(row, record), wanted[:2, None].copy())
+        control: Floats = control_from(handler, self.state(row, record), wanted[:2, None].copy())
+        return control
 
     def state(self, row: int, record: ObjectRecord) -> Floats:
         """(state_dim, 1) state of a row."""
         extra = self._simulation.extra[row, : record.state_dim - 3]
-        return np.concatenate([self._simulation.pose[row], extra])[:, None]
+        state: Floats = np.concatenate([self._simulation.pose[row], extra])[:, None]
+        return state
 
     def move(self) -> None:
         """Limit the controls that the core does not keep, and move."""

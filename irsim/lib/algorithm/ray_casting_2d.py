@@ -45,8 +45,8 @@ def cast_rays(
             starts.append(points[:-1])
             ends.append(points[1:])
             owners.append(np.full(len(points) - 1, index))
-    ranges = np.full(len(directions), float(max_range))
-    hits = np.full(len(directions), -1, dtype=np.int64)
+    ranges: NDArray[np.float64] = np.full(len(directions), float(max_range))
+    hits: NDArray[np.int64] = np.full(len(directions), -1, dtype=np.int64)
     if starts and len(directions):
         ranges, edges = cast_ray_segments(origin, directions, np.vstack(starts), np.vstack(ends), max_range)
         hits = np.where(edges >= 0, np.concatenate(owners)[edges], -1).astype(np.int64)
