@@ -138,13 +138,16 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._originals = views(simulation)
         self._objects = list(self._originals)
         self._exchanged = False
-        self._world = WorldView(simulation)
+        self._world = self._view_of_world(simulation)
         self.world_param = WorldParam(simulation, mode)
         self.env_param = EnvParam(self._objects, self.logger)
         self._count_ids()
         self._external = mode == "external"
         self._events_seen = self._events_told = 0
         self._label: str | None = scenario.world.status
+
+    def _view_of_world(self, simulation: Simulation) -> WorldView:
+        return WorldView(simulation)
 
     @property
     def env_config(self) -> EnvConfig:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from irsim.env.env_base import Env
 from irsim.parameters import WorldView
 
 if TYPE_CHECKING:
     from irsim.render.plot import EnvPlot
+    from irsim.simulation import Simulation
 
 __all__ = ["EnvBase3D", "World3D"]
 
@@ -18,7 +19,7 @@ _DEPTH = 10.0
 class World3D(WorldView):
     """The world with an extent along z."""
 
-    def __init__(self, simulation: Any) -> None:
+    def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
         self.depth = float(simulation.scenario.world.depth or _DEPTH)
         self.offset = [*self.offset[:2], 0.0]
@@ -32,9 +33,10 @@ class World3D(WorldView):
 class EnvBase3D(Env):
     """An environment with ``projection="3d"``: objects stand on the ground of a view in space."""
 
-    def _open(self, world_name: Any) -> None:
-        super()._open(world_name)
-        self._world: World3D = World3D(self._simulation)
+    _world: World3D
+
+    def _view_of_world(self, simulation: Simulation) -> World3D:
+        return World3D(simulation)
 
     def _new_plot(self) -> EnvPlot:
         from irsim.render.plot3d import EnvPlot3D

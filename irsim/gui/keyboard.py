@@ -180,7 +180,7 @@ class KeyboardControl:
     # what keys do ----------------------------------------------------------------------------------------------------
     def press(self, key: str) -> None:
         """A key goes down; names are those of Matplotlib: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""
-        plain = key.rpartition("+")[2].lower() if key != "+" else key
+        plain = _without_modifiers(key)
         if plain in _AXES:
             self._held.add(plain)
             self._command()
@@ -194,7 +194,7 @@ class KeyboardControl:
 
     def release(self, key: str) -> None:
         """A key goes up."""
-        plain = key.rpartition("+")[2].lower() if key != "+" else key
+        plain = _without_modifiers(key)
         if plain in self._held:
             self._held.discard(plain)
             self._command()
@@ -259,6 +259,11 @@ class KeyboardControl:
         given = np.array([linear, turn, yaw])[:size]
         command[: len(given)] = given
         return command
+
+
+def _without_modifiers(key: str) -> str:
+    """``shift+W`` is the key ``w``."""
+    return key.rpartition("+")[2].lower() if key != "+" else key
 
 
 def _name_of(key: Any) -> str | None:

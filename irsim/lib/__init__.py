@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
+from irsim._names import from_homes
 from irsim.lib.behavior.behavior_registry import (
     register_behavior,
     register_behavior_class,
@@ -37,6 +37,7 @@ _HOMES = {
     "register_kinematics": "irsim.kinematics._handler",
     "social_force_model": _ALGORITHM,
 }
+_get = from_homes(__name__, _HOMES)
 
 __all__ = [
     "RRT",
@@ -77,10 +78,8 @@ def __getattr__(name: str) -> Any:
             "acker": kinematics.ackermann_kinematics,
             "omni": kinematics.omni_kinematics,
         }
-    elif name in _HOMES:
-        value = getattr(import_module(_HOMES[name]), name)
     else:
-        raise AttributeError(f"module 'irsim.lib' has no attribute {name!r}")
+        value = _get(name)
     globals()[name] = value
     return value
 

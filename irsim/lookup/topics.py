@@ -95,7 +95,7 @@ def schema_part(topic: str) -> Node:
         return schema
     found = _find(schema, words)
     if found is None:
-        raise TopicError(" ".join(words), _near(schema, words))
+        raise TopicError(" ".join(words), _near(_topics(schema), words))
     path, nodes = found
     body = nodes[0] if len(nodes) == 1 else {"anyOf": nodes}
     return {"$schema": schema["$schema"], "title": ".".join(path), **body, "$defs": definitions_of(schema, body)}
@@ -232,15 +232,15 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     if not hits:
         hits = _matches(everywhere, wanted, [template.name for template in templates.find(words, every=True)])
     ignored: list[str] = []
-    close = difflib.get_close_matches(".".join(words), _topics(schema), 1, _NEAR) if not hits else []
-    if not hits and not close and len(words) > 1:
+    topics = _topics(schema) if not hits else set()
+    if not hits and len(words) > 1 and not difflib.get_close_matches(".".join(words), topics, 1, _NEAR):
         found = {word: _matches(everywhere, word.lower(), _templates_about(word)) for word in words if len(word) > 2}
         ignored = [word for word in words if not found.get(word)]
         counted = Counter(hit.name for some in found.values() for hit in some)
         by_name = {hit.name: hit for some in found.values() for hit in some}
         hits = [by_name[name] for name, _ in counted.most_common()]
     if not hits:
-        raise TopicError(topic, _near(schema, words))
+        raise TopicError(topic, _near(topics, words))
     more = len(hits) - _MOST_HITS
     notes = [f"Nothing about {', '.join(map(repr, ignored))}."] if ignored else []
     notes += [f"The first {_MOST_HITS}; a more special word finds fewer."] if more > 0 else []
@@ -287,13 +287,12 @@ def _last(hit: Key) -> str:
     return hit.name.rpartition(".")[2].lower()
 
 
-def _near(schema: Node, words: list[str]) -> list[str]:
+def _near(topics: set[str], words: list[str]) -> list[str]:
     """Topics with similar names: the wrong word of a path mended, or the nearest of all names."""
-    everything = _topics(schema)
-    near = difflib.get_close_matches(".".join(words), everything, 3, _NEAR)
+    near = difflib.get_close_matches(".".join(words), topics, 3, _NEAR)
     if not near:
         by_last: dict[str, str] = {}
-        for topic in sorted(everything, key=len):
+        for topic in sorted(topics, key=len):
             by_last.setdefault(topic.rpartition(".")[2], topic)
         near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.75)]
     return near

@@ -47,18 +47,15 @@ class Compositor:
         self._base: Any = None
         self._base_key: tuple[Any, ...] | None = None
 
-    def draw(self, versions: Mapping[Artist, tuple[int, int]], *, plainly: bool = False) -> None:
+    def draw(self, versions: Mapping[Artist, tuple[int, int]]) -> None:
         """Draw everything into the canvas.
 
         Args:
             versions: (version, scenes at rest) of the artists whose changes are known; all others are drawn each time.
-            plainly: Keep nothing and let Matplotlib draw, as it must where there is more than one flat pair of axes.
         """
         canvas = self._canvas()
-        if plainly or len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
-            draw_all: Any = FigureCanvasAgg.draw
-            draw_all(canvas)
-            self.forget()
+        if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
+            self.draw_plainly()
             return
         furniture: tuple[Artist, ...] = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
         if not self.ax.axison:
@@ -86,6 +83,12 @@ class Compositor:
             canvas.restore_region(self._base)
         for artist in artists[len(resting) :]:
             artist.draw(renderer)
+
+    def draw_plainly(self) -> None:
+        """Let Matplotlib draw everything, and keep nothing."""
+        draw_all: Any = FigureCanvasAgg.draw
+        draw_all(self._canvas())
+        self.forget()
 
     def _canvas(self) -> Any:
         if not isinstance(self.figure.canvas, FigureCanvasAgg):

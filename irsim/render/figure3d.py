@@ -102,7 +102,7 @@ class SceneFigure3D:
 
     def draw(self) -> None:
         """Draw into the canvas."""
-        self.compositor.draw({}, plainly=True)
+        self.compositor.draw_plainly()
 
     def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
         """Draw and read the pixels, and the box (left, top, right, bottom) they were cut from."""

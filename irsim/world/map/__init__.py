@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from irsim._names import from_homes
+
 __all__ = [
     "EnvGridMap",
     "FogMap",
@@ -17,23 +19,22 @@ __all__ = [
     "resolve_obstacle_map",
 ]
 
-_HOMES = {
-    "EnvGridMap": "irsim.navigation.map",
-    "FogMap": "irsim.world.fog",
-    "GridMapGenerator": "irsim.maps._generators",
-    "ImageGridGenerator": "irsim.maps._generators",
-    "Map": "irsim.navigation.map",
-    "ObstacleMap": "irsim.map_view",
-    "PerlinGridGenerator": "irsim.maps._generators",
-    "build_grid_from_generator": "irsim.maps._generators",
-    "grid_collision_geometry": "irsim.world.cells",
-    "resolve_obstacle_map": "irsim.maps._generators",
-}
+_get = from_homes(
+    __name__,
+    {
+        "EnvGridMap": "irsim.navigation.map",
+        "FogMap": "irsim.world.fog",
+        "GridMapGenerator": "irsim.maps._generators",
+        "ImageGridGenerator": "irsim.maps._generators",
+        "Map": "irsim.navigation.map",
+        "ObstacleMap": "irsim.map_view",
+        "PerlinGridGenerator": "irsim.maps._generators",
+        "build_grid_from_generator": "irsim.maps._generators",
+        "grid_collision_geometry": "irsim.world.cells",
+        "resolve_obstacle_map": "irsim.maps._generators",
+    },
+)
 
 
 def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    return _get(name)
