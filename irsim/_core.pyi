@@ -676,6 +676,16 @@ def walls(
     neither circles nor `unobstructed`.
     """
 
+def clearances(
+    world: World, state: State, index: int, poses: Floats, robots: Sequence[int], company: Flags
+) -> tuple[Floats, NDArray[np.int32]]:
+    """Distances [m] between footprints over recorded poses (rows, N, 3) of world `index` in its present scene.
+
+    company: (N,) what each object is to a robot: 0 robot, 1 human, 2 something that stands still, 3 nobody. Returns
+    (rows, robots, 3) the distance to the nearest of the kinds 0 to 2, negative where they overlap, and its index; NaN
+    and -1 where there is none. Releases the GIL.
+    """
+
 def intersects(
     parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
 ) -> bool: ...

@@ -41,6 +41,7 @@ LAYERS = (
     info
     map_view
     matter
+    metrics
     navigation
     object_avoidance
     object_base
