@@ -560,10 +560,13 @@ class Trace:
 
     pose: Floats
     control: Floats
+    goal: Floats
     arrived: Flags
     collided: Flags
+    stopped: Flags
     steps: NDArray[np.int64]  # (W,) steps executed by each world
     ranges: Floats
+    returns: NDArray[np.float32]  # (steps, W * beams) ranges, infinite where a beam hit nothing
 
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
@@ -576,7 +579,14 @@ def advance(
     """
 
 def rollout(
-    world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, ranges: bool = False
+    world: World,
+    state: State,
+    steps: int,
+    *,
+    threads: int = 1,
+    until_done: bool = False,
+    ranges: bool = False,
+    returns: bool = False,
 ) -> Trace:
     """Like `advance`, recording."""
 

@@ -71,6 +71,7 @@ LAYERS = (
     map_files
     modeline
     results
+    runs
     snapshot
     templates
     testing
