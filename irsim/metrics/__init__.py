@@ -4,5 +4,21 @@ Distances are between true footprints, never centres; what is undefined is NaN, 
 """
 
 from irsim.metrics.clearance import Approach, Clearance, clearance, closest
+from irsim.metrics.definitions import METRICS, Metric
+from irsim.metrics.episode import EpisodeMetrics, episode_metrics, robot_metrics
+from irsim.metrics.statistics import bootstrap, spread, wilson
 
-__all__ = ["Approach", "Clearance", "clearance", "closest"]
+__all__ = [
+    "METRICS",
+    "Approach",
+    "Clearance",
+    "EpisodeMetrics",
+    "Metric",
+    "bootstrap",
+    "clearance",
+    "closest",
+    "episode_metrics",
+    "robot_metrics",
+    "spread",
+    "wilson",
+]
