@@ -41,7 +41,6 @@ LAYERS = (
     info
     map_view
     matter
-    metrics
     navigation
     object_avoidance
     object_base
@@ -71,7 +70,6 @@ LAYERS = (
     map_files
     modeline
     results
-    runs
     snapshot
     templates
     testing

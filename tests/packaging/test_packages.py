@@ -92,7 +92,8 @@ def install_without_compiler(environment: Any, request: pytest.FixtureRequest) -
     """As on a machine that has Python and nothing else: not one program of the system is on PATH."""
     nothing = environment.folder / "nothing"
     nothing.mkdir()
-    variables = {"PATH": f"{environment.bin}{os.pathsep}{nothing}", "CXX": "", "CC": ""}
+    path = f"{environment.bin}{os.pathsep}{nothing}"
+    variables = {"PATH": path, "CXX": "", "CC": "", "CMAKE_CXX_COMPILER_LAUNCHER": ""}
     assert not any(shutil.which(name, path=variables["PATH"]) for name in COMPILERS)
     log = environment.folder / "pip.log"
     environment.pip("install", "--log", log, request.getfixturevalue("sdist"), **variables)
