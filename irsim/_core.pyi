@@ -159,6 +159,26 @@ class Terrain:
     def clear(self, parts: Sequence[object], heading: float, start: Sequence[float], goal: Sequence[float]) -> bool:
         """Whether a body of fixed heading can move straight from start to goal."""
 
+class Clearance:
+    """Distances from the middles of cells to what stands in the way, and the widest ways between them.
+
+    They are never too short, and seldom (by much less than a cell) too long; what lies outside of the cells is not
+    seen. A body of which a disc of radius r gets
+    from one place to another passes cells with a distance of at least r minus half the diagonal of a cell.
+    """
+
+    def __init__(self, terrain: Terrain, cells: Cells) -> None: ...
+    distance: NDArray[np.float32]  # (nx, ny) [m]; 0 inside of an obstacle, infinity without any; a copy
+    def widest(self, start: Sequence[float], goal: Sequence[float], reach: float) -> tuple[float, float, float]:
+        """Least distance on the widest way from a cell by `start` to one within `reach` [m] of `goal`, and where.
+
+        -infinity if there is no way.
+        """
+    def climb(self, start: Sequence[float], reach: float) -> tuple[float, float]:
+        """The roomiest place uphill from `start`, at most `reach` [m] away."""
+    def way(self, start: Sequence[float], goal: Sequence[float], room: float) -> Floats:
+        """(K, 2) shortest way over cells with a distance of at least `room`; (0, 2) if there is none."""
+
 # sensors (core/sensors/)
 class Lidar2dOptions(_Options):
     def __init__(

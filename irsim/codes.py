@@ -191,6 +191,26 @@ CODES: dict[str, Code] = {
     "heading-in-degrees": Code(
         "heading looks like degrees", "All angles are in radians: a right angle is 1.5708, half a turn 3.14159."
     ),
+    "rate-in-degrees": Code(
+        "rate of turning looks like degrees",
+        "Rates of turning are in radians per second: half a turn a second is 3.14159, 90 degrees a second are 1.5708. "
+        "Example: vel_max: [1, 90]; write vel_max: [1, 1.5708].",
+    ),
+    "speed-in-centimetres": Code(
+        "speed looks like centimetres",
+        "Speeds are in metres per second; 50 m/s are 180 km/h. Example: vel_max: [80, 1] for 80 cm/s; write "
+        "vel_max: [0.8, 1].",
+    ),
+    "looks-like-centimetres": Code(
+        "length looks like centimetres",
+        "Lengths are in metres, and the robot does not fit into its world or is larger than any vehicle. Example: "
+        "shape: {name: circle, radius: 20} in a world of 10 m; 20 cm are radius: 0.2.",
+    ),
+    "step-time-long": Code(
+        "a step of a second or more",
+        "'step_time' is in seconds. Behaviors decide, and collisions are looked for, once per step. Example: "
+        "step_time: 100 for 100 ms; write step_time: 0.1.",
+    ),
     "default-shape": Code(
         "no shape given", "The default is a circle of radius 1 m, while {name: circle} has radius 0.2 m."
     ),
@@ -202,6 +222,47 @@ CODES: dict[str, Code] = {
     "initial-overlap": Code(
         "objects start in collision",
         "Two objects overlap at the start, one of which moves. With 'collision_mode: stop' both stay where they are.",
+    ),
+    "goal-reached": Code(
+        "goal reached at the start",
+        "A goal counts as reached within 'goal_threshold' (0.1 m by default). An object that starts there arrives in "
+        "the first step and never moves; waypoints that near to each other count together. With 'arrive_mode: state' "
+        "the heading counts too, one radian like one metre. Example: state [1, 1, 0] with goal [1.05, 1]; move the "
+        "goal, or lower 'goal_threshold'.",
+    ),
+    "goal-overshoot": Code(
+        "steps longer than the goal is wide",
+        "'dash' drives at full speed until the goal is within 'goal_threshold'. When one step (vel_max × step_time) "
+        "is longer than twice the threshold, the object can hop over its goal, turn, and hop again. Example: 3 m/s × "
+        "0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05.",
+    ),
+    "static-behavior": Code(
+        "behavior of something static",
+        "'static: true' keeps an object where it is, whatever its kinematics and behavior say. Remove one of the two.",
+    ),
+    "no-speed": Code(
+        "limits that allow no motion",
+        "The behavior wants to drive, but 'vel_min', 'vel_max' or 'acce' allow nothing but rest. For diff and acker "
+        "the first number is the speed forwards, for omni the first two are. Example: vel_max: [0, 1] turns on the "
+        "spot; write vel_max: [1, 1].",
+    ),
+    "no-turning": Code(
+        "limits that allow no turning",
+        "The second number of 'vel_max' and 'vel_min' is the rate of turning (diff) or the steering angle (acker). "
+        "Both 0 means straight ahead for ever, so only a goal straight ahead is reached. Example: vel_max: [1, 0]; "
+        "write vel_max: [1, 1].",
+    ),
+    "target-roles-nobody": Code(
+        "nobody of the role to avoid",
+        "'target_roles' says whom a behavior is shown: all, robot or obstacle. No other object of that role is there "
+        "(what is 'unobstructed' does not count), so the behavior avoids nobody. Example: target_roles: robot with one "
+        "robot among obstacles; write target_roles: all.",
+    ),
+    "jumps-through": Code(
+        "steps longer than what is in the way",
+        "Collisions are looked for after each step. An object that moves farther in one step than it and the wall are "
+        "thick together can be on one side before and on the other after, without a collision. Example: 20 m/s × 0.1 s "
+        "= 2 m against a wall of 0.1 m; lower step_time, or the speed: limits are in m/s.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code("start or goal outside the world", "Nothing stops objects at the edge; check the numbers."),
@@ -242,6 +303,11 @@ CODES: dict[str, Code] = {
     ),
     "lidar-beams": Code(
         "beams that do not spread", "One beam looks straight ahead, and an angle_range of 0 makes all beams one."
+    ),
+    "lidar-blind": Code(
+        "beams end inside of the robot",
+        "A lidar does not see its own robot. Beams that are shorter than the robot's body see nothing before the robot "
+        "has hit it. Example: range_max: 0.2 on a robot of radius 0.3; write range_max: 5. Lengths are in metres.",
     ),
     "lidar-noise-off": Code(
         "noise settings without noise", "std and angle_std count only with 'noise: true' (velocity_noise_std always)."

@@ -1,5 +1,6 @@
 // Planning on maps that Python puts together.
 #include "bind.hpp"
+#include "planning/clearance.hpp"
 #include "planning/plan.hpp"
 #include "spec.hpp"
 
@@ -96,6 +97,22 @@ bool clear(const Terrain& terrain, const Parts& parts, double heading, const Two
   return space.free({from[0], from[1]}) && space.clear({from[0], from[1]}, {to[0], to[1]});
 }
 
+Clearance make_clearance(const Terrain& terrain, const Cells& cells) {
+  const Lattice lattice = lattice_of(cells);
+  nb::gil_scoped_release free;
+  return Clearance(terrain.blockers(), lattice);
+}
+
+/// (nx, ny), i along x.
+nb::object distances(const Clearance& clearance) {
+  const std::size_t nx = static_cast<std::size_t>(clearance.lattice().nx);
+  const std::size_t ny = static_cast<std::size_t>(clearance.lattice().ny);
+  std::vector<float> out(nx * ny);
+  for (std::size_t i = 0; i < nx; ++i)
+    for (std::size_t j = 0; j < ny; ++j) out[i * ny + j] = clearance.distance()[j * nx + i];
+  return own(std::move(out), {nx, ny});
+}
+
 }  // namespace
 
 void bind_planning(nb::module_& m) {
@@ -115,6 +132,35 @@ void bind_planning(nb::module_& m) {
       .def("open_cells", &open_cells, nb::arg("parts"), nb::arg("heading"), nb::arg("cells"))
       .def("collides", &collides, nb::arg("parts"), nb::arg("pose"))
       .def("clear", &clear, nb::arg("parts"), nb::arg("heading"), nb::arg("start"), nb::arg("goal"));
+  nb::class_<Clearance>(m, "Clearance")
+      .def(
+          "__init__",
+          [](Clearance* self, const Terrain& terrain, const Cells& cells) {
+            new (self) Clearance(make_clearance(terrain, cells));
+          },
+          nb::arg("terrain"), nb::arg("cells"))
+      .def_prop_ro("distance", &distances)
+      .def(
+          "widest",
+          [](const Clearance& c, const Two& from, const Two& to, double reach) {
+            const Clearance::Way way = c.widest({from[0], from[1]}, {to[0], to[1]}, reach);
+            const Vec2 at = way.node < 0 ? Vec2{kNone, kNone} : c.lattice().at(way.node);
+            return std::make_tuple(way.room, at.x, at.y);
+          },
+          nb::arg("start"), nb::arg("goal"), nb::arg("reach"))
+      .def(
+          "climb",
+          [](const Clearance& c, const Two& from, double reach) {
+            const Vec2 top = c.climb({from[0], from[1]}, reach);
+            return std::make_tuple(top.x, top.y);
+          },
+          nb::arg("start"), nb::arg("reach"))
+      .def(
+          "way",
+          [](const Clearance& c, const Two& from, const Two& to, double room) {
+            return points(c.way({from[0], from[1]}, {to[0], to[1]}, room));
+          },
+          nb::arg("start"), nb::arg("goal"), nb::arg("room"));
 }
 
 }  // namespace irsim

@@ -93,8 +93,8 @@ def test_templates_give_nothing(path: Path) -> None:
 
 
 CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
-    (robot(goal=[[1, 1], [5, 1], [5, 5]]), "warning", "goal-levels", ("robot", 0, "goal")),
-    (robot(number=2, state=[[1, 1], [3, 3]], goal=[[1, 1], [5, 1], [5, 5]]),
+    (robot(goal=[[2, 1], [5, 1], [5, 5]]), "warning", "goal-levels", ("robot", 0, "goal")),
+    (robot(number=2, state=[[1, 1], [3, 3]], goal=[[2, 1], [5, 1], [5, 5]]),
         "warning", "goal-levels", ("robot", 0, "goal")),
     (robot(sensors=[{"number": 360, "angle_range": 6.28}]),
         "hint", "lidar-ends-meet", ("robot", 0, "sensors", 0, "number")),
@@ -110,7 +110,7 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     ({"world": {"fog_map": True, "fog_map_resolution": 1e-4}, **robot(sensors=[{"number": 5}])},
         "error", "fog-too-fine", ("world", "fog_map_resolution")),
     (robot(state=[1, 1, 0, 0]), "hint", "state-truncated", ("robot", 0, "state")),
-    (robot(vel_max=[3, 1]), "hint", "vel-min-default", ("robot", 0, "vel_max")),
+    (robot(vel_max=[1.5, 1]), "hint", "vel-min-default", ("robot", 0, "vel_max")),
     (robot(number=3, state=[5, 5]), "warning", "stacked", ("robot", 0, "state")),
     (robot(number=3), "warning", "stacked", ("robot", 0, "number")),
     (robot(kinematics={"name": "acker"}), "hint", "wheelbase-default", ("robot", 0, "kinematics", "name")),

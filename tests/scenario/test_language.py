@@ -29,6 +29,7 @@ robot:
     goal: [[[0, 0, 0], [8, 8, 0]]]
     vel_max: [4, 1]
     vel_min: [-4, -1]
+    goal_threshold: 0.3
     behavior: {name: dash, loop: true}
     sensors: [{type: lidar2d, number: 91, range_max: 8, angle_range: 6.28, plot: {alpha: 0.2}}]
   - number: 4
@@ -69,7 +70,7 @@ def test_every_section_at_once() -> None:
         "sensors: [{name: contact2d, force_scale: 0.1}, {name: lidar2d, has_velocity: true}]",
         "sensors: null",
         "behavior: {name: sfm, vmax: 1.2, relaxation_time: 0.4, n_angular: 3}",
-        "behavior: {name: rvo, vxmax: 1, vymax: 1, mode: hrvo, neighbor_threshold: 5, target_roles: robot}",
+        "behavior: {name: rvo, vxmax: 1, vymax: 1, mode: hrvo, neighbor_threshold: 5, target_roles: all}",
         "behavior: {name: orca, timeHorizon: 3}",
         "behavior: {name: follow, planner: jps, local: {name: rvo}, replan: 2}",
         "behavior: {name: follow, planner: {name: rrt_star, max_iter: 900}}",
@@ -91,7 +92,7 @@ def test_every_section_at_once() -> None:
         "arrive_mode: state\n    goal_threshold: 0.3",
         "group: 4\n    group_name: team",
         "role: robot",
-        "static: true",
+        "static: true\n    behavior: null",
         "unobstructed: true",
         "state_dim: 5\n    state: [1, 1, 0, 2, 3]",
         "kinematics: [{name: omni_angular, noise: false, alpha: [0.1, 0.1, 0.1]}]\n    velocity: [1, 0, 0]",

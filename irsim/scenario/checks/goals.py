@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -39,6 +40,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _outside(context, records)
             yield from _default_goal(path, entry, records)
             yield from _degrees(context, records)
+        yield from _reached(context, records)
         yield from _heading(context, path, records)
 
 
@@ -59,6 +61,41 @@ def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Itera
                 fix="kinematics: {name: omni_angular}, a goal of two numbers, or arrive_mode: position",
             )
             return
+
+
+def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+    """Goals where the object starts, and waypoints in one place."""
+    for record in records:
+        if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
+            continue
+        points = [record.state, *record.goals]
+        for index, (a, b) in enumerate(itertools.pairwise(points)):
+            if not _arrives(record, a, b):
+                continue
+            key = "waypoints" if context.given(record, "waypoints") else "goal"
+            where = context.entry_path(record, key) if context.given(record, key) else record.path
+            gap = f"{math.dist(a[:2], b[:2]):.3g} m"
+            if index == 0:
+                what = "goal" if len(record.goals) == 1 else "first goal"
+                message = f"'{record.name}' starts {gap} from its {what}: within {record.goal_threshold:g} m it counts"
+                message += " as reached"
+            else:
+                message = f"waypoint {index + 1} of '{record.name}' is {gap} from the one before: both count at once"
+            yield warning(
+                "goal-reached",
+                where,
+                message,
+                fix=f"a place farther away, or a smaller goal_threshold (now {record.goal_threshold:g} m)",
+            )
+            break
+
+
+def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
+    """Whether an object that stands at a has reached b."""
+    turn = 0.0
+    if record.arrive_mode == "state" and len(b) > 2:
+        turn = math.remainder((a[2] if len(a) > 2 else 0.0) - b[2], 2 * math.pi)
+    return math.hypot(a[0] - b[0], a[1] - b[1], turn) < record.goal_threshold
 
 
 def _levels(path: Path, entry: Entry) -> Iterator[Finding]:

@@ -9,10 +9,15 @@ from typing import Any
 from irsim.angles import FULL_TURN
 from irsim.diagnostics import Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint
+from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of
+from irsim.scenario.findings import Finding, error, hint, warning
+from irsim.scenario.objects import ObjectRecord
 
 _MOST_CELLS = 16_000_000
 _USUAL_CELL = 0.1
+_LEAST_SPAN = 1e-3
+"""Beams within less than this are one [rad]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -27,6 +32,7 @@ def check(context: Context) -> Iterator[Finding]:
             seen.add(where)
             for index, sensor in enumerate(record.sensors):
                 yield from _sensor(context, (*where, index), sensor)
+                yield from _blind(context, (*where, index), sensor, record)
         if not records:
             continue
         lidar = next((s for s in records[0].sensors if getattr(s, "is_lidar", False)), None)
@@ -59,6 +65,25 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
         yield hint("contact-without-mode", path, "there are no contact forces without 'collision_mode: contact'")
 
 
+def _blind(context: Context, path: Path, sensor: Any, record: ObjectRecord) -> Iterator[Finding]:
+    """Beams that end inside of the robot's own body, which they do not see."""
+    if not getattr(sensor, "is_lidar", False) or not has_fixed_shape(record.shape):
+        return
+    if math.hypot(*sensor.offset[:2]) > 0 or sensor.range_max > reach_of(record.shape):
+        return
+    x, y, radius = inner_disc(parts_of(record.shape))
+    own = radius - math.hypot(x, y)
+    if sensor.range_max <= own:
+        yield warning(
+            "lidar-blind",
+            (*path, "range_max"),
+            f"the beams are {sensor.range_max:g} m long and end inside of the body, which reaches {own:g} m: nothing "
+            "is seen before it is hit",
+            given=sensor.range_max,
+            fix="range_max: 10; lengths are in metres",
+        )
+
+
 def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
     """Fans of beams that are not what they look like."""
     count, span, written = sensor.number, sensor.angle_range, sensor.model_fields_set
@@ -67,11 +92,12 @@ def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
             where = (*path, "angle_range")
             yield hint("lidar-beams", where, "one beam looks straight ahead, whatever the angle_range", given=span)
         return
-    if span == 0:
+    if span < _LEAST_SPAN:
         yield hint(
             "lidar-beams",
             (*path, "angle_range"),
-            f"all {count} beams look the same way",
+            f"all {count} beams look the same way"
+            + (f": {span:g} rad are {math.degrees(span):.2g} degrees" if span > 0 else ""),
             given=span,
             fix="number: 1 for a range finder",
         )

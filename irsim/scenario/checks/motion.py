@@ -1,0 +1,234 @@
+"""Motion: behaviors that cannot move their object, steps that jump over walls, and nobody to look at."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from irsim.behaviors._options import CustomOptions
+from irsim.diagnostics import Edit, Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of, segment_gap, thickness, top_speed
+from irsim.scenario.findings import Finding, hint, warning
+from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.wording import flow
+
+Point = tuple[float, float]
+_PASSABLE = ("unobstructed", "reactive")
+_LOOKING = ("rvo", "sfm", "orca", "follow")
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """One finding per entry and code."""
+    seen: set[tuple[str, Path]] = set()
+    for finding in _all(context):
+        key = (finding.diagnostic.code, finding.diagnostic.path)
+        if key not in seen:
+            seen.add(key)
+            yield finding
+
+
+def _all(context: Context) -> Iterator[Finding]:
+    counts = {role: sum(r.role == role and not r.unobstructed for r in context.resolved.objects)
+              for role in ("robot", "obstacle")}  # fmt: skip
+    for record in context.written:
+        if record.kinematics is None:
+            continue
+        yield from _cannot_move(context, record)
+        yield from _nobody(context, record, counts)
+        yield from _overshoot(context, record)
+    if context.scenario.world.collision_mode not in _PASSABLE:
+        yield from _jumps(context)
+
+
+def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    key = "behavior" if record.behavior is not None else "group_behavior"
+    options: Any = getattr(record, key)
+    if options is None or isinstance(options, CustomOptions):
+        return
+    path = context.entry_path(record, key) if context.given(record, key) else record.path
+    if record.static:
+        yield warning(
+            "static-behavior",
+            (*record.path, "static"),
+            f"'{record.name}' is static: its behavior '{options.name}' never moves it",
+            given=True,
+            fix="remove 'static: true', or the behavior",
+            edit=Edit("remove", (*record.path, "static")) if record.role == "robot" else None,
+        )
+        return
+    drive: Any = record.kinematics
+    rows: tuple[str, ...] = getattr(drive, "control_rows", ())
+    if context.scenario.world.step_mode == "external" or drive.name not in ("diff", "omni", "omni_angular", "acker"):
+        return
+    moving = 2 if drive.name in ("omni", "omni_angular") else 1
+    ranges = list(zip(record.vel_min, record.vel_max, strict=False))
+    if len(ranges) < moving or len(rows) != len(ranges) or any(low > high for low, high in ranges):
+        return
+    written = "vel_max" if context.given(record, "vel_max") else "vel_min"
+    where = context.entry_path(record, written) if context.given(record, written) else path
+    if all(low >= 0 >= high for low, high in ranges[:moving]):
+        yield warning(
+            "no-speed",
+            where,
+            f"its limits are zero, so the behavior '{options.name}' cannot move '{record.name}'",
+            given=getattr(record, written),
+            fix=f"vel_max: {flow([1.0] * len(ranges))}, in m/s and rad/s",
+        )
+    elif moving == 1 and ranges[0][1] <= 0 and not record.wander:
+        yield warning(
+            "no-speed",
+            where,
+            f"'{record.name}' can only drive backwards (at most {ranges[0][1]:g} m/s), and '{options.name}' wants "
+            "to drive forwards",
+            given=getattr(record, written),
+            fix="a positive first number in 'vel_max'",
+        )
+    elif moving == 1 and all(value == 0 for value in ranges[1]):
+        what = "steer" if drive.name == "acker" else "turn"
+        yield warning(
+            "no-turning",
+            where,
+            f"the second limit is zero, so '{record.name}' cannot {what}: it only drives straight ahead",
+            given=getattr(record, written),
+            fix="a second number greater than 0 in 'vel_max', and its negative in 'vel_min'",
+        )
+    stuck = [i for i in range(moving) if record.acce[i] == 0 and record.velocity[i] == 0]
+    if len(stuck) == moving:
+        yield warning(
+            "no-speed",
+            context.entry_path(record, "acce"),
+            f"without acceleration '{record.name}' stays at rest",
+            given=record.acce,
+            fix="leave 'acce' out for no limit, or give a rate in m/s²",
+        )
+
+
+def _nobody(context: Context, record: ObjectRecord, counts: dict[str, int]) -> Iterator[Finding]:
+    for key in ("behavior", "group_behavior"):
+        options: Any = getattr(record, key)
+        roles = getattr(options, "target_roles", "all")
+        if options is None or roles == "all" or isinstance(options, CustomOptions):
+            continue
+        where = (*context.entry_path(record, key), "target_roles")
+        if options.name not in _LOOKING:
+            if "target_roles" in options.model_fields_set:
+                yield hint("ignored-key", where, f"'{options.name}' looks at nobody: 'target_roles' has no effect",
+                           given=roles, fix="remove it")  # fmt: skip
+            continue
+        others = counts[roles] - (record.role == roles and not record.unobstructed)
+        if others <= 0:
+            other = "obstacle" if roles == "robot" else "robot"
+            there = f"; the others are {other}s" if counts[other] - (record.role == other) > 0 else ""
+            yield warning(
+                "target-roles-nobody",
+                where,
+                f"there is no {'other ' if record.role == roles else ''}{roles} to avoid{there}",
+                given=roles,
+                allowed="all, robot, obstacle",
+                fix="target_roles: all",
+                edit=Edit("replace", where, "all"),
+            )
+
+
+def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Dashing at full speed, an object can hop from one side of its goal to the other for ever."""
+    options: Any = record.behavior if record.group_behavior is None else None
+    options = getattr(options, "local", options)
+    if getattr(options, "name", "") != "dash" or record.static or not record.goals or record.goal_threshold <= 0:
+        return
+    dt = context.scenario.world.step_time
+    step = top_speed(record) * dt
+    if not math.isfinite(step) or step <= 2 * record.goal_threshold * (1 + 1e-9):
+        return
+    threshold = math.ceil(step / 2 * 100 + 1) / 100
+    yield hint(
+        "goal-overshoot",
+        record.path,
+        f"'{record.name}' drives {step:.3g} m per step and 'dash' does not slow down: it may hop over its goal, which "
+        f"counts as reached within {record.goal_threshold:g} m",
+        fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
+    )
+
+
+@dataclass(frozen=True)
+class _Body:
+    record: ObjectRecord
+    width: float  # least extent
+    speed: float
+
+
+def _jumps(context: Context) -> Iterator[Finding]:
+    """Collisions are looked for after each step: what is thinner than a step can be jumped over."""
+    dt = context.scenario.world.step_time
+    known: dict[int, float] = {}
+
+    def body(record: ObjectRecord) -> _Body:
+        key = id(record.shape)
+        if key not in known:
+            known[key] = thickness(record.shape)
+        return _Body(record, known[key], top_speed(record))
+
+    there = [
+        record
+        for record in context.resolved.objects
+        if not record.unobstructed and record.shape.name != "walls" and has_fixed_shape(record.shape)
+    ]
+    moving = [body(record) for record in there if record.kinematics is not None]
+    fast = [b for b in moving if 0 < b.speed < math.inf and math.isfinite(b.width) and b.speed * dt > b.width]
+    if not fast or len(there) < 2:
+        return
+    bodies = [*moving, *(body(record) for record in there if record.kinematics is None)]
+    told: set[Path] = set()
+    for one in fast:
+        own = 2 * inner_disc(parts_of(one.record.shape))[2]
+        if one.record.path in told or own == 0:  # a line moves along itself as well as across
+            continue
+        found = None
+        for other in sorted(bodies, key=lambda b: (b.width, b.record.id)):
+            step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
+            if step <= own + other.width and other.speed == 0:
+                break  # and all that follow are thicker, or slower
+            if other.record is not one.record and step > own + other.width and _may_meet(one, other, dt):
+                found = other, own + other.width, step / dt
+                break
+        if found is None:
+            continue
+        told.add(one.record.path)
+        other, least, speed = found
+        thing = "the map" if other.record.path[0] == "world" else f"'{other.record.name}'"
+        together = "" if other.speed == 0 else f", and {thing} {other.speed * dt:.3g} m towards it"
+        longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
+        yield warning(
+            "jumps-through",
+            context.entry_path(one.record, "vel_max") if context.given(one.record, "vel_max") else one.record.path,
+            f"'{one.record.name}' moves {one.speed * dt:.3g} m per step{together}: it can pass through {thing} "
+            f"({other.width:.3g} m thick) without ever touching it",
+            given=one.record.vel_max,
+            fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s)",
+        )
+
+
+def _may_meet(one: _Body, other: _Body, dt: float) -> bool:
+    """Whether the straight ways from goal to goal come near each other; anything may happen to who has no such way."""
+    if other.speed > 0 and (one.record.behavior is None or other.record.behavior is None):
+        return False  # a program drives them: it knows
+    if other.record.path[0] == "world" or not (
+        _is_straight(one.record) and (_is_straight(other.record) or not other.speed)
+    ):
+        return True
+    near = reach_of(one.record.shape) + reach_of(other.record.shape) + (one.speed + other.speed) * dt
+    return min(segment_gap(a, b) for a in _way(one.record) for b in _way(other.record)) <= near
+
+
+def _is_straight(record: ObjectRecord) -> bool:
+    return getattr(record.behavior, "name", "") == "dash" and not record.wander and bool(record.goals)
+
+
+def _way(record: ObjectRecord) -> list[tuple[Point, Point]]:
+    points = [(p[0], p[1]) for p in (record.state, *([] if record.kinematics is None else record.goals))]
+    return list(itertools.pairwise(points)) or [(points[0], points[0])]

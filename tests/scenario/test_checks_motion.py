@@ -1,0 +1,158 @@
+"""Checks of motion and units: what cannot move, what jumps over walls, numbers in the wrong unit."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+import irsim
+from irsim import _core as core
+from irsim.scenario.extent import inner_disc, segment_gap, thickness
+from irsim.scenario.read import read
+from irsim.shapes.polygon import Polygon
+from irsim.shapes.rectangle import Rectangle
+
+BASE = {
+    "kinematics": {"name": "diff"},
+    "shape": {"name": "circle", "radius": 0.2},
+    "behavior": {"name": "dash"},
+    "state": [1, 1, 0],
+    "goal": [9, 9],
+}
+POST = {"shape": {"name": "circle", "radius": 0.3}, "state": [5, 5, 0]}
+WALL = {"shape": {"name": "rectangle", "length": 0.1, "width": 6}, "state": [5, 5, 0]}
+
+
+def codes(data: Any) -> list[str]:
+    return [d.code for d in read(data, strict=True).diagnostics]
+
+
+def one(robot: dict[str, Any], *obstacles: dict[str, Any], **world: Any) -> dict[str, Any]:
+    return {"world": world, "robot": [{**BASE, **robot}], "obstacle": list(obstacles)}
+
+
+def both(robot: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
+    return {"robot": [{**BASE, **robot}, {**BASE, **second}]}
+
+
+CAR = {"name": "acker", "wheelbase": 0.3}
+FOUND = [
+    (one({"goal": [1.05, 1]}), "goal-reached"),
+    (one({"goal": [1.05, 1, 0.05], "arrive_mode": "state", "kinematics": {"name": "omni_angular"}}), "goal-reached"),
+    (one({"goal": None, "waypoints": [[3, 3], [3, 3.05], [5, 5]]}), "goal-reached"),
+    (one({"static": True}), "static-behavior"),
+    (one({"vel_max": [0, 1], "vel_min": [0, -1]}), "no-speed"),
+    (one({"vel_max": [0, 1], "vel_min": [-1, -1]}), "no-speed"),
+    (one({"vel_max": [0, 0], "vel_min": [0, 0], "kinematics": {"name": "omni"}}), "no-speed"),
+    (one({"acce": [0, 1]}), "no-speed"),
+    (one({"vel_max": [1, 0], "vel_min": [-1, 0]}), "no-turning"),
+    (one({"vel_max": [1, 0], "vel_min": [-1, 0], "kinematics": CAR}), "no-turning"),
+    (one({"behavior": {"name": "rvo", "target_roles": "robot"}}, POST), "target-roles-nobody"),
+    (one({"behavior": {"name": "sfm", "target_roles": "obstacle"}}), "target-roles-nobody"),
+    (one({"behavior": {"name": "rvo", "target_roles": "obstacle"}}, {**POST, "unobstructed": True}),
+        "target-roles-nobody"),
+    (one({"behavior": {"name": "dash", "target_roles": "robot"}}), "ignored-key"),
+    (one({"vel_max": [8, 1], "vel_min": [-8, -1]}, WALL), "jumps-through"),
+    (one({"vel_max": [1, 1]}, WALL, step_time=0.6), "jumps-through"),
+    (both({"vel_max": [9, 1], "vel_min": [-9, -1]}, {"state": [9, 9, 0], "goal": [1, 1]}), "jumps-through"),
+    (one({"vel_max": [3, 1], "vel_min": [-3, -1]}), "goal-overshoot"),
+    (one({"vel_max": [1, 90], "vel_min": [-1, -90]}), "rate-in-degrees"),
+    (one({"vel_max": [80, 1], "vel_min": [-80, -1]}), "speed-in-centimetres"),
+    (one({"shape": {"name": "circle", "radius": 20}, "state": [5, 5, 0]}), "looks-like-centimetres"),
+    (one({}, step_time=100), "step-time-long"),
+    (one({"sensors": [{"name": "lidar2d", "range_max": 0.15}]}), "lidar-blind"),
+    (one({"sensors": [{"name": "lidar2d", "angle_range": 1.5e-5}]}), "lidar-beams"),
+    (one({"sensors": [{"name": "lidar2d", "offset": [0, 0, 90]}]}), "heading-in-degrees"),
+    (one({"distribution": {"name": "random", "range_low": [1, 1, -180]}, "goal": None, "state": None}),
+        "heading-in-degrees"),
+    (one({"behavior": {"name": "rvo", "wander": True, "range_low": [1, 1, 0], "range_high": [9, 9, 180]}}),
+        "heading-in-degrees"),
+]  # fmt: skip
+SANE = [
+    one({}, POST),
+    one({"goal": [1.15, 1]}),
+    one({"goal": [1.05, 1, 1.5], "arrive_mode": "state", "kinematics": {"name": "omni_angular"}}),
+    one({"goal": [1, 1], "behavior": {"name": "dash", "loop": True}}),
+    one({"goal": None, "behavior": {"name": "dash", "wander": True}}),
+    one({"static": True, "behavior": None}),
+    one({"vel_max": [1, 0.5], "vel_min": [0, -0.5]}, POST),
+    one({"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}}),
+    one({"acce": [0.5, 1]}),
+    one({"acce": [0, 1], "velocity": [0.5, 0]}),
+    one({"behavior": {"name": "rvo", "target_roles": "obstacle"}}, POST),
+    both({"behavior": {"name": "rvo", "target_roles": "robot"}}, {"state": [3, 1, 0]}),
+    one({"vel_max": [4, 1], "vel_min": [-4, -1], "goal_threshold": 0.3}, WALL),
+    one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, WALL, collision_mode="unobstructed"),
+    one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, {**WALL, "unobstructed": True}),
+    one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5, "goal": [9, 1]}, {**WALL, "state": [2, 6, 0]}),
+    one({"vel_max": [2, 3], "vel_min": [-2, -3]}),
+    one({"shape": {"name": "circle", "radius": 2}, "state": [3, 3, 0], "goal": [7, 7]}),
+    one({"sensors": [{"name": "lidar2d", "range_max": 0.5}]}),
+    one({"sensors": [{"name": "lidar2d", "offset": [0.1, 0, 1.57]}]}),
+]
+
+
+@pytest.mark.parametrize(("data", "code"), FOUND, ids=[f"{code}-{i}" for i, (_, code) in enumerate(FOUND)])
+def test_finds(data: Any, code: str) -> None:
+    reading = read(data, strict=True)
+    found = [d for d in reading.diagnostics if d.code == code]
+    assert len(found) == 1, reading.diagnostics
+    assert found[0].severity in ("warning", "hint")
+    assert found[0].fix
+    assert code in irsim.codes.CODES
+
+
+@pytest.mark.parametrize("data", SANE, ids=range(len(SANE)))
+def test_says_nothing_of_sane_ones(data: Any) -> None:
+    assert set(codes(data)) <= {"no-behavior"}
+
+
+def test_what_is_said_to_hop_over_its_goal_does() -> None:
+    """And with the threshold that the fix names it arrives."""
+    text = (
+        "robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
+        "state: [1, 1, 0], goal: [8.03, 7.11], vel_max: [3, 1], vel_min: [-3, -1], goal_threshold: {}}}\n"
+    )
+    assert irsim.run(text=text.format(0.1), seed=0).outcome == "timeout"
+    hint = next(d for d in read(text.format(0.1)).diagnostics if d.code == "goal-overshoot")
+    assert "goal_threshold: 0.16" in str(hint.fix)
+    assert irsim.run(text=text.format(0.16), seed=0).outcome == "success"
+
+
+def test_what_is_said_to_jump_through_a_wall_does() -> None:
+    text = (
+        "world: {{step_time: {}}}\n"
+        "robot: {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
+        "state: [1, 5, 0], goal: [9, 5], vel_max: [8, 8], vel_min: [-8, -8], goal_threshold: 0.5}}\n"
+        "obstacle: [{{shape: {{name: rectangle, length: 0.1, width: 6}}, state: [5.4, 5, 0]}}]\n"
+    )
+    assert irsim.run(text=text.format(0.1), seed=0).outcome == "success"
+    found = next(d for d in read(text.format(0.1)).diagnostics if d.code == "jumps-through")
+    step = float(str(found.fix).split()[1])
+    assert step == pytest.approx(0.06)
+    assert irsim.run(text=text.format(step), seed=0).outcome == "collision"
+
+
+def test_the_disc_inside() -> None:
+    box = [core.Polygon(vertices=[[-1, -0.5], [3, -0.5], [3, 0.5], [-1, 0.5]])]
+    assert inner_disc(box)[2] == pytest.approx(0.5, rel=0.02)
+    triangle = [core.Polygon(vertices=[[0, 0], [3, 0], [0, 4]])]
+    assert inner_disc(triangle) == pytest.approx((1, 1, 1), rel=0.03)
+    notch = [core.Polygon(vertices=[[0, 0], [4, 0], [4, 4], [3, 4], [3, 1], [0, 1]])]
+    assert 0.5 <= inner_disc(notch)[2] <= math.sqrt(2) / (1 + math.sqrt(2)) + 1e-9
+    assert inner_disc([core.Circle(radius=0.3, center=[1, 0])]) == (1, 0, 0.3)
+    assert inner_disc([core.Linestring(vertices=[[0, 0], [1, 1]])])[2] == 0
+
+
+def test_the_least_extent() -> None:
+    assert thickness(Rectangle(length=4, width=0.1)) == pytest.approx(0.1)
+    turned = Polygon(vertices=[[0, 0], [3, 3], [2.9, 3.1], [-0.1, 0.1]])
+    assert thickness(turned) == pytest.approx(math.sqrt(0.02))
+
+
+def test_gaps_between_segments() -> None:
+    assert segment_gap(((0, 0), (2, 2)), ((0, 2), (2, 0))) == 0
+    assert segment_gap(((0, 0), (2, 0)), ((3, 1), (3, -1))) == 1
+    assert segment_gap(((0, 0), (0, 0)), ((3, 4), (3, 4))) == 5
