@@ -342,8 +342,8 @@ class ObjectSpec:
         grouped: The behavior is that of the group: it decides for all members at once.
         route: How it plans a path for its behavior to follow, or None.
         sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
-        centroid: x, y in the body frame, what contacts turn it about; empty follows from the shape, where overlaps
-            of parts count twice.
+        centroid: x, y in the body frame, what contacts turn it about, and possibly the square of its radius of gyration
+            [m^2]; empty follows from the shape, where overlaps of parts count twice.
         mass: [kg], infinity for what nothing can push.
         friction: Coefficient of friction with the ground.
         inertia: Moment of inertia [kg m^2]; NaN follows from shape and mass.

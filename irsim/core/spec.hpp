@@ -39,7 +39,7 @@ struct ObjectSpec {
   bool grouped;                       // the behavior is that of the group and decides for all its members at once
   std::optional<RouteOptions> route;  // plans a path for its behavior to follow
   std::vector<Sensor> sensors;
-  std::vector<double> centroid;                      // x, y in the body frame; empty: from the shape
+  std::vector<double> centroid;                      // x, y in the body frame, squared radius of gyration; or less
   double mass, friction, inertia, restitution, tau;  // for contacts; inertia NaN: from shape and mass
   bool driven;                                       // has a drive, native or not
 

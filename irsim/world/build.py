@@ -12,7 +12,7 @@ from irsim.behaviors.follow import Follow
 from irsim.maps._grid import MapCells, Walls
 from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, KINEMATICS, PLANNERS, SENSORS, SHAPES, Feature, Registry
 from irsim.world.fog import build_fog
-from irsim.world.geometry import compound_centroid
+from irsim.world.geometry import compound_body
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -137,7 +137,7 @@ def build_object(
         grouped=group_behavior is not None,
         route=route,
         sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
-        centroid=compound_centroid(parts) if contact and len(parts) > 1 else [],
+        centroid=compound_body(parts) if contact and len(parts) > 1 else [],
         mass=record.mass,
         friction=record.friction,
         inertia=math.nan if record.inertia is None else record.inertia,

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from irsim import _core as core
 from irsim.maps._grid import MapCells, Walls
 
@@ -12,7 +14,7 @@ if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["compound_centroid", "core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
+__all__ = ["compound_body", "core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
 
 _QUADRANT_SEGMENTS = 16
 
@@ -98,8 +100,13 @@ def from_shapely(geometry: Any) -> list[core.Part]:
     return parts
 
 
-def compound_centroid(parts: Sequence[Any]) -> list[float]:
-    """Centre of the area that parts of a compound cover together, body frame; empty where a part is drawn per scene."""
+def compound_body(parts: Sequence[Any]) -> list[float]:
+    """What contacts need to know of the area that parts of a compound cover together.
+
+    Returns:
+        Its centre, x, y [m, body frame], and the square of its radius of gyration [m^2] if it is in one piece (holes
+        count as filled); empty where a part is drawn per scene.
+    """
     import shapely
 
     shapes: list[Any] = []
@@ -112,5 +119,14 @@ def compound_centroid(parts: Sequence[Any]) -> list[float]:
             shapes.append(shapely.LineString(part.vertices))
         else:
             return []
-    centre = shapely.union_all(shapes).centroid
-    return [centre.x, centre.y]
+    area = shapely.union_all(shapes)
+    centre = [area.centroid.x, area.centroid.y]
+    return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
+
+
+def _gyration2(ring: Any, centre: Sequence[float]) -> float:
+    """Second moment of the area in a closed ring about ``centre``, per area [m^2]."""
+    a = np.asarray(ring, dtype=np.float64)[:-1] - centre
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return float(np.sum(cross * np.sum(a * a + a * b + b * b, axis=1)) / (6.0 * np.sum(cross)))

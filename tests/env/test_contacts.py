@@ -12,6 +12,7 @@ import irsim
 import irsim.lib as irsim_lib
 from irsim.contacts import contact_step
 from irsim.env import Env
+from irsim.simulation import Simulation
 from irsim.world.sensors import Contact2D
 
 WORLD = """
@@ -116,3 +117,112 @@ def test_what_is_drawn(env: Env) -> None:
     points: Any = force.geometry.points  # type: ignore[union-attr]
     assert points == pytest.approx(np.array([[x, y], [x - length, y]]))
     assert list(scene.of(2, "contact")) == []
+
+
+def open_text(tmp_path: Path, text: str) -> Env:
+    path = tmp_path / "text.yaml"
+    path.write_text(text)
+    return irsim.make(str(path), headless=True, log_level="ERROR", seed=1)
+
+
+def test_compounds_turn_about_the_centre_of_what_they_cover(tmp_path: Path) -> None:
+    def parts(*rectangles: tuple[float, ...]) -> str:
+        return ", ".join(
+            f"{{name: rectangle, length: {a}, width: {b}, pose: [{x}, {y}, 0]}}" for a, b, x, y in rectangles
+        )
+
+    def bodies(*rectangles: tuple[float, ...]) -> str:
+        return f"  - {{shape: {{name: compound, parts: [{parts(*rectangles)}]}}, state: [5, 5, 0.3], mass: 4}}\n"
+
+    ell = [(1.0, 0.2, 0.5, 0.1), (0.2, 0.6, 0.1, 0.5)]  # side by side
+    overlapping = [(1.0, 0.2, 0.5, 0.1), (0.2, 0.8, 0.1, 0.4)]  # the same area, a corner twice
+    apart = [(0.4, 0.2, 0.0, 0.0), (0.4, 0.2, 1.0, 0.0)]
+    text = "world: {collision_mode: contact}\nrobot: [{kinematics: {name: diff}, state: [1, 1, 0]}]\nobstacle:\n"
+    env = open_text(tmp_path, text + bodies(*ell) + bodies(*overlapping) + bodies(*apart))
+    area = np.array([a * b for a, b, _, _ in ell])
+    centre = np.array([[x, y] for _, _, x, y in ell])
+    whole = area @ centre / area.sum()
+    own = np.array([(a**2 + b**2) / 12 for a, b, _, _ in ell])
+    steiner = np.sum((centre - whole) ** 2, axis=1)
+    inertia = 4 * float(area @ (own + steiner)) / area.sum()
+    for body in env.obstacle_list[:2]:
+        w, i, _, x, y = env.simulation.state.body(body.row)
+        assert (x, y) == pytest.approx(tuple(whole), abs=1e-12)
+        assert (w, i) == pytest.approx((1 / 4, 1 / inertia), abs=1e-9)
+        assert body.inertia == pytest.approx(inertia, abs=1e-9)
+    loose = env.obstacle_list[2]
+    assert loose.inertia == pytest.approx(4 * loose.radius**2 / 2), "in pieces: as a disc around all of them"
+    assert env.simulation.state.body(loose.row)[3:] == pytest.approx((0.5, 0.0))
+
+
+def test_actions_and_behaviors_meet_the_same_grip(tmp_path: Path) -> None:
+    text = """
+world: {collision_mode: contact, width: 20, height: 20}
+robot: {kinematics: {name: diff, tau: 0.2}, state: [1, 5, 0], goal: [15, 5, 0], friction: 0.2, mass: 3, %s}
+obstacle: [{shape: {name: circle, radius: 0.3}, state: [1.8, 5.05, 0], mass: 1}]
+"""
+    led = open_text(tmp_path, text % "behavior: {name: dash}")
+    told = open_text(tmp_path, text % "behavior: null")
+    for step in range(30):
+        heading = float(led.robot.state[2, 0])
+        bearing = float(np.arctan2(*(led.robot.goal[:2, 0] - led.robot.state[:2, 0])[::-1]))
+        error = (bearing - heading + np.pi) % (2 * np.pi) - np.pi
+        led.step()
+        if abs(error) > 0.1:
+            pytest.fail(f"dash turns at step {step}")
+        told.step([float(np.cos(error)), 0.0])
+        for a, b in zip(led.objects, told.objects, strict=True):
+            assert a.state == pytest.approx(b.state, abs=1e-9)
+    assert led.objects[1].state[0, 0] > 2.5
+
+
+def test_objects_come_and_go_and_reset_brings_all_back(env: Env) -> None:
+    start = [o.state.copy() for o in env.objects]
+    for _ in range(3):
+        env.step([1.0, 0.0])
+    assert env.contacts
+    speed = env.robot.velocity.copy()
+    box = env.objects[2]
+    env.delete_object(box.id)
+    assert env.contacts == []
+    assert env.robot.velocity.tolist() == speed.tolist(), "what the drive does goes on"
+    env.step([1.0, 0.0])
+    assert env.contacts == []
+    new = env.create_obstacle(shape={"name": "circle", "radius": 0.2}, state=[2.0, 5, 0], mass=0.5, static=False)
+    env.add_object(new)
+    met = False
+    for _ in range(10):
+        env.step([1.0, 0.0])
+        met = met or any(new in (c.a, c.b) for c in env.contacts)
+    assert met
+    assert new.state[0, 0] > 2.05
+    assert new.pushable
+    distance = float(np.hypot(*(new.state[:2, 0] - env.robot.state[:2, 0])))
+    assert distance >= 0.4 - 1e-3
+    env.delete_object(new.id)
+    env.add_object(box)
+    env.step([1.0, 0.0])
+    env.reset()
+    back = {o.name: o.state for o in env.objects}
+    for o, state in zip([env.objects[0], env.objects[1]], start[:2], strict=True):
+        assert back[o.name] == pytest.approx(state)
+    assert env.contacts == []
+    assert env.robot.contact.contact_time == 0
+
+
+def test_worlds_of_a_batch_are_single_worlds(tmp_path: Path) -> None:
+    scenario = open_text(tmp_path, WORLD).scenario
+    many = Simulation(scenario, [3, 4, 5], threads=2)
+    n = many.objects
+    for _ in range(20):
+        for w in range(3):
+            many.impose(w * n, [0.5 + 0.2 * w, 0.1])
+        many.step()
+    for w, seed in enumerate([3, 4, 5]):
+        one = Simulation(scenario, [seed])
+        for _ in range(20):
+            one.impose(0, [0.5 + 0.2 * w, 0.1])
+            one.step()
+        for name in ("pose", "control", "twist"):
+            assert getattr(many, name)[w * n : (w + 1) * n].tobytes() == getattr(one, name).tobytes()
+        assert many.state.contacts(w) == one.state.contacts(0)

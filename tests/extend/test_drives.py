@@ -254,3 +254,92 @@ def test_objects_with_it_come_and_go(make: Make) -> None:
     env.reset(random=True)
     assert [view.kinematics for view in env.objects] == ["diff"]
     env.step()
+
+
+CONTACT = """
+world: {width: 20, height: 20, collision_mode: contact}
+robot:
+  - {kinematics: {name: %s, tau: 0.2}, shape: {name: circle, radius: 0.2}, state: [5, 5, 0.1], mass: %s, friction: 0.5}
+obstacle:
+  - {shape: {name: rectangle, length: 0.4, width: 0.4}, state: [5.45, 5.05, 0.2], mass: 4, friction: 0.5}
+"""
+
+
+@pytest.mark.parametrize("mass", [1.0, 20.0])
+def test_it_lags_grips_and_feels_contacts_like_ours(make: Make, mass: float) -> None:
+    @register_kinematics("holonomic")
+    class Holonomic(KinematicsHandler):
+        action_dim, vel_max, vel_min, acce = 3, (1.0, 1.0, 1.0), (-1.0, -1.0, -1.0), (math.inf,) * 3
+        translation_rows, yaw_rate_row = (0, 1), 2
+
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            x, y = self.velocity_to_xy(state, velocity)[:, 0]
+            return state + np.array([[x], [y], [velocity[2, 0]]]) * step_time
+
+        def velocity_to_xy(self, state: Any, velocity: Any) -> Any:
+            c, s = math.cos(state[2, 0]), math.sin(state[2, 0])
+            return np.array([[c, -s], [s, c]]) @ velocity[:2]
+
+        def velocity_from_xy(self, state: Any, velocity_xy: Any) -> Any:
+            c, s = math.cos(state[2, 0]), math.sin(state[2, 0])
+            return np.vstack([np.array([[c, s], [-s, c]]) @ velocity_xy, [[0.0]]])
+
+    env, ours = make(CONTACT % ("holonomic", mass)), make(CONTACT % ("omni_angular", mass))
+    for step in range(25):
+        for each in (env, ours):
+            each.step([0.9, 0.1 if step < 12 else -0.2, 0.05] if step < 20 else None)
+        for a, b in zip(env.objects, ours.objects, strict=True):
+            assert a.state == pytest.approx(b.state, abs=1e-9)
+            assert a.velocity == pytest.approx(b.velocity, abs=1e-9)
+        assert env.robot.drive_velocity_xy == pytest.approx(ours.robot.drive_velocity_xy, abs=2e-2)
+        assert [c.force for c in env.contacts] == pytest.approx([c.force for c in ours.contacts], abs=1e-6)
+    assert env.objects[1].state[0, 0] > 5.5 if mass > 10 else env.robot.state[0, 0] < 5.2
+    env.reset()
+    env.step([0.9, 0.0, 0.0])
+    assert env.robot.velocity[0, 0] == pytest.approx(0.45), "lag from rest"
+
+
+def test_more_controls_than_the_core_keeps_lag_grip_and_feel_contacts(make: Make) -> None:
+    @register_kinematics("four_wheels")
+    class FourWheels(KinematicsHandler):
+        action_dim, vel_max, vel_min, acce = 4, (2.0,) * 4, (-2.0,) * 4, (math.inf,) * 4
+        translation_rows = (0, 3)
+
+        def step(self, state: Any, velocity: Any, step_time: float) -> Any:
+            return state + np.array([[velocity[0, 0]], [velocity[3, 0]], [0.0]]) * step_time
+
+        def velocity_to_xy(self, state: Any, velocity: Any) -> Any:
+            return np.array([velocity[0], velocity[3]])
+
+        def velocity_from_xy(self, state: Any, velocity_xy: Any) -> Any:
+            return np.array([velocity_xy[0], [0.0], [0.0], velocity_xy[1]])
+
+    wall = "{shape: {name: rectangle, length: 0.2, width: 4}, state: [5.5, 5, 0]}"
+    env = make(
+        "world: {width: 20, height: 20, collision_mode: contact, gravity: 10.0}\n"
+        "robot: {kinematics: {name: four_wheels}, shape: {name: circle, radius: 0.2}, state: [5, 5, 0]}\n"
+        f"obstacle: [{wall}]"
+    )
+    env.step([0.9, 0.3, 0.2, 1.2])
+    assert env.robot.velocity[:, 0] == pytest.approx([0.3, 0.3, 0.2, 0.4]), "no more than friction allows"
+    for _ in range(6):
+        env.step([0.9, 0.3, 0.2, 1.2])
+    assert env.robot.state[0, 0] == pytest.approx(5.2, abs=1e-5), "at the wall"
+    assert env.robot.velocity[:, 0] == pytest.approx([0.0, 0.3, 0.2, 1.2], abs=1e-4)
+    assert env.robot.drive_velocity_xy[:, 0] == pytest.approx([0.9, 1.2])
+    assert env.contacts[0].force == pytest.approx(0.5 * 10.0 * env.robot.mass), "what its wheels can press"
+    env.robot.apply_contact_velocity([0.0, -0.2])
+    assert env.robot.velocity[3, 0] == pytest.approx(1.0)
+
+
+def test_an_overridden_step_answers_a_command_once(make: Make) -> None:
+    plain, hooked = make(CONTACT % ("diff", 20)), make(CONTACT % ("diff", 20))
+    robot = hooked.robot
+    usual = robot.step
+    robot.step = lambda *args, **kwargs: usual(*args, **kwargs)
+    for _ in range(10):
+        for each in (plain, hooked):
+            each.step([0.8, 0.1])
+        for a, b in zip(plain.objects, hooked.objects, strict=True):
+            assert a.state == pytest.approx(b.state, abs=1e-12)
+            assert a.velocity == pytest.approx(b.velocity, abs=1e-12)

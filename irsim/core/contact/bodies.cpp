@@ -114,13 +114,14 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     bodies->begin.push_back(static_cast<int>(bodies->pieces.size()));
     Vec2 centre = whole.size > 0.0 ? whole.moment * (1.0 / whole.size) : shapes.centre[i];
     const std::vector<double>& given = world.specs[i].centroid;
-    if (given.size() == 2) centre = {given[0], given[1]};
+    if (given.size() >= 2) centre = {given[0], given[1]};
     bodies->centroid.push_back(centre);
     const Matter& matter = world.matter[i];
     bodies->inverse_mass.push_back(matter.pushable ? 1.0 / matter.mass : 0.0);
     double per_mass = 0.5 * shapes.radius[i] * shapes.radius[i];
     const bool polygon = parts == 1 && shapes.parts[shapes.body[i].part].kind == Kind::polygon && whole.size > 0.0;
     if (polygon) per_mass = whole.polar / whole.size - squared(centre);
+    if (given.size() == 3) per_mass = given[2];
     bodies->gyration2.push_back(per_mass);
     const double inertia = std::isnan(matter.inertia) ? matter.mass * per_mass : matter.inertia;
     bodies->inverse_inertia.push_back(matter.pushable && inertia > 0.0 ? 1.0 / inertia : 0.0);

@@ -351,8 +351,9 @@ class Solver {
       moved = depth > kStill;
     }
     const double friction = 0.5 * (world_.matter[a].friction + world_.matter[b].friction);
-    if (!pair.b_yields && bodies_.inverse_mass[a] > 0.0) b_.blocks.push_back({a, o.normal, friction});
-    if (!pair.a_yields && bodies_.inverse_mass[b] > 0.0) b_.blocks.push_back({b, o.normal * -1.0, friction});
+    // What only turns is in the way all the same.
+    if (!(to_b.translation > 0.0) && bodies_.inverse_mass[a] > 0.0) b_.blocks.push_back({a, o.normal, friction});
+    if (!(to_a.translation > 0.0) && bodies_.inverse_mass[b] > 0.0) b_.blocks.push_back({b, o.normal * -1.0, friction});
     return moved;
   }
 
