@@ -119,7 +119,7 @@ def compound_body(parts: Sequence[Any]) -> list[float]:
             shapes.append(shapely.LineString(part.vertices))
         else:
             return []
-    area = shapely.union_all(shapes)
+    area: Any = shapely.union_all(shapes)
     centre = [area.centroid.x, area.centroid.y]
     return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
 
