@@ -191,7 +191,7 @@ def contact_step(
     """Push apart pairs of objects where they overlap, as a step with ``collision_mode: contact`` does.
 
     Args:
-        pairs: Objects of one environment.
+        pairs: Objects of one environment; the order decides among pairs that are as far from what cannot be pushed.
         iterations: Sweeps over the pairs, at most.
         slop: Gap that is left between them [m].
         margin: Not needed here; pairs that are apart cost nothing.
@@ -208,5 +208,6 @@ def contact_step(
         raise ValueError("contact_step takes objects of one environment")
     numbers = [(a.row % simulation.objects, b.row % simulation.objects) for a, b in pairs]
     dt = simulation.world.step_time if step_time is None else float(step_time)
-    core.contact_step(simulation.world, simulation.state, world, numbers, int(iterations), float(slop), dt)
+    with simulation.feeling():
+        core.contact_step(simulation.world, simulation.state, world, numbers, int(iterations), float(slop), dt)
     return contacts_of(simulation, world)

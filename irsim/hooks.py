@@ -177,7 +177,7 @@ class Hooks:
         self.stepping: set[int] = set()
         self.decided: dict[int, Floats] = {}
         self._slots: dict[int, Floats | None] = {}
-        self._before: dict[int, tuple[Floats, Floats]] = {}
+        self._before: dict[int, tuple[Floats, Floats, Floats]] = {}
 
     def add(self, view: Any) -> None:
         """Ask this object, too."""
@@ -228,8 +228,8 @@ class Hooks:
                 if "step" not in own:
                     simulation.impose(row, np.asarray(view.gen_behavior_vel(self._slots.get(row))).reshape(-1))
             if own & {"step", "mid_process"}:
-                control = simulation.control[row].copy()
-                self._before[row] = simulation.row_state(row, view.state_dim), control
+                control, drive = simulation.control[row].copy(), simulation.drive_of(row, view.vel_dim).copy()
+                self._before[row] = simulation.row_state(row, view.state_dim), control, drive
 
     def after_motion(self) -> None:
         """Let those who have their own ``step``, ``mid_process`` and ``post_process`` act."""
@@ -238,9 +238,10 @@ class Hooks:
             row, own = view.row, view.overridden()
             if "step" in own:
                 if row in self._before:
-                    state, control = self._before[row]
+                    state, control, drive = self._before[row]
                     simulation.set_row_state(row, state)
                     simulation.control[row] = control
+                    simulation.drive_of(row, view.vel_dim)[:] = drive
                 self.stepping.add(row)
                 try:
                     view.step(self._slots.get(row), False)
@@ -250,7 +251,7 @@ class Hooks:
             if view.static or simulation.stopped[row]:
                 continue
             if "mid_process" in own:
-                _settle(view, self._before[row])
+                _settle(view, self._before[row][:2])
             view.post_process()
         self.decided.clear()
 

@@ -91,7 +91,13 @@ class ObjectMatter:
     @property
     def drive_velocity_xy(self) -> Floats:
         """(2, 1) world-frame velocity that the drive aims at, before contacts interfere [m/s]."""
-        return column(self._simulation.state.drive_velocity_world(self.row))
+        simulation, row = self._simulation, self.row
+        handler = None if simulation.drives is None else simulation.drives.handler(row)
+        if simulation.drives is None or handler is None:
+            return column(simulation.state.drive_velocity_world(row))
+        control = simulation.drive_of(row, self.record.vel_dim)[:, None].copy()
+        state = simulation.row_state(row, self.record.state_dim)[:, None]
+        return column(np.asarray(handler.velocity_to_xy(state, control), dtype=np.float64).reshape(-1)[:2])
 
     def apply_contact_displacement(self, dxy: Any, dtheta: float = 0.0) -> None:
         """Move the object as a contact would, within one period; its velocity changes accordingly.
@@ -101,9 +107,11 @@ class ObjectMatter:
             dtheta: Turn about the centroid [rad].
         """
         dx, dy = np.asarray(dxy, dtype=np.float64).reshape(-1)[:2].tolist()
-        core.shift(self._simulation.world, self._simulation.state, self.row, (dx, dy), float(dtheta))
+        with self._simulation.feeling():
+            core.shift(self._simulation.world, self._simulation.state, self.row, (dx, dy), float(dtheta))
 
     def apply_contact_velocity(self, dv: Any) -> None:
         """Change the velocity by ``dv``: 2 numbers, world frame [m/s]."""
         dx, dy = np.asarray(dv, dtype=np.float64).reshape(-1)[:2].tolist()
-        core.push(self._simulation.world, self._simulation.state, self.row, (dx, dy))
+        with self._simulation.feeling():
+            core.push(self._simulation.world, self._simulation.state, self.row, (dx, dy))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from irsim.behaviors._options import BehaviorOptions
 from irsim.errors import BehaviorError
 from irsim.kinematics._handler import KinematicsHandler, construct, handler_class
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS
-from irsim.world.build import group_behaviors
+from irsim.world.build import COLLISION_MODES, group_behaviors
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
@@ -24,6 +25,7 @@ __all__ = ["PythonDrives", "attach_python_drives"]
 
 Floats = NDArray[np.float64]
 _CORE_CONTROLS = 3
+_CONTACT = COLLISION_MODES["contact"]
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 
 
@@ -33,18 +35,20 @@ class Wide:
     Attributes:
         command: (n,) wanted in the next step.
         control: (n,) executed in the last one.
+        drive: (n,) what the drive does, before contacts interfere.
     """
 
     def __init__(self, record: ObjectRecord) -> None:
         self.record = record
         self.command = np.zeros(record.vel_dim)
         self.control = np.zeros(record.vel_dim)
+        self.drive = np.zeros(record.vel_dim)
         self.reset()
 
     def reset(self) -> None:
         """As at the start."""
         self.command[:] = 0.0
-        self.control[:] = self.record.velocity
+        self.control[:] = self.drive[:] = self.record.velocity
 
     def limit(self, dt: float, *, moves: bool) -> None:
         """The executed control of the next step."""
@@ -149,6 +153,28 @@ class PythonDrives:
         for row in self._rows():
             self.move_row(row)
 
+    @contextmanager
+    def feeling(self) -> Iterator[None]:
+        """What contacts change of the velocities meanwhile, the controls of these drives feel."""
+        before = self._simulation.twist.copy()
+        yield
+        for row in self._rows():
+            self._feel(row, self._simulation.twist[row] - before[row])
+
+    def _feel(self, row: int, change: Floats) -> None:
+        """The control of a row follows a (3,) change of its velocity: world frame [m/s] and yaw rate [rad/s]."""
+        if not change.any():
+            return
+        record, handler = self._of(row)
+        felt = control_from(handler, self.state(row, record), change[:2, None].copy(), turning=False)
+        if handler.yaw_rate_row is not None:
+            felt[handler.yaw_rate_row] += change[2]
+        wide = self.wide(row)
+        if wide is not None:
+            wide.control += felt
+        kept = felt[:_CORE_CONTROLS]
+        self._simulation.control[row, : kept.size] += kept
+
     def move_row(self, row: int) -> None:
         """One period of one object; nothing where the core moves it."""
         if self._key(row) not in self._handlers:
@@ -164,6 +190,11 @@ class PythonDrives:
         if stands:
             return
         control = simulation.control[row, : record.vel_dim] if wide is None else wide.control
+        if simulation.world.collision_mode == _CONTACT:
+            drive = simulation.drive_of(row, record.vel_dim)
+            gravity = simulation.scenario.world.gravity
+            drive[:] = control[:] = respond(control, drive, handler.translation_rows, record, dt, gravity)
+            simulation.control[row, : min(_CORE_CONTROLS, control.size)] = control[:_CORE_CONTROLS]
         velocity = control[:, None].copy()
         before = self.state(row, record)
         after = _checked(handler.step(before.copy(), velocity, dt), record)
@@ -175,16 +206,40 @@ class PythonDrives:
         simulation.twist[row] = _twist(handler, before, self.state(row, record), velocity, dt)
 
 
-def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats) -> Floats:
+def respond(
+    command: Floats, drive: Floats, travel: Sequence[int], record: ObjectRecord, dt: float, gravity: float
+) -> Floats:
+    """(n,) executed control in ``collision_mode: contact``: the lag of the drive, then the grip of its wheels.
+
+    Args:
+        command: (n,) limited control, command frame.
+        drive: (n,) what the drive did in the last period, before contacts interfered.
+        travel: Rows that are speeds [m/s].
+        record: The object, for its lag and friction.
+        dt: Period [s].
+        gravity: [m/s^2].
+    """
+    target: Floats = command.copy()
+    if record.drive_tau > 0.0:
+        target = drive + min(1.0, dt / record.drive_tau) * (command - drive)
+    rows = list(travel)
+    change = target[rows] - drive[rows]
+    most, size = record.friction * gravity * dt, float(np.linalg.norm(change))
+    if size > most:
+        target[rows] = drive[rows] + change * (most / size)
+    return target
+
+
+def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats, *, turning: bool = True) -> Floats:
     """(n,) controls of a drive for a wanted world-frame velocity (2, 1) [m/s].
 
     The handler's own ``velocity_from_xy`` where it has one; a drive of two controls without one turns toward the
-    velocity like a differential drive.
+    velocity like a differential drive, unless ``turning`` is out of the question.
 
     Raises:
         BehaviorError: It has another number of controls and no ``velocity_from_xy``.
     """
-    if type(handler).velocity_from_xy is not KinematicsHandler.velocity_from_xy:
+    if not turning or type(handler).velocity_from_xy is not KinematicsHandler.velocity_from_xy:
         return np.asarray(handler.velocity_from_xy(state, velocity_xy), dtype=np.float64).reshape(-1)
     if handler.action_dim != 2:
         raise BehaviorError(

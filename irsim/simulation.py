@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -177,7 +178,8 @@ class Simulation:
         if hooks is not None:
             hooks.after_motion()
         if world.collision_mode == CONTACT:
-            core.push_apart(world, state)
+            with self.feeling():
+                core.push_apart(world, state)
         core.finish(world, state)
         core.collide(world, state)
         core.arrive(world, state)
@@ -221,6 +223,15 @@ class Simulation:
         """(size,) the executed control of a row."""
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.control[row, :size] if wide is None else wide.control
+
+    def drive_of(self, row: int, size: int) -> NDArray[np.float64]:
+        """(size,) what the drive of a row does in ``collision_mode: contact``, before contacts interfere."""
+        wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
+        return self.state.drive[row, :size] if wide is None else wide.drive
+
+    def feeling(self) -> AbstractContextManager[None]:
+        """While contacts change velocities: drives written in Python feel it."""
+        return nullcontext() if self.drives is None else self.drives.feeling()
 
     def row_state(self, row: int, size: int) -> NDArray[np.float64]:
         """(size,) pose and extra rows of a row, a copy."""

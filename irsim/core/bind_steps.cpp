@@ -175,7 +175,7 @@ void bind_steps(nb::module_& m) {
          double step_time) {
         State& state = bound.of(world);
         bound.check_world(w);
-        push_apart(world, state, w, state.workspaces.front(), {sweeps, slop, step_time}, &pairs);
+        push_apart(world, state, w, state.workspaces.front(), {sweeps, 0, slop, step_time}, &pairs);
       },
       nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("pairs"), nb::arg("sweeps"), nb::arg("slop"),
       nb::arg("step_time"));

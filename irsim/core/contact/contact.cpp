@@ -11,11 +11,10 @@
 namespace irsim {
 namespace {
 
-constexpr double kResting = 1e-5;      // a smaller gap counts as contact [m]
-constexpr double kStraight = 1e-6;     // a push this near to the centroid does not turn [m]
-constexpr double kVisible = 5e-4;      // overlap that is never left [m]
-constexpr int kMostExtraSweeps = 480;  // for that
-constexpr double kStill = 1e-12;       // smaller corrections are none [m]
+constexpr double kResting = 1e-5;   // a smaller gap counts as contact [m]
+constexpr double kStraight = 1e-6;  // a push this near to the centroid does not turn [m]
+constexpr double kVisible = 5e-4;   // overlap that is not left while extra sweeps may help [m]
+constexpr double kStill = 1e-12;    // smaller corrections are none [m]
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
@@ -41,13 +40,13 @@ class Solver {
       b_.found.clear();
       for (const auto& [i, j] : *given) note(i, j);
     }
-    take_pairs();
+    take_pairs(given != nullptr);
     if (b_.pairs.empty()) return;
-    order_pairs();
+    order_pairs(given != nullptr);
     bool moved = true;
     for (int sweep = 0; moved && sweep < options_.sweeps; ++sweep) moved = sweep_all();
     // Jams of many bodies may need more; nobody may be left visibly inside another.
-    for (int extra = 0; moved && extra < kMostExtraSweeps && deepest() > kVisible; ++extra) moved = sweep_all();
+    for (int extra = 0; moved && extra < options_.extra_sweeps && deepest() > kVisible; ++extra) moved = sweep_all();
     change_velocities();
     bounce();
     measure_forces();
@@ -125,7 +124,7 @@ class Solver {
   double margin() const {
     double fastest = 0.0;
     for (const int i : world_.moving) {
-      double top = 0.0;
+      double top = world_.matter[i].driven ? world_.vel_max[i][0] : 0.0;
       with(world_.drive[i], [&](const auto& drive) { top = travel_speed(drive, world_.vel_max[i]); });
       if (std::isfinite(top)) fastest = std::max(fastest, top);
       fastest = std::max(fastest, norm(b_.bodies[i].start_velocity));
@@ -155,12 +154,17 @@ class Solver {
     }
   }
 
-  void take_pairs() {
+  /// Each pair once, by ids or as given.
+  void take_pairs(bool as_given) {
     b_.pairs.clear();
-    std::sort(b_.found.begin(), b_.found.end());
-    b_.found.erase(std::unique(b_.found.begin(), b_.found.end()), b_.found.end());
-    for (const auto& [i, j] : b_.found) {
+    if (!as_given) {
+      std::sort(b_.found.begin(), b_.found.end());
+      b_.found.erase(std::unique(b_.found.begin(), b_.found.end()), b_.found.end());
+    }
+    for (std::size_t k = 0; k < b_.found.size(); ++k) {
+      const auto [i, j] = b_.found[k];
       if (!world_.matter[i].pushable && !world_.matter[j].pushable) continue;
+      if (as_given && std::find(b_.found.begin(), b_.found.begin() + k, b_.found[k]) != b_.found.begin() + k) continue;
       b_.pairs.push_back({i, j, 0, 0, 0, false, {}, -1, 0.0, false, false});
       if (!b_.bodies[i].placed) place(i);
       if (!b_.bodies[j].placed) place(j);
@@ -176,9 +180,9 @@ class Solver {
     b_.packing.pack(b_.outer);
   }
 
-  /// Pairs near immovable objects first, by how many objects away those are; then by the first id and, for its
-  /// partners, in the order in which IR-SIM's index of boxes finds them.
-  void order_pairs() {
+  /// Pairs near immovable objects first, by how many objects away those are; then as given, or by the first id and, for
+  /// its partners, in the order in which IR-SIM's index of boxes finds them.
+  void order_pairs(bool as_given) {
     const int n = world_.objects;
     b_.first_link.assign(n + 1, 0);
     for (const Buffers::Pair& p : b_.pairs) ++b_.first_link[p.a], ++b_.first_link[p.b];
@@ -209,13 +213,17 @@ class Solver {
         b_.queue.push_back(j);
       }
     }
-    pack();
     for (Buffers::Pair& p : b_.pairs) p.order = b_.distance[p.a] + b_.distance[p.b];
-    const std::vector<int>& rank = b_.packing.rank;
-    const auto before = [&](const Buffers::Pair& p, const Buffers::Pair& q) {
-      return p.order != q.order ? p.order < q.order : p.a != q.a ? p.a < q.a : rank[p.b] < rank[q.b];
-    };
-    std::sort(b_.pairs.begin(), b_.pairs.end(), before);
+    if (as_given) {
+      std::stable_sort(b_.pairs.begin(), b_.pairs.end(),
+                       [](const Buffers::Pair& p, const Buffers::Pair& q) { return p.order < q.order; });
+    } else {
+      pack();
+      const std::vector<int>& rank = b_.packing.rank;
+      std::sort(b_.pairs.begin(), b_.pairs.end(), [&](const Buffers::Pair& p, const Buffers::Pair& q) {
+        return p.order != q.order ? p.order < q.order : p.a != q.a ? p.a < q.a : rank[p.b] < rank[q.b];
+      });
+    }
     for (std::size_t k = 0; k < b_.pairs.size(); ++k) {  // links again, in the new order
       if (k == 0) b_.queue.assign(b_.first_link.begin(), b_.first_link.end());
       b_.links[b_.queue[b_.pairs[k].a]++] = static_cast<int>(k);
@@ -285,22 +293,20 @@ class Solver {
   }
 
   // who yields --------------------------------------------------------------------------------------------------------
-  /// How far an object gives way along a unit direction, past what blocks it.
+  /// How far an object gives way along a unit direction, past what blocks it most.
   Share share_of(int object, Vec2 direction, Vec2 point) const {
     const double w = bodies_.inverse_mass[object];
     if (w == 0.0) return {};
     const Buffers::Body& body = b_.bodies[object];
     Vec2 free = direction;
-    for (const Buffers::Block& block : b_.blocks) {
-      if (block.object != object) continue;
-      const double into = dot(free, block.normal);
-      if (!(into < -1e-9)) continue;
-      const Vec2 along = free - block.normal * into;
+    double into = -1e-9;
+    for (const Buffers::Block& block : b_.blocks) {  // what is most in the way counts; the next sweep sees the rest
+      const double against = block.object == object ? dot(direction, block.normal) : 0.0;
+      if (!(against < into)) continue;
+      into = against;
+      const Vec2 along = direction - block.normal * into;
       const bool sticks = body.passive && norm(along) <= -into * block.friction;
       free = sticks ? Vec2{} : along;
-    }
-    for (const Buffers::Block& block : b_.blocks) {  // wedged in between
-      if (block.object == object && dot(free, block.normal) < -1e-9) free = {};
     }
     const double gain = std::max(0.0, dot(free, direction));
     double arm = cross(point - body.centroid, direction);
@@ -438,7 +444,9 @@ class Solver {
   void cap(Contact& contact, int object, Vec2 into) {
     if (!b_.bodies[object].driven) return;
     const int row = first_ + object;
-    const Vec2 wanted = velocity_of_control(world_, state_, row, state_.drive[row], work_.neighbors.extra);
+    const Vec2 wanted = is_native(world_.drive[object])
+                            ? velocity_of_control(world_, state_, row, state_.drive[row], work_.neighbors.extra)
+                            : b_.bodies[object].start_velocity;
     if (dot(wanted, into) > 0.0) contact.force = std::min(contact.force, ground_friction(world_, object));
   }
 
@@ -470,7 +478,7 @@ void keep_time(const World& world, State& state, int w) {
 }  // namespace
 
 void push_apart(const World& world, State& state, int w, Workspace& work) {
-  const Resolution usual{32, 1e-6, world.step_time};
+  const Resolution usual{32, 480, 1e-6, world.step_time};
   push_apart(world, state, w, work, usual, nullptr);
   keep_time(world, state, w);
 }

@@ -17,6 +17,7 @@ void push(const World& world, State& state, int row, Vec2 change, double yaw_rat
 
 struct Resolution {
   int sweeps;        // at most
+  int extra_sweeps;  // more of them while somebody is left visibly inside another
   double slop;       // left between things that were pushed apart [m]
   double step_time;  // [s]
 };

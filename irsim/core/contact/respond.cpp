@@ -4,6 +4,7 @@ namespace irsim {
 
 Vec3 respond(const World& world, State& state, int row, Vec3 command) {
   const int object = row % world.objects;
+  if (!is_native(world.drive[object])) return command;  // answered in Python
   const Matter& matter = world.matter[object];
   Vec3& c = state.drive[row];
   Vec3 target = command;

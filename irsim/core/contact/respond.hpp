@@ -7,7 +7,11 @@
 
 namespace irsim {
 
-/// The executed control of a driven row: the lag of its drive, then the grip of its wheels.
+/// Whether a drive is one of the core's: others, and bodies without a drive, have no options.
+inline bool is_native(const Drive& drive) { return !std::holds_alternative<std::monostate>(drive); }
+
+/// The executed control of a driven row: the lag of its drive, then the grip of its wheels. Drives written in Python
+/// answer for themselves.
 Vec3 respond(const World& world, State& state, int row, Vec3 command);
 /// The control of a row that nobody commands: what has no drive slides until friction stops it, drives stop (at once,
 /// unless `collision_mode: contact` knows better).
