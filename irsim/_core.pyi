@@ -580,10 +580,13 @@ class Trace:
 
     pose: Floats
     control: Floats
+    goal: Floats
     arrived: Flags
     collided: Flags
+    stopped: Flags
     steps: NDArray[np.int64]  # (W,) steps executed by each world
     ranges: Floats
+    returns: NDArray[np.float32]  # (steps, W * beams) ranges, infinite where a beam hit nothing
 
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
@@ -596,7 +599,14 @@ def advance(
     """
 
 def rollout(
-    world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, ranges: bool = False
+    world: World,
+    state: State,
+    steps: int,
+    *,
+    threads: int = 1,
+    until_done: bool = False,
+    ranges: bool = False,
+    returns: bool = False,
 ) -> Trace:
     """Like `advance`, recording."""
 
@@ -694,6 +704,16 @@ def walls(
 
     Those of static linestrings with `lines`, else the counter-clockwise outlines of other static objects that are
     neither circles nor `unobstructed`.
+    """
+
+def clearances(
+    world: World, state: State, index: int, poses: Floats, robots: Sequence[int], company: Flags
+) -> tuple[Floats, NDArray[np.int32]]:
+    """Distances [m] between footprints over recorded poses (rows, N, 3) of world `index` in its present scene.
+
+    company: (N,) what each object is to a robot: 0 robot, 1 human, 2 something that stands still, 3 nobody. Returns
+    (rows, robots, 3) the distance to the nearest of the kinds 0 to 2, negative where they overlap, and its index; NaN
+    and -1 where there is none. Releases the GIL.
     """
 
 def intersects(

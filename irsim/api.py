@@ -17,6 +17,7 @@ from irsim.episode import (
     source_of,
 )
 from irsim.results import RenderResult, RunResult, ValidationReport
+from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import read
 from irsim.snapshot import snapshot
@@ -80,6 +81,7 @@ def run(
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,
+    record: bool | str | Path = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RunResult:
@@ -94,26 +96,33 @@ def run(
         imports: Modules to import first, for behaviors they register.
         save: Also write an animation here (gif, mp4, apng, …).
         show: Also show it live in a window.
+        record: Also keep everything that happens: True for a folder below ``.irsim/runs`` of the current directory,
+            where it is let go 24 hours after its last use; or a new folder to keep it in. :func:`irsim.runs.open_run`
+            reads it.
         limits: Limits of the loader and of the run.
         progress: Told how far it is.
 
     Raises:
         ScenarioError: The file cannot be used; ScenarioNotFoundError: there is none.
         OverLimitError: More steps are asked for than the limits allow.
+        RunError: The folder to record into holds something already.
         ValueError: Neither or both of ``path`` and ``text``.
     """
     import_modules(imports)
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
     env = Env(scenario, seed=seed, display=show, headless=save is None and not show, log_level="ERROR")
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    if save is None and not show:
-        advance(env, horizon, progress)
-        files: list[str] = []
-    else:
-        files = _animate(env, horizon, Path(save) if save is not None else None, progress)
-    result = run_result(
-        env, path, horizon=horizon, source=source, warnings=warnings, files=files, imports=imports, strict=strict
-    )
+    with recording(env, path, record, horizon=horizon, strict=strict, imports=imports) as recorder:
+        if save is None and not show:
+            advance(env, horizon, progress, recorder=recorder)
+            files: list[str] = []
+        else:
+            files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
+        result = run_result(
+            env, path, horizon=horizon, source=source, warnings=warnings, files=files, imports=imports, strict=strict
+        )
+        if recorder is not None:
+            recorder.finish(result)
     env.end(ending_time=0.0)
     return result
 
@@ -175,7 +184,9 @@ def render(
     return result
 
 
-def _animate(env: Env, steps: int, save: Path | None, progress: Progress | None) -> list[str]:
+def _animate(
+    env: Env, steps: int, save: Path | None, progress: Progress | None, recorder: Recorder | None = None
+) -> list[str]:
     env.save_ani = save is not None
     if save is not None:
         env.ani_kwargs["suffix"] = save.suffix  # how many colours a kept frame needs
@@ -184,6 +195,8 @@ def _animate(env: Env, steps: int, save: Path | None, progress: Progress | None)
         if env.done():
             break
         env.step()
+        if recorder is not None:
+            recorder.look()
         env.render(env.step_time)
         if progress is not None:
             progress(step + 1, steps)

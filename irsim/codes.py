@@ -422,6 +422,17 @@ TOOL_CODES: dict[str, Code] = {
         "file cannot be read or written", "The system refuses: check the path, the permissions and the space left."
     ),
     "out-of-memory": Code("not enough memory", "Fewer objects, beams or frames need less."),
+    "unknown-run": Code(
+        "unknown run",
+        "No recorded run of that id is kept in the workspace. Runs are let go 24 hours after their last use, and the "
+        "least recently used ones when all together exceed 500 MB; the message names recent ones.",
+    ),
+    "unreadable-run": Code(
+        "run cannot be read", "A file of the recorded run has been changed, removed or cut; record the run again."
+    ),
+    "step-out-of-range": Code(
+        "step outside the run", "The recorded run has no such step; the message has the steps it does have."
+    ),
     "unknown-tool": Code("unknown tool", "The server has no tool of that name; the message names the nearest."),
     "unknown-argument": Code(
         "unknown argument", "The tool has no argument of that name; the message names the nearest, or all there are."

@@ -8,6 +8,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env import Env
@@ -19,6 +20,9 @@ from irsim.scenario.locate import locate
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.read import read
+
+if TYPE_CHECKING:
+    from irsim.runs.recorder import Recorder
 
 __all__ = [
     "Progress",
@@ -139,10 +143,12 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
     return min(bounds, default=(None, ""))
 
 
-def advance(env: Env, steps: int, progress: Progress | None, *, until_done: bool = True) -> None:
-    """Let time pass, by default until every robot has arrived or stopped."""
+def advance(
+    env: Env, steps: int, progress: Progress | None, *, until_done: bool = True, recorder: Recorder | None = None
+) -> None:
+    """Let time pass, by default until every robot has arrived or stopped; a recorder keeps what happens."""
     done = 0
     while done < steps and not (until_done and env.done()):
-        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done))
+        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))
         if progress is not None:
             progress(done, steps)

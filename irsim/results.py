@@ -14,6 +14,7 @@ __all__ = [
     "RobotPose",
     "RobotResult",
     "RunResult",
+    "RunTable",
     "SnapshotResult",
     "ValidationReport",
 ]
@@ -154,6 +155,10 @@ class RunResult(Result):
     """Version of irsim."""
     reproduce: str
     """Command that gives the same again."""
+    run_id: str | None = None
+    """Name of the record of this run, for ``irsim inspect``; None if it was not recorded."""
+    artifacts: dict[str, str] = Field(default_factory=dict)
+    """Files of the record by name."""
 
 
 class RenderResult(Result):
@@ -175,6 +180,35 @@ class RenderResult(Result):
     """What is odd about the scenario."""
     reproduce: str
     """Command that gives the same again."""
+
+
+class RunTable(Result):
+    """What ``irsim inspect`` found in a recorded run."""
+
+    run_id: str
+    """Which run."""
+    status: Literal["running", "finished", "cancelled", "interrupted"]
+    """``interrupted``: cut short, nobody writes it any more; what there is, is shown."""
+    outcome: Literal["success", "collision", "timeout"] | None
+    """How it ended; None if it has no result."""
+    summary: str
+    """One sentence about it."""
+    view: str
+    """What the table shows."""
+    columns: list[str]
+    """Names of the columns; lengths in m, times in s, angles in rad."""
+    rows: list[list[float | int | str | bool | None]]
+    """The rows."""
+    total: int
+    """How many rows there are in all."""
+    every: int
+    """Every how many-th step is shown."""
+    from_step: int
+    """First step looked at."""
+    to_step: int
+    """Last step looked at."""
+    next_cursor: str | None
+    """Where the next page begins; None on the last one."""
 
 
 class RobotPose(Result):

@@ -20,6 +20,9 @@ class Follow(BehaviorOptions):
     round the world. It is planned once per goal, and anew when the object has been pushed off it. Commands that would
     run into something that stands still are slowed down. Without a path the object stands still, and a `no_path` event
     says so.
+
+    The local behavior avoids who moves. From what stands still it only keeps the room its path needs, without the
+    margins, horizons and forces it has on its own, which would close narrow ways.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli import demo, describe, new, render, run, schema, templates, validate
+from irsim.cli import demo, describe, inspect, new, render, run, schema, templates, validate
 from irsim.cli.guard import guarded
 from irsim.cli.map import map_app
 
@@ -46,6 +46,7 @@ for _verb in (
     new.new,
     validate.validate,
     run.run,
+    inspect.inspect,
     render.render,
     describe.describe,
     schema.schema,

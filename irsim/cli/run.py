@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -35,6 +36,15 @@ def run(
     require_success: Annotated[
         bool, typer.Option("--require-success", help="Exit with 1 unless every robot reaches its goal.")
     ] = False,
+    record: Annotated[
+        bool,
+        typer.Option(
+            "--record", help="Keep everything that happens, for `irsim inspect`: 24 hours, below .irsim/runs."
+        ),
+    ] = False,
+    record_to: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Keep it in a new folder instead, for good.", show_default=False)
+    ] = None,
     max_objects: MaxObjects = None,
 ) -> None:
     """Simulate a scenario until every robot has arrived or collided, or time is up.
@@ -61,6 +71,7 @@ def run(
             imports=imports or (),
             save=save_gif,
             show=show,
+            record=record if record_to is None else record_to,
             limits=limits_for(max_objects),
             progress=report,
         )
@@ -102,6 +113,10 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {horizon}")
     for written in result.files:
         out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
+    if result.run_id is not None:
+        folder = Path(next(iter(result.artifacts.values()))).parent
+        name = result.run_id if folder.parent.parent.name == ".irsim" else shlex.quote(str(folder))
+        out.print(Text.assemble("recorded: ", (f"irsim inspect {name}", "cyan")), soft_wrap=True)
     out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
 
 

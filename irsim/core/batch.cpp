@@ -8,22 +8,28 @@
 namespace irsim {
 namespace {
 
-void record(const World& world, const State& state, int w, Recording& out, bool ranges) {
+void record(const World& world, const State& state, int w, Recording& out, Scans scans) {
   const std::size_t n = world.objects, first = w * n, beams = world.beams_per_world;
   out.pose.insert(out.pose.end(), state.pose.data + first, state.pose.data + first + n);
   out.control.insert(out.control.end(), state.control.data + first, state.control.data + first + n);
+  out.goal.insert(out.goal.end(), state.goal.data + first, state.goal.data + first + n);
   out.arrived.insert(out.arrived.end(), state.arrived.data + first, state.arrived.data + first + n);
   out.collided.insert(out.collided.end(), state.collided.data + first, state.collided.data + first + n);
-  if (ranges) out.ranges.insert(out.ranges.end(), state.ranges.data + w * beams, state.ranges.data + (w + 1) * beams);
+  out.stopped.insert(out.stopped.end(), state.stopped.data + first, state.stopped.data + first + n);
+  if (scans.ranges)
+    out.ranges.insert(out.ranges.end(), state.ranges.data + w * beams, state.ranges.data + (w + 1) * beams);
+  if (scans.returns) {
+    for (std::size_t b = w * beams; b < (w + 1) * beams; ++b) out.returns.push_back(returned(state, b));
+  }
 }
 
 long long run_world(const World& world, State& state, int w, Workspace& work, const Schedule& schedule,
-                    Recording* recording, bool record_ranges) {
+                    Recording* recording, Scans scans) {
   long long executed = 0;
   while (executed < schedule.steps && !(schedule.until_done && done(world, state, w))) {
     step(world, state, w, work, schedule.external);
     ++executed;
-    if (recording != nullptr) record(world, state, w, *recording, record_ranges);
+    if (recording != nullptr) record(world, state, w, *recording, scans);
   }
   if (recording != nullptr) recording->steps = executed;
   return executed;
@@ -32,10 +38,10 @@ long long run_world(const World& world, State& state, int w, Workspace& work, co
 }  // namespace
 
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,
-                     bool record_ranges) {
+                     Scans scans) {
   const auto run_one = [&](int w, Workspace& work) {
     Recording* recording = recordings != nullptr ? &(*recordings)[w] : nullptr;
-    return run_world(world, state, w, work, schedule, recording, record_ranges);
+    return run_world(world, state, w, work, schedule, recording, scans);
   };
   const int threads = std::max(1, std::min(schedule.threads, state.worlds));
   while (static_cast<int>(state.workspaces.size()) < threads) state.workspaces.emplace_back();

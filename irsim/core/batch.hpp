@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "phases.hpp"
 
@@ -15,15 +16,27 @@ struct Schedule {
 
 /// What every step of one world left behind, if recording.
 struct Recording {
-  std::vector<Pose> pose;                       // (steps, N)
-  std::vector<Vec3> control;                    // (steps, N)
-  std::vector<std::uint8_t> arrived, collided;  // (steps, N)
-  std::vector<double> ranges;                   // (steps, beams)
+  std::vector<Pose> pose;                                // (steps, N)
+  std::vector<Vec3> control;                             // (steps, N)
+  std::vector<Goal> goal;                                // (steps, N) heads of the queues
+  std::vector<std::uint8_t> arrived, collided, stopped;  // (steps, N)
+  std::vector<double> ranges;                            // (steps, beams)
+  std::vector<float> returns;                            // (steps, beams) the same, infinite where nothing was hit
   long long steps = 0;
 };
 
+/// What of the scans is recorded.
+struct Scans {
+  bool ranges, returns;
+};
+
+/// The range a beam returned, infinite if it hit nothing.
+inline float returned(const State& state, std::size_t beam) {
+  return state.valid[beam] ? static_cast<float>(state.ranges[beam]) : std::numeric_limits<float>::infinity();
+}
+
 /// Run all worlds; returns the largest number of steps one of them executed. `recordings`: one per world or null.
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,
-                     bool record_ranges);
+                     Scans scans);
 
 }  // namespace irsim

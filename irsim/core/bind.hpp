@@ -118,5 +118,6 @@ void bind_state(nb::module_& m);
 void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
 void bind_tools(nb::module_& m);
+void bind_clearance(nb::module_& m);
 
 }  // namespace irsim

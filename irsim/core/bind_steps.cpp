@@ -10,19 +10,19 @@ namespace irsim {
 namespace {
 
 struct Trace {
-  nb::object pose, control, arrived, collided, steps, ranges;
+  nb::object pose, control, goal, arrived, collided, stopped, steps, ranges, returns;
 };
 
 /// (T, W * size) from what each world recorded; a world that rested keeps its last values.
 template <class T, class Element>
-nb::object joined(const std::vector<Recording>& all, std::vector<Element> Recording::* part, const Array<Element>& now,
+nb::object joined(const std::vector<Recording>& all, std::vector<Element> Recording::* part, const Element* now,
                   long long steps, std::size_t size, bool flat) {
   const std::size_t numbers = sizeof(Element) / sizeof(T), worlds = all.size();
   std::vector<T> out(static_cast<std::size_t>(steps) * worlds * size * numbers);
   for (std::size_t w = 0; w < worlds; ++w) {
     const std::vector<Element>& recorded = all[w].*part;
     for (long long t = 0; t < steps; ++t) {
-      const Element* from = t < all[w].steps ? recorded.data() + t * size : now.data + w * size;
+      const Element* from = t < all[w].steps ? recorded.data() + t * size : now + w * size;
       if (size > 0) std::memcpy(&out[(t * worlds + w) * size * numbers], from, size * sizeof(Element));
     }
   }
@@ -34,28 +34,34 @@ long long advance(World& world, BoundState& bound, long long steps, int threads,
   State& state = bound.of(world);
   const Claim claim(bound);
   nb::gil_scoped_release free;
-  return run_worlds(world, state, {steps, threads, until_done, external}, nullptr, false);
+  return run_worlds(world, state, {steps, threads, until_done, external}, nullptr, {});
 }
 
-Trace rollout(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool ranges) {
+Trace rollout(World& world, BoundState& bound, long long steps, int threads, bool until_done, bool ranges,
+              bool returns) {
   State& state = bound.of(world);
   const Claim claim(bound);
   std::vector<Recording> recordings(state.worlds);
   long long most = 0;
   {
     nb::gil_scoped_release free;
-    most = run_worlds(world, state, {steps, threads, until_done, false}, &recordings, ranges);
+    most = run_worlds(world, state, {steps, threads, until_done, false}, &recordings, {ranges, returns});
   }
   const std::size_t n = world.objects;
   std::vector<std::int64_t> executed;
   for (const Recording& recording : recordings) executed.push_back(recording.steps);
   Trace out;
-  out.pose = joined<double>(recordings, &Recording::pose, state.pose, most, n, false);
-  out.control = joined<double>(recordings, &Recording::control, state.control, most, n, false);
-  out.arrived = joined<std::uint8_t>(recordings, &Recording::arrived, state.arrived, most, n, true);
-  out.collided = joined<std::uint8_t>(recordings, &Recording::collided, state.collided, most, n, true);
-  out.ranges =
-      joined<double>(recordings, &Recording::ranges, state.ranges, ranges ? most : 0, world.beams_per_world, true);
+  const std::size_t beams = world.beams_per_world;
+  std::vector<float> last;
+  for (std::size_t b = 0; returns && b < state.ranges.size; ++b) last.push_back(returned(state, b));
+  out.pose = joined<double>(recordings, &Recording::pose, state.pose.data, most, n, false);
+  out.control = joined<double>(recordings, &Recording::control, state.control.data, most, n, false);
+  out.goal = joined<double>(recordings, &Recording::goal, state.goal.data, most, n, false);
+  out.arrived = joined<std::uint8_t>(recordings, &Recording::arrived, state.arrived.data, most, n, true);
+  out.collided = joined<std::uint8_t>(recordings, &Recording::collided, state.collided.data, most, n, true);
+  out.stopped = joined<std::uint8_t>(recordings, &Recording::stopped, state.stopped.data, most, n, true);
+  out.ranges = joined<double>(recordings, &Recording::ranges, state.ranges.data, ranges ? most : 0, beams, true);
+  out.returns = joined<float>(recordings, &Recording::returns, last.data(), returns ? most : 0, beams, true);
   const std::size_t worlds = executed.size();
   out.steps = own(std::move(executed), {worlds});
   return out;
@@ -108,14 +114,17 @@ void bind_steps(nb::module_& m) {
   nb::class_<Trace>(m, "Trace")
       .def_ro("pose", &Trace::pose)
       .def_ro("control", &Trace::control)
+      .def_ro("goal", &Trace::goal)
       .def_ro("arrived", &Trace::arrived)
       .def_ro("collided", &Trace::collided)
+      .def_ro("stopped", &Trace::stopped)
       .def_ro("steps", &Trace::steps)
-      .def_ro("ranges", &Trace::ranges);
+      .def_ro("ranges", &Trace::ranges)
+      .def_ro("returns", &Trace::returns);
   m.def("advance", &advance, nb::arg("world"), nb::arg("state"), nb::arg("steps"), nb::kw_only(),
         nb::arg("threads") = 1, nb::arg("until_done") = false, nb::arg("external") = false);
   m.def("rollout", &rollout, nb::arg("world"), nb::arg("state"), nb::arg("steps"), nb::kw_only(),
-        nb::arg("threads") = 1, nb::arg("until_done") = false, nb::arg("ranges") = false);
+        nb::arg("threads") = 1, nb::arg("until_done") = false, nb::arg("ranges") = false, nb::arg("returns") = false);
   using W = const World&;
   const auto phase = [&](const char* name, auto call) {
     m.def(name, all_worlds(call), nb::arg("world"), nb::arg("state"));

@@ -7,6 +7,7 @@ namespace irsim {
 namespace {
 
 constexpr double kFarthest = 1e9;  // [m]
+constexpr int kBits = 40;          // after the point; fog has at most kMostFogCells cells along an axis
 
 struct Cells {
   std::uint8_t* explored;
@@ -42,10 +43,31 @@ struct Cells {
     const auto [low, high] = over(from, beam);
     if (!(low <= high && high < kFarthest)) return;  // beside the world, or so far away that steps drown in rounding
     const double last = std::min(range, high + step);
-    const double x = (from.x - origin.x) / cell.x, dx = beam.x * step / cell.x;
-    const double y = (from.y - origin.y) / cell.y, dy = beam.y * step / cell.y;
-    for (double k = std::max(0.0, std::floor(low / step)); k * step < last; k += 1.0) mark(x + k * dx, y + k * dy);
-    mark(x + beam.x * range / cell.x, y + beam.y * range / cell.y);
+    const Vec2 start{(from.x - origin.x) / cell.x, (from.y - origin.y) / cell.y};
+    const Vec2 stride{beam.x * step / cell.x, beam.y * step / cell.y};
+    const double first = std::max(0.0, std::floor(low / step)), count = std::ceil(last / step) - first;
+    if (count > 0.0) samples(start + stride * first, stride, static_cast<std::int64_t>(count));
+    mark(start.x + beam.x * range / cell.x, start.y + beam.y * range / cell.y);
+  }
+
+  /// The cells under `count` points, `stride` apart, of which no more than a few are beside the fog. Coordinates are
+  /// integers of 2^-40 cells here: many times as fast as to round two numbers for each point.
+  void samples(Vec2 start, Vec2 stride, std::int64_t count) const {
+    const auto fixed = [](double at) {
+      return static_cast<std::int64_t>(at * (std::int64_t{1} << kBits) + std::copysign(0.5, at));
+    };
+    const auto inside = [&](std::int64_t x, std::int64_t y) {
+      return x >= 0 && y >= 0 && x >> kBits < fog.columns && y >> kBits < fog.rows;
+    };
+    std::int64_t x = fixed(start.x), y = fixed(start.y);
+    const std::int64_t dx = fixed(stride.x), dy = fixed(stride.y), rows = fog.rows;
+    for (; count > 0 && !inside(x, y); --count) x += dx, y += dy;
+    while (count > 0 && !inside(x + (count - 1) * dx, y + (count - 1) * dy)) --count;
+    // both ends are inside, so all between are
+    for (; count > 0; --count) {
+      explored[(x >> kBits) * rows + (y >> kBits)] = 1;
+      x += dx, y += dy;
+    }
   }
 
   /// The cells whose centre is within reach and within half an opening angle of the heading.

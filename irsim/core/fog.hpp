@@ -13,6 +13,8 @@ struct State;
 struct Workspace;
 struct World;
 
+constexpr int kMostFogCells = 1 << 22;  // along an axis
+
 /// A robot without lidar that clears the fog in its field of view.
 struct FogView {
   int object;

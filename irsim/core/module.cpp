@@ -11,4 +11,5 @@ NB_MODULE(_core, m) {
   irsim::bind_steps(m);
   irsim::bind_object(m);
   irsim::bind_tools(m);
+  irsim::bind_clearance(m);
 }

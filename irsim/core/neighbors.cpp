@@ -44,7 +44,7 @@ const Neighbors& neighbors(const World& world, const State& state, Workspace& wo
     const Vec2 origin = state.pose[row].position(), direction = state.heading(row);
     near.bounds[m] = origin + rotate(shapes.centre[i], direction);
     near.discs[m] = {origin + rotate(shapes.centroid[i], direction), velocity_world(world, state, row, near.extra),
-                     shapes.radius[i]};
+                     shapes.radius[i], i};
     if (is_line(shapes, i)) {
       near.bounds[m] = {kNone, kNone};
       near.lines.push_back(i);
@@ -87,7 +87,7 @@ Disc disc_of(const World& world, const State& state, const Workspace& work, int 
   if (!world.is_static[object]) return work.neighbors.discs[slot];
   const Fixed& fixed = *state.scenes[w].fixed;
   const Pose& pose = fixed.poses[slot];
-  return {pose.position() + rotate(shapes.centroid[object], unit(pose.theta)), {}, shapes.radius[object]};
+  return {pose.position() + rotate(shapes.centroid[object], unit(pose.theta)), {}, shapes.radius[object], object};
 }
 
 }  // namespace irsim

@@ -17,6 +17,7 @@ struct Workspace;
 struct Disc {
   Vec2 centre, velocity;  // [m], [m/s]
   double radius;          // [m]
+  int object = -1;        // its id
 };
 
 /// The moving objects of one world at the snapshot of a step. Scratch memory: filled by the first question of a step.

@@ -1,6 +1,7 @@
 #include "route.hpp"
 
 #include "features.hpp"
+#include "geometry/predicates.hpp"
 #include "phases.hpp"
 #include "planning/plan.hpp"
 #include "spec.hpp"
@@ -35,6 +36,28 @@ Extent extent_of(const Shapes& shapes, int object) {
     }
   }
   return extent;
+}
+
+/// Radius of the largest disc about the origin within the convex hull of what bounds a footprint, or within one of its
+/// circles: a lower bound of the room it takes up in every heading.
+double room_of(const Shapes& shapes, int object) {
+  double room = 0.0;
+  const Slot& slot = shapes.body[object];
+  for (int p = 0; p < shapes.part_count(object); ++p) {
+    const Part& part = shapes.parts[slot.part + p];
+    const Vec2* vertices = &shapes.vertices[slot.vertex];
+    if (part.kind == Kind::circle) {
+      room = std::max(room, part.radius - norm(vertices[part.first]));
+      continue;
+    }
+    double within = part.kind == Kind::polygon ? kInfinity : 0.0;
+    for (int v = part.first; v < part.last && within > 0.0; ++v) {
+      const Vec2 a = vertices[v], b = vertices[v + 1];
+      within = std::min(within, part.turn * cross(b - a, a * -1.0) > 0.0 ? norm(nearest_on_segment(a, b, {})) : 0.0);
+    }
+    room = std::max(room, within);
+  }
+  return room;
 }
 
 bool draws_samples(const Planner& planner) {
@@ -96,6 +119,7 @@ class Follower {
       return;
     }
     if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer(u);
+    back_off_goal();
     keep_clear(u);
   }
 
@@ -127,6 +151,7 @@ class Follower {
     route_.among = state_.scenes[w_].fixed;
     route_.path.clear();
     route_.next = 1;
+    route_.room = room_of(shapes_, object_);
     const Extent extent = extent_of(shapes_, object_);
     const double margin = std::min(kMargin * extent.reach, kMostMargin);
     // who keeps a heading needs room for the body as it stands; others for all headings, or at least for driving ahead
@@ -141,8 +166,12 @@ class Follower {
       const Body ahead = Body::disc(side), easy = Body::disc(side * (1.0 + 0.5 * kMargin));
       const bool round = side == extent.reach;
       bool found = !round && attempt(easy, ahead, false);
-      for (const double share : kShares)
-        found = found || attempt(Body::disc(extent.reach + share * margin), ahead, true);
+      for (const double share : kShares) {
+        if (found || !attempt(Body::disc(extent.reach + share * margin), ahead, true)) continue;
+        found = true;
+        // enough to turn anywhere; a car keeps its heading nearly
+        if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) route_.room = extent.reach;
+      }
       found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
     }
     if (!route_.path.empty() || route_.told) return;
@@ -259,14 +288,22 @@ class Follower {
         const double most_psi = std::min({top[1], drive.psi_max, 1.4});
         u[1] = clip(error, -most_psi, most_psi);
         u[0] = std::min(u[0], std::max(most, 0.3 * top[0]));
-        // a point within the turning circle is reached by going back first
-        const Vec2 point = unrotate(way, state_.heading(row_));
-        const double radius = drive.wheelbase / std::tan(most_psi);
-        const Vec2 centre{0.0, point.y >= 0.0 ? radius : -radius};
-        const bool within = norm(point - centre) < radius - 0.5 * world_.goal_threshold[object_];
-        if (last && within && route_.backing == 0) route_.backing = kBackingSteps;
       }
     });
+  }
+
+  /// A goal within the turning circle of a car is reached by going back first.
+  void back_off_goal() {
+    const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
+    if (car == nullptr || route_.next + 1 < route_.path.size() || route_.backing > 0) return;
+    const Vec2 way = state_.goal[row_].position() - position();
+    const double threshold = world_.goal_threshold[object_];
+    if (norm(way) < threshold) return;
+    double psi = std::min(car->psi_max, 1.4);
+    if (car->mode == Steering::steer) psi = std::min(psi, world_.vel_max[object_][1]);
+    const double radius = car->wheelbase / std::tan(psi);
+    const Vec2 point = unrotate(way, state_.heading(row_)), centre{0.0, point.y >= 0.0 ? radius : -radius};
+    if (norm(point - centre) < radius - 0.5 * threshold) route_.backing = kBackingSteps;
   }
 
   /// Slower, or backwards, where the command would end at something that stands still.
@@ -301,7 +338,19 @@ class Follower {
       u = scaled(share, 1.0);
       return;
     }
-    if (moving == 2) {  // where there is no room to turn
+    if (moving == 2) {  // past it, then where there is no room to turn
+      for (const double angle : {0.4, 0.8, 1.2}) {
+        for (const double share : {1.0, 0.5, 0.25}) {
+          for (const double sign : {1.0, -1.0}) {
+            Vec3 v = scaled(share, 1.0);
+            const Vec2 veered = rotate({v[0], v[1]}, unit(sign * angle));
+            v[0] = veered.x, v[1] = veered.y;
+            if (!clear_after(v)) continue;
+            u = v;
+            return;
+          }
+        }
+      }
       for (const double share : {1.0, 0.5, 0.25, 0.1}) {
         if (!clear_after(scaled(share, 0.0))) continue;
         u = scaled(share, 0.0);

@@ -35,6 +35,7 @@ struct Route {
   std::int64_t planned_at = 0;         // step
   std::uint64_t plans = 0;             // made in this episode
   int backing = 0;                     // steps for which it goes on backing out of a corner
+  double room = 0.0;                   // behaviors keep a disc so large about the origin off walls [m]
   bool told = false;                   // that there is no path to this goal
   std::shared_ptr<const Fixed> among;  // the static objects it was planned among
   std::vector<Body> bodies;            // for which it is free of collisions, and for which sight is asked for

@@ -75,6 +75,8 @@ struct State {
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
   /// Where the behavior of a row heads: its goal, or a point of its route there.
   const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
+  /// The route a row is on, null without one. What stands still is its business; behaviors keep `Route::room` from it.
+  const Route* route_of(int row) const { return routes.empty() || routes[row].path.empty() ? nullptr : &routes[row]; }
   /// Cosine and sine of the heading of a row.
   Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
   Footprint footprint(const World& world, int w, int object) const {

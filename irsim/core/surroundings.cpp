@@ -22,7 +22,7 @@ Ego ego_of(const Decision& decision, int k) {
   const Scene& scene = decision.state.scenes[decision.w()];
   const Disc& disc = near.discs[scene.shapes->placed[i].object];
   const Vec2 position = decision.state.pose[row].position();
-  Ego ego{i, row, position, disc.velocity, {}, disc.radius + kPadding};
+  Ego ego{i, row, position, disc.velocity, {}, disc.radius + kPadding, decision.state.route_of(row)};
   const Vec2 way = decision.state.destination(row).position() - position;
   const double distance = norm(way);
   if (!(distance > kAtGoal)) return ego;

@@ -13,6 +13,7 @@ struct Ego {
   Vec2 position, velocity;  // origin [m], present command at the present heading [m/s]
   Vec2 desired;             // toward the goal at full speed [m/s]; zero within 0.1 m of it, and without goal
   double radius;            // padded [m]
+  const Route* route;       // the one it is on, or null
 };
 Ego ego_of(const Decision& decision, int k);
 
@@ -43,14 +44,20 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   });
 }
 
-/// Calls `visit(a, b)` for the segments of linestrings, static ones first, moving ones wherever they are.
+/// Calls `visit(line)` for the segments of linestrings that stand still and come within `reach`.
 template <class Visit>
-void for_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+void for_standing_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const Walls& lines = decision.state.scenes[decision.w()].fixed->lines;
+  for_walls(lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
+    if (shown(decision, ego.id, line.object)) visit(line);
+  });
+}
+
+/// Calls `visit(a, b)` for the segments of linestrings that move, wherever they are.
+template <class Visit>
+void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
   const int w = decision.w();
   const Scene& scene = decision.state.scenes[w];
-  for_walls(scene.fixed->lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
-    if (shown(decision, ego.id, line.object)) visit(line.a, line.b);
-  });
   for (const int object : neighbors(decision.world, decision.state, decision.work, w).lines) {
     if (!shown(decision, ego.id, object)) continue;
     const Shapes& shapes = *scene.shapes;

@@ -78,6 +78,7 @@ void set_beams(Mount& mount, std::vector<double> angles) {
 void add_fog_beams(World& world) {
   const Fog& fog = *world.fog;
   if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
+  if (std::max(fog.columns, fog.rows) > kMostFogCells) throw std::invalid_argument("fog has too many cells");
   const double cell = std::min(fog.cell().x, fog.cell().y);
   for (const FogView& view : fog.views) {
     if (view.object < 0 || view.object >= world.objects) throw std::invalid_argument("fog is seen by nobody");

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from irsim.object_factory import EnvConfig, ObjectFactory
+    from irsim.runs.recorder import Recorder
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -227,15 +228,20 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._after_step()
         return result
 
-    def advance(self, steps: int, *, until_done: bool = True) -> int:
-        """Like :meth:`rollout`, keeping nothing.
+    def advance(self, steps: int, *, until_done: bool = True, recorder: Recorder | None = None) -> int:
+        """Like :meth:`rollout`, keeping nothing here.
+
+        Args:
+            steps: Periods at most.
+            until_done: End as soon as every robot has arrived or stopped.
+            recorder: Keeps what happens.
 
         Returns:
             Periods executed.
         """
         if self._external or self._ended:
             raise RuntimeError("advance needs an environment in step_mode 'internal' that has not ended")
-        done = self._simulation.advance(steps, until_done=until_done)
+        done = (recorder or self._simulation).advance(steps, until_done=until_done)
         self._after_step()
         return done
 

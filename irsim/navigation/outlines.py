@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from irsim import _core as core
 from irsim.body import ObjectBody
 
-__all__ = ["body_parts", "parts_of"]
+__all__ = ["body_parts", "parts_of", "placed_parts"]
 
 Floats = NDArray[np.float64]
 _SEGMENTS = 16
@@ -27,7 +27,7 @@ def parts_of(thing: Any) -> list[Any]:
         TypeError: It has no geometry.
     """
     if isinstance(thing, ObjectBody):
-        return _rows(thing, world_frame=True)
+        return placed_parts(thing._simulation.state, thing.row, world_frame=True)
     return list(_parts(_geometry(thing, "geometry")))
 
 
@@ -42,12 +42,18 @@ def body_parts(thing: Any) -> list[Any]:
         TypeError: It has no geometry.
     """
     if isinstance(thing, ObjectBody):
-        return _rows(thing, world_frame=False)
+        return placed_parts(thing._simulation.state, thing.row, world_frame=False)
     return list(_parts(_geometry(thing, "original_geometry")))
 
 
-def _rows(body: ObjectBody, *, world_frame: bool) -> list[Any]:
-    state, row = body._simulation.state, body.row
+def placed_parts(state: core.State, row: int, *, world_frame: bool) -> list[Any]:
+    """The body of a row as parts of the core, where it stands or about its origin.
+
+    Args:
+        state: Where it is.
+        row: Of the state.
+        world_frame: Where it stands.
+    """
     parts: list[Any] = []
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":

@@ -113,6 +113,17 @@ def test_beams_stop_at_the_outline(grid, x, y, angle) -> None:
     assert point.distance(corners) < 1e-7
 
 
+@settings(max_examples=200, deadline=None)
+@given(grid=grids(aligned=True), line=CELLS, start=st.integers(-2, 13), heading=st.sampled_from(range(4)))
+def test_beams_along_a_grid_line_meet_the_cells_on_both_sides(grid, line, start, heading) -> None:
+    direction = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))[heading]
+    i, j = (start + 0.25, min(line, grid.shape[1])) if heading < 2 else (min(line, grid.shape[0]), start + 0.25)
+    origin = -4.0 + i, -3.0 + 0.5 * j
+    expected = nearest_of(grid, origin, direction, 40.0)
+    assume(expected > 0.0)
+    assert grid.cast(origin, direction, 40.0) == expected
+
+
 def test_beams_do_not_slip_between_cells_that_share_a_corner() -> None:
     occupied = np.zeros((20, 20), np.uint8)
     for k in range(20):

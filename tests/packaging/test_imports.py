@@ -41,6 +41,7 @@ LAYERS = (
     info
     map_view
     matter
+    metrics
     navigation
     object_avoidance
     object_base
@@ -70,6 +71,7 @@ LAYERS = (
     map_files
     modeline
     results
+    runs
     snapshot
     templates
     testing

@@ -54,15 +54,31 @@ void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
 void look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
   obstacles.clear();
   obstacles.horizon = kWallHorizon;
-  for_discs(decision, ego, options.neighbor_threshold,
-            [&](const Disc& disc) { avoid_disc(options, ego, disc, obstacles); });
-  for_lines(decision, ego, kInfinity, [&](Vec2 a, Vec2 b) { avoid_line(ego, a, b, obstacles); });
-  const double fastest = norm({options.vxmax, options.vymax});
-  const double reach = std::min(options.neighbor_threshold, ego.radius + fastest * kWallHorizon);
-  for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
-    const Vec2 a = wall.a - ego.position, b = wall.b - ego.position, nearest = nearest_on_segment(a, b, {});
-    obstacles.barriers.push_back({a, b, nearest, ego.radius, norm(nearest) - ego.radius});
+  const double room = ego.route != nullptr ? ego.route->room : ego.radius;  // kept from walls
+  const auto bar = [&](Vec2 a, Vec2 b, double radius) {
+    a = a - ego.position, b = b - ego.position;
+    const Vec2 nearest = nearest_on_segment(a, b, {});
+    obstacles.barriers.push_back({a, b, nearest, radius, norm(nearest) - radius});
+  };
+  for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
+    const bool stands = decision.world.is_static[disc.object];
+    if (ego.route == nullptr || !stands) {
+      avoid_disc(options, ego, disc, obstacles);
+    } else if (!decision.world.unobstructed[disc.object]) {
+      bar(disc.centre, disc.centre, room + disc.radius);
+    }
   });
+  const double fastest = norm({options.vxmax, options.vymax});
+  const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
+  if (ego.route == nullptr) {
+    for_standing_lines(decision, ego, kInfinity, [&](const Wall& line) { avoid_line(ego, line.a, line.b, obstacles); });
+  } else {
+    for_standing_lines(decision, ego, reach, [&](const Wall& line) {
+      if (!decision.world.unobstructed[line.object]) bar(line.a, line.b, room);
+    });
+  }
+  for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { avoid_line(ego, a, b, obstacles); });
+  for_facing_walls(decision, ego, reach, [&](const Wall& wall) { bar(wall.a, wall.b, room); });
 }
 
 /// Samples about a speed; only the limit itself where that is farther away than the window.
@@ -92,6 +108,7 @@ double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 headin
 
 Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading) {
   Turning turning;
+  if (ego.route != nullptr) turning.tolerance = 0.0;  // nearly parallel to a wall is too little
   if (norm(velocity) <= turning.min_speed) {
     const bool alone = obstacles.cones.empty();
     turning.max_forward = 0.0;

@@ -10,6 +10,7 @@ constexpr double kSamePlace = 1e-6;  // of two objects: no direction, no force [
 constexpr double kStraight = 1e-12;  // smaller angles are rounding errors: the other is straight ahead [rad]
 constexpr double kOnWall = 1e-9;     // of a wall [m]
 constexpr double kWallReach = 5.0;   // walls act within so many sigmas
+constexpr double kSideways = 0.2;    // share of the pull along a route that walls may push across it
 constexpr double kTolerance = 0.02;  // heading error that is left alone [rad]
 
 /// Of another disc: away along the interaction, and sideways.
@@ -49,17 +50,36 @@ bool shared_corner(const Walls& walls, const Wall& wall, Vec2 position) {
   return cross(along, position - next.a) <= 0.0 && dot(position - next.a, along) <= 0.0;
 }
 
+/// On a route what stands still pushes to the side of the way only, and less than the way pulls: the way is free.
+Vec2 on_route(const SfmOptions& o, const Ego& ego, Vec2 force) {
+  const double speed = norm(ego.desired);
+  if (!(speed > 0.0)) return {};
+  const Vec2 ahead = ego.desired * (1.0 / speed), side{-ahead.y, ahead.x};
+  const double most = kSideways * o.vmax * o.force_factor_desired / o.relaxation_time;
+  return side * clip(dot(force, side) * o.force_factor_obstacle, -most, most) * (1.0 / o.force_factor_obstacle);
+}
+
 Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& ego) {
-  Vec2 force;
+  Vec2 force, moving;
   const double reach = kWallReach * o.sigma_obstacle + ego.radius;
-  for_lines(decision, ego, reach,
-            [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); });
+  const auto push = [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); };
+  for_moving_lines(decision, ego, push);
+  if (ego.route != nullptr) std::swap(force, moving);
+  for_standing_lines(decision, ego, reach, [&](const Wall& line) {
+    if (ego.route == nullptr || !decision.world.unobstructed[line.object]) push(line.a, line.b);
+  });
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
   for_facing_walls(decision, ego, reach, [&](const Wall& wall) {
     if (shared_corner(walls, wall, ego.position)) return;
     force = force + wall_force(o, ego, nearest_on_segment(wall.a, wall.b, ego.position));
   });
-  return force;
+  if (ego.route == nullptr) return force;
+  for_discs(decision, ego, o.neighbor_threshold, [&](const Disc& disc) {
+    if (!decision.world.is_static[disc.object] || decision.world.unobstructed[disc.object]) return;
+    const Vec2 way = ego.position - disc.centre;
+    force = force + wall_force(o, ego, disc.centre + way * std::min(1.0, disc.radius / std::max(norm(way), kOnWall)));
+  });
+  return moving + on_route(o, ego, force);
 }
 
 /// What the members of one social group do to each other.
@@ -127,13 +147,18 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
     const double speed = norm(ego.desired);
     const Vec2 desired = speed > 0.0 ? ego.desired * (options.vmax / speed) : Vec2{};
     Vec2 social;
-    for_discs(decision, ego, options.neighbor_threshold,
-              [&](const Disc& other) { social = social + social_force(options, ego, other); });
+    for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& other) {
+      if (ego.route == nullptr || !world.is_static[other.object]) social = social + social_force(options, ego, other);
+    });
     const Vec2 force = (desired - ego.velocity) * (options.force_factor_desired / options.relaxation_time) +
                        social * options.force_factor_social +
                        obstacle_force(options, decision, ego) * options.force_factor_obstacle +
                        group_force(options, decision, ego);
     Vec2 velocity = ego.velocity + force * dt;
+    // a car turns too slowly for that: on a route it steers for where the forces lead
+    if (ego.route != nullptr && std::holds_alternative<AckerOptions>(world.drive[ego.id])) {
+      velocity = ego.velocity + force * options.relaxation_time;
+    }
     const double fast = norm(velocity);
     if (fast > options.vmax) velocity = velocity * (options.vmax / fast);
     Turning turning;

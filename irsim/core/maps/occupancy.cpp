@@ -27,40 +27,38 @@ OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, cons
   if (columns < 1 || rows < 1 || occupied.size() != cells) throw std::invalid_argument("an occupancy grid needs cells");
   if (!(cell.x > 0.0 && cell.y > 0.0 && std::isfinite(cell.x) && std::isfinite(cell.y)))
     throw std::invalid_argument("cells need a size");
-  clearance_.resize(cells);
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
-      const bool full = occupied[at(i, j)] != 0;
-      int least = kFar - 1;
-      if (full) {
-        bounds_.include(box(i, j));
-        ++count_;
-        least = -1;
-      } else {
-        if (i > 0) least = std::min(least, clearance(i - 1, j));
-        if (j > 0) {
-          least = std::min(least, clearance(i, j - 1));
-          if (i > 0) least = std::min(least, clearance(i - 1, j - 1));
-          if (i + 1 < columns) least = std::min(least, clearance(i + 1, j - 1));
+      if (occupied[at(i, j)] == 0) continue;
+      bounds_.include(box(i, j));
+      ++count_;
+    }
+  }
+  const std::vector<std::uint8_t> beyond(static_cast<std::size_t>(columns), kFar);
+  for (const bool down : {false, true}) {
+    for (const bool left : {false, true}) {
+      std::vector<std::uint8_t>& squares = free_[left + 2 * down];
+      squares.resize(cells);
+      const std::uint8_t* next_row = beyond.data();
+      for (int row = 0; row < rows; ++row) {
+        const std::size_t first = at(0, down ? row : rows - 1 - row);
+        std::uint8_t next = kFar, corner = kFar;  // of the cell before, and of the one diagonally ahead
+        for (int column = 0; column < columns; ++column) {
+          const int i = left ? column : columns - 1 - column;
+          const int least = std::min({next, corner, next_row[i]});
+          corner = next_row[i];
+          next = occupied[first + i] != 0 ? 0 : static_cast<std::uint8_t>(std::min(least, kFar - 1) + 1);
+          squares[first + i] = next;
         }
-        least = std::min(least, kFar - 1);
+        next_row = squares.data() + first;
       }
-      clearance_[at(i, j)] = static_cast<std::uint8_t>(least + 1);
     }
   }
-  for (int j = rows - 1; j >= 0; --j) {
-    for (int i = columns - 1; i >= 0; --i) {
-      int least = clearance(i, j) - 1;
-      if (least < 0) continue;
-      if (i + 1 < columns) least = std::min(least, clearance(i + 1, j));
-      if (j + 1 < rows) {
-        least = std::min(least, clearance(i, j + 1));
-        if (i > 0) least = std::min(least, clearance(i - 1, j + 1));
-        if (i + 1 < columns) least = std::min(least, clearance(i + 1, j + 1));
-      }
-      clearance_[at(i, j)] = static_cast<std::uint8_t>(std::min(least, kFar - 1) + 1);
-    }
-  }
+}
+
+bool OccupancyGrid::on_outline(int i, int j) const {
+  const int full = occupied(i - 1, j - 1) + occupied(i, j - 1) + occupied(i - 1, j) + occupied(i, j);
+  return full > 0 && full < 4;
 }
 
 bool OccupancyGrid::clear_of(Vec2 point, double reach) const {

@@ -1,6 +1,8 @@
 // A grid of square or oblong cells, some of them occupied: what a map is to the core.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -10,7 +12,7 @@
 namespace irsim {
 
 /// Occupied cells are closed boxes; cell (i, j), i along x, lies between corners (i, j) and (i + 1, j + 1). Never
-/// changes once made, shared by all worlds that have the map. One byte per cell.
+/// changes once made, shared by all worlds that have the map. Four bytes per cell.
 class OccupancyGrid {
  public:
   /// `occupied`: (columns * rows,) row by row from the lowest, non-zero where occupied.
@@ -30,14 +32,23 @@ class OccupancyGrid {
   std::int64_t count() const { return count_; }
 
   /// How many cells away, counting diagonally too, the nearest occupied cell is: 0 is occupied, 255 is far.
-  int clearance(int i, int j) const { return clearance_[at(i, j)]; }
+  int clearance(int i, int j) const {
+    const std::size_t k = at(i, j);
+    return std::min(std::min(free_[0][k], free_[1][k]), std::min(free_[2][k], free_[3][k]));
+  }
+  /// (rows, columns), for each cell the side of the largest square without an occupied cell, up to 255, of which it is
+  /// the corner cell and that extends from it to +x, or to -x if `left`, and to +y, or to -y if `down`: 0 is occupied.
+  /// Squares may reach out of the grid.
+  const std::uint8_t* free_squares(bool left, bool down) const { return free_[left + 2 * down].data(); }
   bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < columns_ && j < rows_; }
   /// Whether a cell is occupied; nothing outside the grid is.
-  bool occupied(int i, int j) const { return inside(i, j) && clearance(i, j) == 0; }
+  bool occupied(int i, int j) const { return inside(i, j) && free_[0][at(i, j)] == 0; }
+  /// Whether the outline of the occupied cells goes through the lower left corner of cell (i, j).
+  bool on_outline(int i, int j) const;
   /// The first occupied column in [from, to] of row j, or -1. The interval must lie inside the grid.
   int next_occupied(int j, int from, int to) const {
     if (from > to) return -1;
-    const std::uint8_t* row = clearance_.data() + at(0, j);
+    const std::uint8_t* row = free_[0].data() + at(0, j);
     const void* found = std::memchr(row + from, 0, static_cast<std::size_t>(to - from + 1));
     return found == nullptr ? -1 : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
   }
@@ -74,7 +85,7 @@ class OccupancyGrid {
   Vec2 origin_, cell_;
   Box bounds_;
   std::int64_t count_ = 0;
-  std::vector<std::uint8_t> clearance_;  // by row
+  std::array<std::vector<std::uint8_t>, 4> free_;  // squares by direction, each by row
 };
 
 /// Where a closed disc meets an occupied cell, if it does: the point of such a cell nearest to the centre.

@@ -1,48 +1,71 @@
 // A beam through a grid of cells.
 //
-// Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987; free space is crossed in leaps
-// as long as the clearance of the cell allows.
+// Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987; free space is crossed in leaps,
+// each through the largest free square that begins at the cell and lies ahead.
 #pragma once
+
+#include <cstddef>
 
 #include "maps/occupancy.hpp"
 
 namespace irsim {
 
-/// Beams from one point. Coordinates are counted in cells from the corner of the grid, distances are in metres.
+/// Beams from one point. Coordinates are counted in cells from the corner of the grid, distances are in metres. An axis
+/// is mirrored for beams that go down it, so that all go up: cell i of the grid is then number -1 - i.
 class CellWalk {
  public:
   CellWalk(const OccupancyGrid& grid, Vec2 from)
       : grid_(grid),
-        x_((from.x - grid.origin().x) / grid.cell().x),
-        y_((from.y - grid.origin().y) / grid.cell().y),
-        per_cell_{1.0 / grid.cell().x, 1.0 / grid.cell().y} {}
+        per_cell_{1.0 / grid.cell().x, 1.0 / grid.cell().y},
+        x_((from.x - grid.origin().x) / grid.cell().x, grid.columns(), 1),
+        y_((from.y - grid.origin().y) / grid.cell().y, grid.rows(), grid.columns()) {}
 
   /// The distance in (nearest, limit] at which a beam in direction `beam` (unit length) first meets the outline of the
   /// occupied cells, or infinity. A point of two cells that share a corner belongs to the outline.
   double hit(Vec2 beam, double nearest, double limit) const {
-    const double dx = beam.x * per_cell_.x, dy = beam.y * per_cell_.y;
-    Axis x{x_, dx, 1.0 / dx, grid_.columns(), 0}, y{y_, dy, 1.0 / dy, grid_.rows(), 0};
-    double t = std::max(x.entry(), y.entry());
-    if (!(t <= limit)) return kInfinity;
-    x.enter(t), y.enter(t);
-    if (!x.inside() || !y.inside()) return kInfinity;
-    bool solid = grid_.clearance(x.cell, y.cell) == 0;
+    const bool left = x_.goes_down(beam.x), down = y_.goes_down(beam.y);
+    const Way &x = x_.ways[left], &y = y_.ways[down];
+    const Rate dx(beam.x * per_cell_.x), dy(beam.y * per_cell_.y);
+    int i = x.cell, j = y.cell;
+    double t = 0.0;
+    if (!x.inside(i) || !y.inside(j)) {
+      t = std::max(x.entry(dx), y.entry(dy));
+      if (!(t <= limit && t > 0.0)) return kInfinity;
+      const double at_x = x.start + t * dx.step, at_y = y.start + t * dy.step;
+      i = x.enter(at_x), j = y.enter(at_y);
+      if (!x.inside(i) || !y.inside(j)) return kInfinity;
+      if (t > nearest && on_line(at_x) && on_line(at_y)) {
+        if (grid_.on_outline(x.line(nearest_line(at_x)), y.line(nearest_line(at_y)))) return t;
+      }
+    }
+    const std::uint8_t* squares = grid_.free_squares(left, down);
+    const auto free_ahead = [&](int i, int j) { return static_cast<int>(squares[x.index(i) + y.index(j)]); };
+    int leap = free_ahead(i, j);
+    bool solid = leap == 0;
     if (solid && t > nearest) return t;  // from outside the grid
+    // a beam that stays on a grid line meets the cells on both sides of it, and not only those ahead
+    const bool sliding = (x_.on_line && dx.much_less(dy, x_.count)) || (y_.on_line && dy.much_less(dx, y_.count));
     while (true) {
-      const int leap = solid ? 1 : grid_.clearance(x.cell, y.cell);
-      const double tx = x.leave(leap), ty = y.leave(leap);
+      if (solid || sliding) leap = 1;
+      const double tx = (i + leap - x.start) * dx.inverse, ty = (j + leap - y.start) * dy.inverse;
       const bool along_x = tx < ty;
       t = along_x ? tx : ty;
       if (!(t <= limit)) return kInfinity;
-      const bool corner = along_x ? x.advance(y, leap, t) : y.advance(x, leap, t);
-      if (corner && t > nearest) {
-        const int i = along_x ? x.border() : line_near(x, t), j = along_x ? line_near(y, t) : y.border();
-        const int full =
-            grid_.occupied(i - 1, j - 1) + grid_.occupied(i, j - 1) + grid_.occupied(i - 1, j) + grid_.occupied(i, j);
-        if (full > 0 && full < 4) return t;
+      // how far the beam has come along the other axis, from the border of its cell there; both are computed and one is
+      // taken, since no processor can predict which
+      const double aside_x = x.start + t * dx.step - i, aside_y = y.start + t * dy.step - j;
+      const double aside = along_x ? aside_y : aside_x;
+      const int whole = static_cast<int>(aside), across = std::min(whole, leap - 1);
+      const double rest = aside - whole;
+      if ((rest < kCorner || rest > 1.0 - kCorner) && t > nearest) {
+        const int line = whole + (rest > 0.5);
+        if (grid_.on_outline(x.line(along_x ? i + leap : i + line), y.line(along_x ? j + line : j + leap))) return t;
       }
-      const bool here = x.inside() && y.inside();
-      const bool now = here && grid_.clearance(x.cell, y.cell) == 0;
+      i += along_x ? leap : across;
+      j += along_x ? across : leap;
+      const bool here = x.inside(i) && y.inside(j);
+      leap = here ? free_ahead(i, j) : 1;
+      const bool now = leap == 0;
       if (now != solid && t > nearest) return t;
       if (!here) return kInfinity;
       solid = now;
@@ -51,52 +74,62 @@ class CellWalk {
 
  private:
   static constexpr double kCorner = 1e-10;  // so near to a corner a beam passes through it [cells]
+  static constexpr double kFarthest = 1e9;  // where rounding errors are far from the size of a cell [cells]
+
+  static bool on_line(double at) { return std::fabs(at - std::round(at)) < kCorner; }
+  static int nearest_line(double at) { return static_cast<int>(std::lround(at)); }
+
+  /// How fast a beam goes along an axis.
+  struct Rate {
+    double step, inverse;  // [cells per metre], and what it takes to go by a cell
+    explicit Rate(double rate) : step(std::fabs(rate)), inverse(1.0 / step) {}
+    /// Whether it changes next to nothing along this axis while it crosses `count` cells along the other.
+    bool much_less(const Rate& other, int count) const { return step * count < kCorner * other.step; }
+  };
+
+  /// One axis, in one of its two directions.
+  struct Way {
+    int low, high;          // cells from low to before high are those of the grid
+    int cell;               // where the beams start; not inside if outside
+    std::ptrdiff_t stride;  // of cells in memory
+    double start;
+
+    Way(double at, int low, int count, std::ptrdiff_t stride)
+        : low(low), high(low + count), cell(high), stride(stride), start(at) {
+      if (at >= low && at < high) cell = static_cast<int>(std::floor(at));
+    }
+    bool inside(int i) const { return i >= low && i < high; }
+    std::ptrdiff_t index(int i) const { return (stride < 0 ? i + 1 : i) * stride; }
+    int line(int i) const { return stride < 0 ? -i : i; }
+    /// When a beam comes into the grid: infinity if never, 0 if it starts there.
+    double entry(const Rate& rate) const {
+      if (start >= low && start < high) return 0.0;
+      return start < low && start > -kFarthest && rate.step > 0.0 ? (low - start) * rate.inverse : kInfinity;
+    }
+    /// The cell of a point that is inside the grid but for rounding.
+    int enter(double at) const {
+      if (!(at >= low - kCorner && at <= high + kCorner)) return high;
+      return std::min(std::max(static_cast<int>(std::floor(at)), low), high - 1);
+    }
+  };
 
   struct Axis {
-    double start, step, inverse;  // [cells], [cells per metre]
-    int count, cell;
+    int count;
+    bool at_end, on_line;  // whether the beams start at the upper end of the grid, at any grid line
+    Way ways[2];           // up, down
 
-    bool inside() const { return cell >= 0 && cell < count; }
-    /// When the beam comes into the grid: infinity if never, 0 if it starts there.
-    double entry() const {
-      if (start < 0.0) return step > 0.0 ? -start * inverse : kInfinity;
-      if (start > count) return step < 0.0 ? (count - start) * inverse : kInfinity;
-      return start == start ? 0.0 : kInfinity;
-    }
-    /// The cell at distance t, which is inside the grid but for rounding; on a border the one the beam goes to.
-    void enter(double t) {
-      const double at = t > 0.0 ? start + t * step : start;
-      if (t > 0.0 && !(at > -1.0 && at < count + 1.0)) return void(cell = -1);
-      const double line = std::floor(at);
-      cell = static_cast<int>(line);
-      if (at == line && step < 0.0) --cell;
-      if (cell == count && at - count <= kCorner && step <= 0.0) --cell;
-      if (cell == -1 && at >= -kCorner && step >= 0.0) cell = 0;
-      if (t > 0.0 && cell == count && at - count <= kCorner) cell = count - 1;
-      if (t > 0.0 && cell == -1 && at >= -kCorner) cell = 0;
-    }
-    /// When the beam leaves the cells less than `leap` away from its own.
-    double leave(int leap) const {
-      if (step > 0.0) return (cell + leap - start) * inverse;
-      return step < 0.0 ? (cell - leap + 1 - start) * inverse : kInfinity;
-    }
-    /// Go on to the next cell after a leap along this axis; `other` follows. Whether that is at a corner.
-    bool advance(Axis& other, int leap, double t) {
-      cell += step > 0.0 ? leap : -leap;
-      const double at = other.start + t * other.step, line = std::floor(at);
-      const int low = other.cell - leap + 1, high = other.cell + leap - 1;
-      other.cell = std::min(std::max(static_cast<int>(line), low), high);
-      return at - line < kCorner || at - line > 1.0 - kCorner;
-    }
-    /// The grid line behind which the cell lies, seen along the beam.
-    int border() const { return step > 0.0 ? cell : cell + 1; }
+    Axis(double at, int count, int stride)
+        : count(count),
+          at_end(at == count),
+          on_line(CellWalk::on_line(at)),
+          ways{{at, 0, count, stride}, {-at, -count, count, -stride}} {}
+    /// Along the upper end beams go through the last cell, as those do that go down from there.
+    bool goes_down(double rate) const { return rate < 0.0 || (at_end && rate == 0.0); }
   };
-  /// The grid line next to the beam at distance t.
-  static int line_near(const Axis& axis, double t) { return static_cast<int>(std::lround(axis.start + t * axis.step)); }
 
   const OccupancyGrid& grid_;
-  double x_, y_;
   Vec2 per_cell_;
+  Axis x_, y_;
 };
 
 }  // namespace irsim

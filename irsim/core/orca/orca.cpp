@@ -11,12 +11,13 @@
 namespace irsim {
 namespace {
 
-constexpr double kLeastSpeed = 1e-6;  // slower wishes are rounding [m/s]
-constexpr double kCarAngle = 1.2;     // farther off its heading a car does not look for a velocity [rad]
-constexpr double kCarStuck = 0.1;     // share of its speed below which a car backs off
-constexpr double kCarBack = 0.3;      // share of its speed at which it wants to back off
-constexpr double kCarTurn = 0.5;      // largest steering angle while it backs off [rad]
-constexpr double kCarCreep = 0.2;     // least share of a wanted speed at which a car drives on to be able to turn
+constexpr double kLeastSpeed = 1e-6;   // slower wishes are rounding [m/s]
+constexpr double kRouteHorizon = 0.5;  // on a route, farther ahead walls are its business [s]
+constexpr double kCarAngle = 1.2;      // farther off its heading a car does not look for a velocity [rad]
+constexpr double kCarStuck = 0.1;      // share of its speed below which a car backs off
+constexpr double kCarBack = 0.3;       // share of its speed at which it wants to back off
+constexpr double kCarTurn = 0.5;       // largest steering angle while it backs off [rad]
+constexpr double kCarCreep = 0.2;      // least share of a wanted speed at which a car drives on to be able to turn
 
 /// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
 double top_speed(const OrcaOptions& options, const World& world, int object) {
@@ -115,10 +116,10 @@ bool shown(const World& world, int viewer, int other) {
 }
 
 /// Half-planes of walls and standing circles: nearest edges first, those that others cover left out.
-void avoid_obstacles(const OrcaOptions& options, const World& world, const Obstacles& obstacles, const OrcaAgent& agent,
-                     int object, double speed, OrcaCrowd& all) {
+void avoid_obstacles(double horizon, const World& world, const Obstacles& obstacles, const OrcaAgent& agent, int object,
+                     double speed, OrcaCrowd& all) {
   if (obstacles.empty()) return;
-  const double horizon = options.timeHorizonObst, reach = horizon * speed + agent.radius;
+  const double reach = horizon * speed + agent.radius;
   const int edges = static_cast<int>(obstacles.edges.size());
   std::vector<HalfPlane>& planes = all.planes;
   all.edges.clear();
@@ -191,7 +192,12 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     Vec2 preferred = preferred_velocity(world, state, row, i, speed);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
-    avoid_obstacles(options, world, obstacles, agent, i, speed, all);
+    if (const Route* route = state.route_of(row)) {  // which leads past what stands still
+      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->room};
+      avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, obstacles, inner, i, speed, all);
+    } else {
+      avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
+    }
     const int hard = static_cast<int>(all.planes.size());
     avoid_movers(options, world, self, all);
     Vec2 velocity;

@@ -1,0 +1,153 @@
+"""``irsim inspect``: look into a recorded run."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.options import Json
+from irsim.runs.store import RunError
+
+if TYPE_CHECKING:
+    from irsim.results import RunTable
+
+__all__ = ["inspect"]
+
+_LISTED = 20
+
+
+def inspect(
+    run: Annotated[
+        str | None,
+        typer.Argument(help="Id or folder of a run, or 'last'; without it, the runs there are.", show_default=False),
+    ] = None,
+    view: Annotated[
+        str, typer.Option(help="rows: step by step; collisions: who touched whom; speeds: how far and fast they went.")
+    ] = "rows",
+    robot: Annotated[str | None, typer.Option(help="Only this robot or object.", show_default=False)] = None,
+    from_step: Annotated[int, typer.Option("--from", min=0, metavar="STEP", help="First step.")] = 0,
+    to_step: Annotated[
+        int | None, typer.Option("--to", min=0, metavar="STEP", help="Last step.", show_default=False)
+    ] = None,
+    every: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="STEPS", help="Every so many-th step; default: what fits.", show_default=False),
+    ] = None,
+    fields: Annotated[
+        str | None,
+        typer.Option(metavar="A,B,…", help="Columns of the rows; a wrong one lists all.", show_default=False),
+    ] = None,
+    limit: Annotated[
+        int | None, typer.Option(min=1, metavar="ROWS", help="Rows at most; default 20, with --csv all.")
+    ] = None,
+    cursor: Annotated[str | None, typer.Option(help="Go on where the last table ended.", show_default=False)] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print comma-separated values, all rows.")] = False,
+    json_output: Json = False,
+) -> None:
+    """Look into a run that was recorded with `irsim run --record`.
+
+    Lengths are in m, times in s, angles in rad.
+    """
+    from irsim.cli.output import console, print_json
+    from irsim.runs.inspection import VIEWS, inspect_run
+
+    if run is None:
+        _list_runs()
+        return
+    if view not in VIEWS:
+        raise RunError("bad-argument", f"there is no view {view!r}", f"there are {', '.join(VIEWS)}")
+    table = inspect_run(
+        run,
+        view=view,
+        robot=robot,
+        from_step=from_step,
+        to_step=to_step,
+        every=every if every is not None or not csv else 1,
+        fields=None if fields is None else [name.strip() for name in fields.split(",") if name.strip()],
+        limit=limit if limit is not None or csv else _LISTED,
+        cursor=cursor,
+    )
+    if json_output:
+        print_json(table)
+    elif csv:
+        _print_csv(table)
+    else:
+        _show(table, console())
+
+
+def _list_runs() -> None:
+    """Recorded runs of this folder, the last used one first."""
+    from rich.table import Table
+
+    from irsim.cli.output import console
+    from irsim.runs import list_runs
+    from irsim.text import clean
+
+    runs = list_runs()
+    if not runs:
+        typer.echo("no recorded runs here; `irsim run FILE --record` makes one")
+        return
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for heading in ("run", "outcome", "steps", "seed", "recorded"):
+        table.add_column(heading, no_wrap=True)
+    table.add_column("scenario", overflow="fold")
+    for run in runs[:_LISTED]:
+        result = run.result
+        table.add_row(
+            run.id,
+            run.status if result is None else result.outcome,
+            str(run.last_step if result is None else result.steps),
+            str(run.meta.get("seed")),
+            clean(run.meta.get("created"), 16).replace("T", " "),
+            clean(run.meta.get("scenario") or "(text)"),
+        )
+    out = console()
+    out.print(table)
+    if len(runs) > _LISTED:
+        out.print(f"... and {len(runs) - _LISTED} more")
+
+
+def _print_csv(table: RunTable) -> None:
+    import csv
+
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows(table.rows)
+
+
+def _show(table: RunTable, out: object) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from irsim.text import clean
+
+    assert isinstance(out, Console)
+    ended = table.status if table.outcome is None else table.outcome
+    out.print(f"{table.run_id}: {ended}: {clean(table.summary, 400)}")
+    shown = Table(box=None, pad_edge=False, header_style="dim")
+    for column in table.columns:
+        shown.add_column(
+            column, overflow="fold", justify="left" if column in ("robot", "object", "partner", "status") else "right"
+        )
+    for row in table.rows:
+        shown.add_row(*(_cell(value) for value in row))
+    out.print(shown)
+    if not table.rows:
+        out.print("nothing of the kind happened")
+    steps = f"steps {table.from_step} to {table.to_step}"
+    if table.every > 1:
+        steps += f", every {table.every}th: --every, --from, --to and --robot look closer"
+    more = f" of {table.total}; go on with --cursor {table.next_cursor}" if table.next_cursor else ""
+    out.print(f"{len(table.rows)} rows{more}, {steps}")
+
+
+def _cell(value: object) -> str:
+    from irsim.text import clean
+
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "-" if value is None else clean(value, 30)

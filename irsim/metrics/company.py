@@ -1,0 +1,38 @@
+"""Who is who to a robot: other robots, humans, static things."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from irsim.scenario.objects import ObjectRecord
+
+__all__ = ["HUMAN", "KINDS", "NOBODY", "ROBOT", "STATIC", "company_of"]
+
+KINDS = ("robot", "human", "static")
+"""Kinds of objects, in the order of the numbers below."""
+ROBOT, HUMAN, STATIC, NOBODY = range(4)
+_HUMAN_TAG = "pedestrian"
+
+
+def company_of(records: Sequence[ObjectRecord]) -> NDArray[np.uint8]:
+    """(N,) what each object is to a robot beside it.
+
+    *human*: an obstacle that moves by itself, or an object tagged ``pedestrian``; *robot*: a robot; *static*: what
+    stands still or is only pushed, maps, walls round the world; nobody: what is ``unobstructed``.
+    """
+    return np.array([_kind(record) for record in records], dtype=np.uint8)
+
+
+def _kind(record: ObjectRecord) -> int:
+    if record.unobstructed:
+        return NOBODY
+    if _HUMAN_TAG in record.tags:
+        return HUMAN
+    if record.role == "robot":
+        return ROBOT
+    return STATIC if record.static or record.kinematics is None else HUMAN

@@ -1,0 +1,105 @@
+"""The keys, what they mean, their units, and how robots of an episode combine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+__all__ = ["METRICS", "Metric"]
+
+Combined = Literal["mean", "min", "max", "all"]
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """One metric of a robot.
+
+    Attributes:
+        key: Its name in results.
+        unit: Of the value; ``0/1`` for a proportion.
+        text: What it is.
+        robots: How the robots of an episode give the value of the episode.
+        canonical: Of the canonical set; else a widely used extra.
+        better: Which way is better, None if that depends.
+    """
+
+    key: str
+    unit: str
+    text: str
+    robots: Combined = "mean"
+    canonical: bool = True
+    better: Literal["more", "less"] | None = None
+
+
+def _canonical() -> tuple[Metric, ...]:
+    return (
+        Metric("success", "0/1", "arrived before the horizon, no collision before", "all", better="more"),
+        Metric("goal_reached", "0/1", "arrived before the horizon, collisions or not", "all", better="more"),
+        Metric("collision_count", "count", "contacts that began before it arrived", better="less"),
+        Metric("collision_steps", "count", "steps in contact before it arrived", better="less"),
+        Metric("wall_collisions", "count", "of the contacts, those with static things and maps", better="less"),
+        Metric("agent_collisions", "count", "of the contacts, those with other robots", better="less"),
+        Metric("human_collisions", "count", "of the contacts, those with humans", better="less"),
+        Metric("timeout", "0/1", "neither arrived nor collided at the horizon", "max", better="less"),
+        Metric(
+            "failure_to_progress", "count", "5 s windows in which the way to the goal fell by < 0.1 m", better="less"
+        ),
+        Metric("stalled_time", "s", "slower than 0.05 m/s and 0.05 rad/s, not arrived", better="less"),
+        Metric("time_to_goal", "s", "time of first arrival", better="less"),
+        Metric("path_length", "m", "distance travelled until it arrived", better="less"),
+        Metric("spl", "0-1", "success x L*/max(path, L*), L* the shortest way round static things", better="more"),
+        Metric("velocity_min", "m/s", "least speed until it arrived", "min"),
+        Metric("velocity_avg", "m/s", "distance travelled / time until it arrived", better="more"),
+        Metric("velocity_max", "m/s", "greatest speed until it arrived", "max"),
+        Metric("acceleration_min", "m/s^2", "least magnitude of the acceleration vector", "min"),
+        Metric("acceleration_avg", "m/s^2", "mean magnitude of the acceleration vector", better="less"),
+        Metric("acceleration_max", "m/s^2", "greatest magnitude of the acceleration vector", "max", better="less"),
+        Metric("jerk_min", "m/s^3", "least magnitude of the jerk vector", "min"),
+        Metric("jerk_avg", "m/s^3", "mean magnitude of the jerk vector", better="less"),
+        Metric("jerk_max", "m/s^3", "greatest magnitude of the jerk vector", "max", better="less"),
+        Metric(
+            "clearing_distance_min", "m", "least distance to static things, surface to surface", "min", better="more"
+        ),
+        Metric("clearing_distance_avg", "m", "mean distance to the nearest static thing", better="more"),
+        Metric("space_compliance", "0-1", "share of time with every human at 0.5 m or more", better="more"),
+        Metric("personal_space_intrusion_ratio", "0-1", "share of time with a human closer than 0.5 m", better="less"),
+        Metric("distance_to_human_min", "m", "least distance to a human, surface to surface", "min", better="more"),
+        Metric("time_to_collision_min", "s", "least time to contact with a human at constant velocities", "min"),
+    )
+
+
+def _extras() -> tuple[Metric, ...]:
+    def extra(
+        key: str, unit: str, text: str, robots: Combined = "mean", better: Literal["more", "less"] | None = None
+    ) -> Metric:
+        return Metric(key, unit, text, robots, False, better)
+
+    return (
+        extra("proxemics_intimate_ratio", "0-1", "share of time with the nearest human closer than 0.45 m"),
+        extra("proxemics_personal_ratio", "0-1", "share of time with the nearest human at 0.45 to 1.2 m"),
+        extra("proxemics_social_ratio", "0-1", "share of time with the nearest human at 1.2 to 3.6 m"),
+        extra("proxemics_public_ratio", "0-1", "share of time with the nearest human at 3.6 m or more"),
+        extra("distance_to_human_avg", "m", "mean distance to the nearest human"),
+        extra("min_distance_to_goal", "m", "least distance to the present goal, straight", "min", "less"),
+        extra("final_distance_to_goal", "m", "last distance to the present goal, straight", better="less"),
+        extra("cumulative_heading_change", "rad", "sum of absolute heading changes", better="less"),
+        extra("path_irregularity", "rad", "heading change of the path minus that of the shortest way", better="less"),
+        extra("path_efficiency", "ratio", "path length / L*; 1 is best", better="less"),
+        extra("curvature", "1/m", "mean Menger curvature of points at least 0.05 m apart", better="less"),
+        extra("roughness", "1/m", "mean absolute change of that curvature", better="less"),
+        extra("angle_over_length", "rad/m", "absolute heading changes / path length", better="less"),
+        extra("motion_energy", "m^2/s", "sum of squared speed times dt, unit mass", better="less"),
+        extra("stl", "0-1", "success x T*/max(T, T*), T* = L* / top speed", better="more"),
+        extra("barn_score", "0-0.5", "success x T*/clip(T, 2T*, 8T*), T* = L*/2", better="more"),
+        extra("discomfort_ratio", "0-1", "share of time with 0 < distance to a human < 0.2 m", better="less"),
+        extra("discomfort_min_dist", "m", "mean of such distances"),
+        extra(
+            "near_misses", "count", "times a human or robot came within 0.2 m and went without contact", better="less"
+        ),
+        extra("freezing_count", "count", "stalls of 2 s or more, not arrived", better="less"),
+        extra("freezing_time", "s", "time in such stalls", better="less"),
+    )
+
+
+METRICS: tuple[Metric, ...] = _canonical() + _extras()
+"""All metrics of a robot, in the order in which they are shown."""

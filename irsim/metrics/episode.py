@@ -1,0 +1,131 @@
+"""The metrics of one episode: of each robot, and of all together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from irsim.metrics.clearance import Clearance, clearance
+from irsim.metrics.company import company_of
+from irsim.metrics.definitions import METRICS
+from irsim.metrics.geodesic import Geodesics, inscribed_radius
+from irsim.metrics.motion import motion
+from irsim.metrics.outcome import outcome
+from irsim.metrics.progress import progress
+from irsim.metrics.space import space
+from irsim.metrics.track import tracks
+from irsim.simulation import Simulation
+
+if TYPE_CHECKING:
+    from irsim.observers.events import Event
+    from irsim.observers.trace import Trace
+    from irsim.scenario.objects import ResolvedScenario
+
+__all__ = ["EpisodeMetrics", "episode_metrics", "episode_value", "robot_metrics"]
+
+_TINY = 1e-12
+
+
+@dataclass(frozen=True)
+class EpisodeMetrics:
+    """What an episode came to.
+
+    Attributes:
+        robots: For each robot its metrics by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
+        flags: For each robot what is odd: ``unreachable`` (no way to a goal was found).
+        episode: The same keys for the episode, and ``aggregated_time`` [s]: when the last robot arrived, NaN if one
+            never did.
+        names: Names of the robots.
+        clearance: Distances of the robots.
+    """
+
+    robots: list[dict[str, float]]
+    flags: list[list[str]]
+    episode: dict[str, float]
+    names: list[str]
+    clearance: Clearance
+
+
+def robot_metrics(
+    trace: Trace, scenario: ResolvedScenario | Simulation, events: Sequence[Event], *, seed: int = 0
+) -> list[dict[str, float]]:
+    """The metrics of each robot; see :func:`episode_metrics`."""
+    return episode_metrics(trace, scenario, events, seed=seed).robots
+
+
+def episode_metrics(
+    trace: Trace, scenario: ResolvedScenario | Simulation, events: Sequence[Event], *, seed: int = 0
+) -> EpisodeMetrics:
+    """The metrics of an episode, sampled at every step.
+
+    Each robot is measured until it first arrived: what happens afterwards is not its doing.
+
+    Args:
+        trace: From the start of the episode.
+        scenario: What was simulated, or the simulation in the scene of the trace.
+        events: What happened.
+        seed: With a scenario: the seed of the run.
+    """
+    simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
+    records = simulation.scenario.objects
+    distances = clearance(trace, simulation)
+    passable = {record.name for record in records if record.unobstructed}
+    robots = distances.robots.tolist()
+    cut = tracks(
+        trace,
+        list(events),
+        distances,
+        company_of(records),
+        np.asarray(simulation.radius[: simulation.objects], dtype=np.float64),
+        [_top_speed(records[robot].vel_max, records[robot].kinematics) for robot in robots],
+        passable,
+    )
+    geodesics = Geodesics(simulation)
+    order = [metric.key for metric in METRICS]
+    values, flags = [], []
+    for track in cut:
+        made, odd = progress(track, geodesics, inscribed_radius(simulation, track.index))
+        found = outcome(track) | motion(track) | space(track) | made
+        values.append({key: _settled(found[key]) for key in order})
+        flags.append(odd)
+    names = [track.name for track in cut]
+    return EpisodeMetrics(values, flags, _of_episode(values), names, distances)
+
+
+def episode_value(key: str, values: Sequence[float]) -> float:
+    """The value of an episode from those of its robots: all of them, the least, the greatest, or their mean.
+
+    Robots for which it is undefined are left out.
+    """
+    known = [value for value in values if not math.isnan(value)]
+    if not known:
+        return math.nan
+    how = next(metric.robots for metric in METRICS if metric.key == key)
+    if how in ("all", "min"):
+        return min(known)
+    return max(known) if how == "max" else math.fsum(known) / len(known)
+
+
+def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
+    found = {metric.key: episode_value(metric.key, [robot[metric.key] for robot in robots]) for metric in METRICS}
+    collided = any(not robot["success"] and not robot["timeout"] for robot in robots)
+    found["timeout"] = float(not collided and not found["success"]) if robots else math.nan
+    times = [robot["time_to_goal"] for robot in robots]
+    found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
+    return found
+
+
+def _settled(value: float) -> float:
+    """Without the dust of rounding."""
+    return 0.0 if abs(value) < _TINY else value
+
+
+def _top_speed(vel_max: Sequence[float], kinematics: object) -> float:
+    name = getattr(kinematics, "name", None)
+    if name is None:
+        return 0.0
+    return math.hypot(vel_max[0], vel_max[1]) if name in ("omni", "omni_angular") else float(vel_max[0])

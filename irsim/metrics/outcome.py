@@ -1,0 +1,33 @@
+"""Success, collisions, time-out: Francis et al. (arXiv 2306.16740), S, C, WC, AC, HC, TO, T."""
+
+from __future__ import annotations
+
+from irsim.metrics.company import HUMAN, ROBOT
+from irsim.metrics.track import Track
+
+__all__ = ["outcome"]
+
+
+def outcome(track: Track) -> dict[str, float]:
+    """How it ended. Exactly one of success, collision before arrival, and time-out holds for a robot.
+
+    - ``success``: arrived within the horizon, and no contact began before or at that step; ``goal_reached`` ignores
+      contacts.
+    - ``collision_count``: contacts that began (at least one step without before), per unordered pair, until it arrived;
+      ``wall_``, ``agent_``, ``human_collisions`` of them by partner. ``collision_steps``: steps in contact.
+    - ``timeout``: neither arrived nor collided.
+    - ``time_to_goal`` [s]: of the first arrival; NaN without.
+    """
+    kinds = [kind for _, kind in track.collisions]
+    agents, humans = kinds.count(ROBOT), kinds.count(HUMAN)
+    return {
+        "success": float(track.success),
+        "goal_reached": float(track.arrival is not None),
+        "collision_count": float(len(kinds)),
+        "collision_steps": float(track.collided[1:].sum()),
+        "wall_collisions": float(len(kinds) - agents - humans),
+        "agent_collisions": float(agents),
+        "human_collisions": float(humans),
+        "timeout": float(track.arrival is None and not kinds),
+        "time_to_goal": float("nan") if track.arrival is None else track.arrival * track.step_time,
+    }

@@ -1,0 +1,307 @@
+"""Looking into a recorded run: where everybody was, who touched whom, who came how close, how fast they were."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.diagnostics import nearest
+from irsim.observers.trace import Trace
+from irsim.results import RunTable
+from irsim.runs.reading import Run, open_run
+from irsim.runs.store import RunError
+from irsim.text import clean
+
+__all__ = ["FIELDS", "VIEWS", "Field", "View", "inspect_run"]
+
+View = Literal["rows", "collisions", "speeds"]
+Field = Literal[
+    "x", "y", "heading", "speed", "turn_rate", "control", "goal_x", "goal_y", "goal_distance", "nearest_hit", "status"
+]
+FIELDS: tuple[Field, ...] = get_args(Field)
+_SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "status")
+_STANDING = 1e-3
+"""Slower than this is standing still [m/s]."""
+_DECIMALS = 4
+Cell = float | int | str | bool | None
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Question:
+    """What is asked of which part of a trace: ``first`` and ``last`` are row numbers, ``objects`` columns of it."""
+
+    run: Run
+    trace: Trace
+    objects: list[int]
+    first: int
+    last: int
+    every: int | None
+    fields: Sequence[Field]
+    start: int
+    limit: int | None
+
+
+@dataclass(frozen=True)
+class _Found:
+    columns: list[str]
+    rows: list[list[Cell]]
+    total: int
+    every: int = 1
+
+
+def inspect_run(
+    run: str | Path | Run,
+    *,
+    view: str = "rows",
+    robot: str | None = None,
+    from_step: int = 0,
+    to_step: int | None = None,
+    every: int | None = None,
+    fields: Sequence[str] | None = None,
+    limit: int | None = 20,
+    cursor: str | None = None,
+    workspace: str | Path | None = None,
+) -> RunTable:
+    """A part of a recorded run as a table.
+
+    Args:
+        run: Its id, its folder, or ``last``.
+        view: ``rows``: positions and more, step by step; ``collisions``: who touched whom, where and how fast;
+            ``speeds``: for each robot how far and fast it went, and where it stood still longest.
+        robot: Name of one robot, or of another object; by default all robots.
+        from_step: First step.
+        to_step: Last step; by default the last there is.
+        every: Take every so many-th step; by default as many as make the table fit into ``limit``.
+        fields: Columns of ``rows``, see :data:`FIELDS`.
+        limit: Rows of the table at most, None for all.
+        cursor: ``next_cursor`` of the page before; all else as in that call.
+        workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
+
+    Raises:
+        RunError: There is no such run, robot, step or field.
+    """
+    opened = run if isinstance(run, Run) else open_run(run, workspace)
+    trace = opened.trace()
+    begin, end = int(trace.step[0]), int(trace.step[-1])
+    last = end if to_step is None else min(to_step, end)
+    if from_step > end or last < from_step:
+        what = f"run {opened.id} has no steps from {from_step} to {end if to_step is None else to_step}"
+        raise RunError("step-out-of-range", what, f"it has the steps {begin} to {end}")
+    chosen = _fields(fields)
+    objects = _objects(opened, trace, robot)
+    start = _start(cursor)
+    question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit)
+    found = VIEWS[view](question)
+    if start and start >= found.total:
+        raise RunError(
+            "bad-argument", f"cursor {cursor!r} is beyond the last row", "use next_cursor of the page before"
+        )
+    shown = start + len(found.rows)
+    result = opened.result
+    return RunTable(
+        run_id=opened.id,
+        status=opened.status,
+        outcome=None if result is None else result.outcome,
+        summary=f"recorded until step {end}" if result is None else result.summary,
+        view=view,
+        columns=found.columns,
+        rows=found.rows,
+        total=found.total,
+        every=found.every,
+        from_step=from_step,
+        to_step=last,
+        next_cursor=str(shown) if shown < found.total else None,
+    )
+
+
+# what is asked for ----------------------------------------------------------------------------------------------------
+
+
+def _fields(names: Sequence[str] | None) -> Sequence[Field]:
+    if names is None:
+        return _SHOWN
+    for name in names:
+        if name not in FIELDS:
+            near = nearest(name, FIELDS)
+            fix = f"did you mean {near}?" if near else f"there are {', '.join(FIELDS)}"
+            raise RunError("bad-argument", f"there is no field {clean(name)!r}", fix)
+    return [field for field in FIELDS if field in names]
+
+
+def _objects(run: Run, trace: Trace, robot: str | None) -> list[int]:
+    if robot is None:
+        roles = [item.get("role") for item in run.resolved["objects"]]
+        return [index for index, role in enumerate(roles) if role == "robot"]
+    found = [index for index, name in enumerate(trace.names) if name == robot]
+    if found:
+        return found
+    near = nearest(robot, trace.names)
+    some = ", ".join(clean(name, 40) for name in trace.names[:5])
+    fix = f"did you mean {clean(near, 40)!r}?" if near else f"there are {some}" + ", …" * (len(trace.names) > 5)
+    raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix)
+
+
+def _start(cursor: str | None) -> int:
+    if cursor is None:
+        return 0
+    if not (cursor.isascii() and cursor.isdigit() and len(cursor) < 12):
+        raise RunError("bad-argument", f"{clean(cursor)!r} is no cursor", "use next_cursor of the page before")
+    return int(cursor)
+
+
+# views ----------------------------------------------------------------------------------------------------------------
+
+
+def _rows(asked: _Question) -> _Found:
+    """Step by step, in each step robot by robot."""
+    steps, count = asked.last - asked.first + 1, len(asked.objects)
+    every = asked.every
+    if every is None:  # spread evenly, with the last one
+        fitting = steps if asked.limit is None else max(2, asked.limit // max(1, count))
+        every = 1 if steps <= fitting else math.ceil((steps - 1) / (fitting - 1))
+    picked = np.arange(asked.first, asked.last + 1, every)
+    if asked.every is None and picked[-1] < asked.last:
+        picked = np.append(picked, asked.last)
+    total = len(picked) * count
+    stop = total if asked.limit is None else min(total, asked.start + asked.limit)
+    columns = [name for field in asked.fields for name in _COLUMNS.get(field, (field,))]
+    rows: list[list[Cell]] = []
+    for number in range(asked.start, stop):
+        row, index = int(picked[number // count]), asked.objects[number % count]
+        cells = [cell for field in asked.fields for cell in _cells(asked.trace, field, row, index)]
+        rows.append([int(asked.trace.step[row]), _number(asked.trace.time[row]), asked.trace.names[index], *cells])
+    return _Found(["step", "time", "robot", *columns], rows, total, every)
+
+
+_COLUMNS = {"control": ("control_0", "control_1", "control_2")}
+
+
+def _cells(trace: Trace, field: Field, row: int, index: int) -> list[Cell]:
+    x, y, heading = trace.pose[row, index].tolist()
+    goal_x, goal_y, _ = trace.goal[row, index].tolist()
+    if field == "control":
+        return [_number(value) for value in trace.control[row, index]]
+    if field == "status":
+        flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
+        return [" ".join(word for word, flag in flags if flag[row, index]) or "under way"]
+    if field == "nearest_hit":
+        prefix = f"{trace.names[index]}/"
+        least = [
+            float(block[row].min()) for key, block in trace.ranges.items() if key.startswith(prefix) and block.size
+        ]
+        return [_number(min(least, default=math.inf))]
+    if field == "speed":
+        return [_number(float(_speeds(trace, index, row, row)[0]))]
+    if field == "turn_rate":
+        return [_number(_turn_rate(trace, index, row))]
+    value = {
+        "x": x,
+        "y": y,
+        "heading": heading,
+        "goal_x": goal_x,
+        "goal_y": goal_y,
+        "goal_distance": math.hypot(goal_x - x, goal_y - y),
+    }[field]
+    return [_number(value)]
+
+
+def _collisions(asked: _Question) -> _Found:
+    """Contacts that begin, with the speeds of both just before."""
+    trace = asked.trace
+    steps = (int(trace.step[asked.first]), int(trace.step[asked.last]))
+    chosen = {trace.names[index] for index in asked.objects}
+    events = [
+        event
+        for event in asked.run.events
+        if event.kind == "collision" and steps[0] <= event.step <= steps[1] and chosen & {event.object, event.partner}
+    ]
+    rows: list[list[Cell]] = []
+    for event in events:
+        row = event.step - int(trace.step[0])
+        before = [_speed_before(trace, name, row) for name in (event.object, event.partner)]
+        place = [_number(event.x), _number(event.y)]
+        rows.append([event.step, _number(event.time), event.object, event.partner, *place, *before])
+    columns = ["step", "time", "object", "partner", "x", "y", "speed", "partner_speed"]
+    return _paged(asked, columns, rows)
+
+
+def _speeds_of_robots(asked: _Question) -> _Found:
+    """How far and how fast each robot went, and its longest stand before it arrived."""
+    trace, rows = asked.trace, list[list[Cell]]()
+    for index in asked.objects:
+        speeds = _speeds(trace, index, asked.first, asked.last)
+        way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
+        arrived = trace.arrived[asked.first : asked.last + 1, index]
+        first = int(np.argmax(arrived)) if arrived.any() else len(arrived)
+        begin, length = _longest_stand(speeds[:first])
+        stand: list[Cell] = [_number(length * trace.step_time), None]
+        if length:
+            stand[1] = int(trace.step[asked.first + begin])
+        mean = way / (max(1, len(speeds) - 1) * trace.step_time)
+        rows.append(
+            [trace.names[index], _number(way), _number(mean), _number(float(speeds.max())), *stand, bool(arrived.any())]
+        )
+    columns = ["robot", "path_length", "mean_speed", "max_speed", "longest_stand", "stands_from_step", "arrived"]
+    return _paged(asked, columns, rows)
+
+
+VIEWS: dict[str, Callable[[_Question], _Found]] = {
+    "rows": _rows,
+    "collisions": _collisions,
+    "speeds": _speeds_of_robots,
+}
+
+
+def _paged(asked: _Question, columns: list[str], rows: list[list[Cell]]) -> _Found:
+    stop = None if asked.limit is None else asked.start + asked.limit
+    return _Found(columns, rows[asked.start : stop], len(rows))
+
+
+# numbers --------------------------------------------------------------------------------------------------------------
+
+
+def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
+    """(last - first + 1,) true speed [m/s] of an object in the step that led to each row; 0 in the first row of all."""
+    here = trace.pose[first : last + 1, index, :2]
+    before = trace.pose[max(0, first - 1) : last, index, :2]
+    if first == 0:
+        before = np.concatenate([here[:1], before])
+    speeds: Floats = np.linalg.norm(here - before, axis=1) / trace.step_time
+    return speeds
+
+
+def _turn_rate(trace: Trace, index: int, row: int) -> float:
+    if row == 0:
+        return 0.0
+    turn = float(trace.pose[row, index, 2] - trace.pose[row - 1, index, 2])
+    return math.remainder(turn, 2 * math.pi) / trace.step_time
+
+
+def _speed_before(trace: Trace, name: str | None, row: int) -> Cell:
+    """Speed in the step that led to the contact; None for what is no object of the trace."""
+    if name not in trace.names:
+        return None
+    return _number(float(_speeds(trace, trace.names.index(name), row, row)[0]))
+
+
+def _longest_stand(speeds: Floats) -> tuple[int, int]:
+    """First row and number of rows of the longest stretch of standing still; the first row says nothing of motion."""
+    best, begin = (0, 0), 0
+    for row, still in enumerate((speeds < _STANDING).tolist()):
+        if not still or row == 0:
+            begin = row + 1
+        elif row + 1 - begin > best[1]:
+            best = begin, row + 1 - begin
+    return best
+
+
+def _number(value: float) -> float | None:
+    """To a tenth of a millimetre; None for what is no number."""
+    return round(float(value), _DECIMALS) if math.isfinite(value) else None

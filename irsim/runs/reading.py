@@ -1,0 +1,166 @@
+"""Recorded runs, read: also those that are still being written, and those that were cut short."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from irsim.observers.events import Event
+from irsim.observers.trace import Trace, joined
+from irsim.results import RunResult
+from irsim.runs.chunks import Sensors, load_chunk
+from irsim.runs.store import (
+    META,
+    RESULT,
+    RunError,
+    Status,
+    find_run,
+    json_of,
+    plain_file,
+    run_folders,
+    runs_folder,
+    status_of,
+    text_of,
+)
+
+__all__ = ["Run", "list_runs", "open_run"]
+
+_PIECE = re.compile(r"(trace|events)-(\d{4,})\.(npz|json)")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One recorded run.
+
+    Attributes:
+        folder: Where it is.
+        meta: What ``run.json`` says: id, created, seed, scenario, options, horizon, versions, names of the objects …
+    """
+
+    folder: Path
+    meta: dict[str, Any]
+
+    @property
+    def id(self) -> str:
+        """Its id, which is the name of its folder."""
+        return self.folder.name
+
+    @property
+    def status(self) -> Status:
+        """``running``, ``finished``, ``cancelled``, or ``interrupted``: without a result, and nobody writes it."""
+        return status_of(self.folder)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the objects, in order."""
+        return tuple(str(name) for name in self.meta["names"])
+
+    @property
+    def step_time(self) -> float:
+        """Period [s]."""
+        return float(self.meta["step_time"])
+
+    @cached_property
+    def scenario_text(self) -> str:
+        """The scenario as given."""
+        text = text_of(self.folder, "scenario.yaml")
+        if text is None:
+            raise RunError("unreadable-run", f"run {self.id} has no scenario.yaml")
+        return text
+
+    @cached_property
+    def events(self) -> list[Event]:
+        """What happened, in order; of a run that was cut short, as far as the trace goes."""
+        try:
+            events = [Event(**item) for name in self._pieces("events") for item in json_of(self.folder, name)]
+        except TypeError as error:
+            raise RunError("unreadable-run", f"the events of run {self.id} have been changed: {error}") from None
+        if self.result is not None:
+            return events
+        last = self.last_step
+        return [event for event in events if event.step <= last]
+
+    @cached_property
+    def result(self) -> RunResult | None:
+        """How it ended; None as long as it has not."""
+        text = text_of(self.folder, RESULT)
+        if text is None:
+            return None
+        try:
+            return RunResult.model_validate_json(text)
+        except ValueError as error:
+            raise RunError("unreadable-run", f"the result of run {self.id} has been changed: {error}") from None
+
+    @cached_property
+    def resolved(self) -> dict[str, Any]:
+        """World and objects with all defaults, at their start, as plain data."""
+        data = json_of(self.folder, "resolved.json")
+        if not isinstance(data, dict):
+            raise RunError("unreadable-run", f"run {self.id} has no resolved.json")
+        return data
+
+    @property
+    def last_step(self) -> int:
+        """Step of the last row of the trace; -1 without any."""
+        pieces = self._pieces("trace")
+        return int(self._piece(pieces[-1]).step[-1]) if pieces else -1
+
+    def trace(self) -> Trace:
+        """Everything that happened, as arrays; of a run that was cut short, what was written.
+
+        Raises:
+            RunError: There is nothing yet, or it has been changed.
+        """
+        pieces = [self._piece(name) for name in self._pieces("trace")]
+        if not pieces:
+            raise RunError("unreadable-run", f"run {self.id} was cut short before its first step was kept")
+        return joined(pieces)
+
+    def files(self) -> list[str]:
+        """Names of its files."""
+        return sorted(path.name for path in self.folder.iterdir() if plain_file(self.folder, path.name))
+
+    def _pieces(self, kind: str) -> list[str]:
+        found = [match for path in self.folder.iterdir() if (match := _PIECE.fullmatch(path.name))]
+        return [m.group() for m in sorted(found, key=lambda m: int(m.group(2))) if m.group(1) == kind]
+
+    def _piece(self, name: str) -> Trace:
+        path = plain_file(self.folder, name)
+        if path is None:
+            raise RunError("unreadable-run", f"'{name}' of run {self.id} is no ordinary file")
+        sensors: Sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
+        return load_chunk(path, self.names, sensors, self.step_time)
+
+
+def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> Run:
+    """Open a recorded run.
+
+    Args:
+        folder_or_id: Its id, its folder, or ``last`` for the last used one.
+        workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
+
+    Raises:
+        RunError: There is none, or it can't be read.
+    """
+    folder = find_run(folder_or_id, workspace)
+    meta = json_of(folder, META)
+    needed = {"names": list, "sensors": list, "step_time": float, "seed": int}
+    if not isinstance(meta, dict) or not all(isinstance(meta.get(key), kind) for key, kind in needed.items()):
+        raise RunError("unreadable-run", f"run.json of run {folder.name} has been changed")
+    return Run(folder, meta)
+
+
+def list_runs(workspace: str | Path | None = None) -> list[Run]:
+    """The runs of a workspace, the last used one first; those that can't be read are left out."""
+    runs = []
+    for folder in run_folders(runs_folder(workspace)):
+        try:
+            meta = json_of(folder, META)
+        except (RunError, OSError):
+            continue
+        if isinstance(meta, dict):
+            runs.append(Run(folder, meta))
+    return runs

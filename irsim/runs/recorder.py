@@ -1,0 +1,245 @@
+"""Writes a run while it happens, in pieces that are renamed into place: what is there can be read, whatever happens."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import datetime, timezone
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from irsim.observers.events import read_events
+from irsim.observers.trace import Trace, joined, next_rows, present_row
+from irsim.runs.chunks import save_chunk
+from irsim.runs.plain import plain_scenario
+from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, written
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.results import RunResult
+    from irsim.simulation import Simulation
+
+__all__ = ["ARTIFACTS", "Recorder", "recording"]
+
+ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json")
+"""Files of every complete run; the trace and the events are in numbered pieces beside them."""
+_PIECE = 4_000_000
+"""Bytes of a piece of the trace."""
+_PERIOD = 0.5
+"""Seconds after which a piece is written at the latest."""
+_MOST_TRACE = 200_000_000
+"""Bytes of the trace of one run; what happens later is told by events and result only."""
+_MOST_SCANS = 64_000_000
+_BETWEEN_PRUNING = 64_000_000
+
+
+class Recorder:
+    """The run of one simulation.
+
+    Args:
+        simulation: One world, at its start.
+        horizon: Steps at most.
+        scenario: Its file as the user named it, None for a text.
+        options: What else decides how it goes, as JSON has it.
+        folder: Write here, into a new or empty folder that is never let go; by default into ``.irsim/runs`` of the
+            current directory.
+
+    Attributes:
+        folder: Where it is written.
+
+    Raises:
+        RunError: The folder holds something already, or leads elsewhere.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        *,
+        horizon: int,
+        scenario: str | None,
+        options: Mapping[str, Any],
+        folder: Path | None = None,
+    ) -> None:
+        self._simulation = simulation
+        self._runs = None if folder is not None else runs_folder(make=True)
+        if self._runs is not None:
+            prune(self._runs)
+            self.folder = made_folder(self._runs, "scenario" if scenario is None else Path(scenario).stem)
+        else:
+            assert folder is not None
+            self.folder = _new(folder)
+        self._claim = claim(self.folder)
+        beams = simulation.world.beams_per_world
+        self._scans = bool(beams) and (horizon + 1) * beams * 4 <= _MOST_SCANS
+        self._parts, self._held = [present_row(simulation, self._scans)], 0
+        self._pieces = self._events = self._bytes = self._pruned_at = 0
+        self._cut: int | None = None
+        self._done = False
+        self._due = time.monotonic() + _PERIOD
+        first = self._parts[0]
+        self._meta = {
+            "id": self.folder.name,
+            "status": "running",
+            "created": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+            "scenario": scenario,
+            **_origin(simulation),
+            "seed": int(simulation.key()[0]),
+            "horizon": horizon,
+            "step_time": first.step_time,
+            "options": dict(options),
+            "names": list(first.names),
+            "sensors": [[key, block.shape[1]] for key, block in first.ranges.items()],
+            "scans": self._scans or not beams,
+            "trace_until": None,
+            **_versions(),
+        }
+        self._write("scenario.yaml", _text_of(simulation))
+        self._write("resolved.json", json.dumps(plain_scenario(simulation), allow_nan=False))
+        self._write_meta()
+
+    def advance(self, steps: int, *, until_done: bool = False) -> int:
+        """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""
+        if self._cut is not None:
+            return self._simulation.advance(steps, until_done=until_done)
+        rows = next_rows(self._simulation, steps, until_done=until_done, scans=self._scans)
+        self._keep(rows)
+        return len(rows)
+
+    def look(self) -> None:
+        """Keep the present state, after somebody else has let one period pass."""
+        if self._cut is None:
+            self._keep(present_row(self._simulation, self._scans))
+
+    def finish(self, result: RunResult) -> None:
+        """Write what is left and the result, which is told where its record is; the run is complete."""
+        self._flush()
+        self._write_meta(status="finished", steps=int(self._simulation.count[0]))
+        result.run_id = self.folder.name
+        result.artifacts = {name: str(self.folder / name) for name in ARTIFACTS}
+        self._write(RESULT, result.model_dump_json(indent=1))
+        self._done = True
+        self._claim.release()
+        if self._runs is not None:
+            prune(self._runs, keep=self.folder)
+
+    def close(self, status: str = "interrupted") -> None:
+        """End without a result, unless there is one: what happened so far is kept."""
+        if not self._done:
+            self._done = True
+            self._flush()
+            self._write_meta(status=status)
+            self._claim.release()
+
+    def _keep(self, rows: Trace) -> None:
+        if not len(rows):
+            return
+        if len(rows.names) != len(self._meta["names"]):
+            raise RunError("unreadable-run", "objects came or went: only runs with the same objects are recorded")
+        self._parts.append(rows)
+        self._held += rows.pose.nbytes + rows.control.nbytes + sum(block.nbytes for block in rows.ranges.values())
+        if self._held >= _PIECE or time.monotonic() >= self._due:
+            self._flush()
+
+    def _flush(self) -> None:
+        """Write what is held: first what happened, then how everybody moved."""
+        events = read_events(self._simulation, start=self._events)
+        if events:
+            self._events += len(events)
+            told = [{name: getattr(event, name) for name in event.__slots__} for event in events]
+            self._write(f"events-{self._pieces:04d}.json", json.dumps(told))
+        if self._parts:
+            rows = joined(self._parts)
+            name = f"trace-{self._pieces:04d}.npz"
+            written(self.folder / name, partial(save_chunk, rows=rows))
+            self._bytes += (self.folder / name).stat().st_size
+            self._parts.clear()
+            if self._bytes >= _MOST_TRACE:
+                self._cut = int(rows.step[-1])
+                self._write_meta(trace_until=self._cut)
+        self._pieces += 1
+        self._held, self._due = 0, time.monotonic() + _PERIOD
+        if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
+            self._pruned_at = self._bytes
+            prune(self._runs, keep=self.folder)
+
+    def _write_meta(self, **changes: Any) -> None:
+        self._meta.update(changes)
+        self._write(META, json.dumps(self._meta, indent=1))
+
+    def _write(self, name: str, text: str) -> None:
+        written(self.folder / name, lambda file: file.write(text.encode()))
+
+
+@contextmanager
+def recording(
+    env: Env, path: str | Path | None, record: bool | str | Path, *, horizon: int, strict: bool, imports: Sequence[str]
+) -> Iterator[Recorder | None]:
+    """A recorder for the episode of an environment, None if it is not to be recorded; closed whatever happens.
+
+    Args:
+        env: At its start.
+        path: Scenario file, None for a text.
+        record: Whether, or where to.
+        horizon: Steps at most.
+        strict: Whether it was read strictly.
+        imports: Modules that were imported for it.
+    """
+    if record is False:
+        yield None
+        return
+    recorder = Recorder(
+        env.simulation,
+        horizon=horizon,
+        scenario=None if path is None else str(path),
+        options={"strict": strict, "imports": list(imports)},
+        folder=None if record is True else Path(record),
+    )
+    try:
+        yield recorder
+    except KeyboardInterrupt:
+        recorder.close("cancelled")
+        raise
+    finally:
+        recorder.close()
+
+
+def _new(folder: Path) -> Path:
+    """A folder that is there and empty."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise RunError("file-exists", f"'{folder}' exists and is not empty", "name another folder for the run")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder.resolve()
+
+
+def _origin(simulation: Simulation) -> dict[str, Any]:
+    """Where files are that the scenario names, and the fingerprint of its text."""
+    source = simulation.scenario.source
+    text = _text_of(simulation)
+    return {
+        "folder": None if source is None else str(Path(source).resolve().parent),
+        "sha256": hashlib.sha256(text.encode()).hexdigest(),
+    }
+
+
+def _text_of(simulation: Simulation) -> str:
+    """The scenario as given."""
+    scenario = simulation.scenario
+    return scenario.text if scenario.text is not None else json.dumps(scenario.document, default=str)
+
+
+def _versions() -> dict[str, str]:
+    from irsim import __version__
+
+    return {
+        "irsim": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "platform": platform.platform(),
+    }

@@ -1,0 +1,359 @@
+"""Where runs are kept: names, folders, who is writing, what is let go. Standard library only, no NumPy."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import secrets
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any, Literal
+
+from irsim.errors import IrsimError
+from irsim.text import clean
+
+__all__ = [
+    "DAY",
+    "META",
+    "QUOTA",
+    "RESULT",
+    "RunError",
+    "Status",
+    "claim",
+    "find_run",
+    "made_folder",
+    "mark_cancelled",
+    "plain_file",
+    "prune",
+    "recent_ids",
+    "run_folders",
+    "runs_folder",
+    "status_of",
+    "written",
+]
+
+Status = Literal["running", "finished", "cancelled", "interrupted"]
+META, RESULT, LOCK = "run.json", "result.json", "lock"
+QUOTA = 500 * 1000 * 1000
+"""Bytes that the runs of a workspace may take together; the least recently used ones make room."""
+DAY = 24 * 3600.0
+"""Seconds after its last use that a run is kept."""
+_KEPT_IN = ".irsim"
+_LONGEST_STEM = 24
+_ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
+_TEMPORARY, _TRASH = ".new-", ".gone-"
+_NAMED = 5
+_MOST_TEXT = 32 * 1024**2
+_ABANDONED = 60.0
+"""Where files cannot be locked: seconds without a sign of life after which nobody writes any more."""
+
+
+class RunError(IrsimError, ValueError):
+    """A run that cannot be opened, read or written.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
+        fix: What to do instead.
+    """
+
+    def __init__(self, code: str, message: str, fix: str | None = None) -> None:
+        self.code, self.message, self.fix = code, message, fix
+        super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
+
+
+# folders --------------------------------------------------------------------------------------------------------------
+
+
+def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> Path:
+    """The folder of all runs of a workspace, by default of the current directory.
+
+    Args:
+        workspace: Folder whose ``.irsim/runs`` is meant.
+        make: Make it, with a ``.gitignore`` that keeps all of it out of version control.
+
+    Raises:
+        RunError: ``.irsim`` or ``runs`` is a link or no folder: nothing is read or written through links.
+    """
+    root = Path.cwd() if workspace is None else Path(workspace)
+    top = root / _KEPT_IN
+    folder = top / "runs"
+    for part in (top, folder):
+        if part.is_symlink() or (part.exists() and not part.is_dir()):
+            raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
+    if make:
+        folder.mkdir(parents=True, exist_ok=True)
+        ignore = top / ".gitignore"
+        if not ignore.exists():
+            with suppress(FileExistsError):
+                written(ignore, lambda file: file.write(b"*\n"))
+    return folder
+
+
+def made_folder(runs: Path, stem: str) -> Path:
+    """A new folder for a run: ``<stem as a slug>-<six hexadecimal digits>``."""
+    slug = re.sub(r"[^a-z0-9]+", "-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
+    while True:
+        folder = runs / f"{slug}-{secrets.token_hex(3)}"
+        with suppress(FileExistsError):
+            folder.mkdir()
+            return folder
+
+
+def run_folders(runs: Path) -> list[Path]:
+    """The folders of runs, the last used one first."""
+    found: list[tuple[float, str, Path]] = []
+    with suppress(FileNotFoundError, NotADirectoryError), os.scandir(runs) as entries:
+        for entry in entries:
+            if _ID.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
+                with suppress(OSError):  # it may be let go at this moment
+                    meta = os.stat(os.path.join(entry.path, META), follow_symlinks=False)
+                    found.append((meta.st_mtime, entry.name, Path(entry.path)))
+    return [folder for _, _, folder in sorted(found, reverse=True)]
+
+
+def recent_ids(runs: Path, most: int = _NAMED) -> list[str]:
+    """Ids of the runs used last."""
+    return [folder.name for folder in run_folders(runs)[:most]]
+
+
+def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
+    """The folder of a run.
+
+    Args:
+        name: Its id, ``last`` for the last used one, or (only without a workspace) its folder.
+        workspace: Where its id is looked for; the current directory by default.
+
+    Raises:
+        RunError: There is no such run; the message names recent ones.
+    """
+    if workspace is None and (Path(name) / META).is_file():
+        return Path(name)
+    runs = runs_folder(workspace)
+    if str(name) == "last":
+        folders = run_folders(runs)
+        if folders:
+            return folders[0]
+    folder = runs / str(name)
+    if _ID.fullmatch(str(name)) and not folder.is_symlink() and plain_file(folder, META) is not None:
+        with suppress(OSError):
+            os.utime(folder / META)  # used now
+        return folder
+    recent = recent_ids(runs)
+    if not recent:
+        raise RunError("unknown-run", f"there is no run {clean(name)!r}, nor any other", "record one first")
+    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"recent ones are {', '.join(recent)}")
+
+
+def plain_file(folder: Path, name: str) -> Path | None:
+    """A file of a run, None if it is not there or is anything but an ordinary file."""
+    path = folder / name
+    return path if path.is_file() and not path.is_symlink() else None
+
+
+def text_of(folder: Path, name: str) -> str | None:
+    """Text of a file of a run, None without that file.
+
+    Raises:
+        RunError: It is too large, or no text.
+    """
+    path = plain_file(folder, name)
+    if path is None:
+        return None
+    if path.stat().st_size > _MOST_TEXT:
+        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is larger than irsim writes such files")
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is not text") from None
+
+
+def json_of(folder: Path, name: str) -> Any:
+    """Data of a JSON file of a run, None without that file.
+
+    Raises:
+        RunError: It does not hold JSON.
+    """
+    text = text_of(folder, name)
+    if text is None:
+        return None
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
+
+
+# writing --------------------------------------------------------------------------------------------------------------
+
+
+def written(target: Path, write: Callable[[IO[bytes]], object]) -> None:
+    """Write a file of a run by way of a temporary one, so that nobody ever sees half of it."""
+    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            write(file)
+        os.replace(temporary, target)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(temporary)
+        raise
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Says that a run is being written, as long as this process lives and until it is released."""
+
+    folder: Path
+    descriptor: int
+
+    def release(self) -> None:
+        """Nobody writes any more."""
+        with suppress(OSError):
+            os.unlink(self.folder / LOCK)
+        os.close(self.descriptor)
+
+
+def claim(folder: Path) -> Claim:
+    """Say that this process writes a run."""
+    descriptor = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)
+    _locked(descriptor, wait=True)
+    return Claim(folder, descriptor)
+
+
+def status_of(folder: Path) -> Status:
+    """What became of a run. One without a result that nobody writes any more was interrupted."""
+    if plain_file(folder, RESULT) is not None:
+        return "finished"
+    if _being_written(folder):
+        return "running"
+    meta = json_of(folder, META)
+    cancelled = isinstance(meta, dict) and meta.get("status") == "cancelled"
+    return "finished" if plain_file(folder, RESULT) is not None else "cancelled" if cancelled else "interrupted"
+
+
+def mark_cancelled(folder: Path) -> None:
+    """Note that somebody has stopped a run on purpose; one that has finished stays finished."""
+    meta = json_of(folder, META)
+    if not isinstance(meta, dict) or plain_file(folder, RESULT) is not None:
+        return
+    text = json.dumps({**meta, "status": "cancelled"}, indent=1)
+    written(folder / META, lambda file: file.write(text.encode()))
+
+
+def _being_written(folder: Path) -> bool:
+    path = plain_file(folder, LOCK)
+    if path is None:
+        return False
+    try:
+        descriptor = os.open(path, os.O_RDWR)
+    except OSError:
+        return False
+    try:
+        free = _locked(descriptor, wait=False)
+    finally:
+        os.close(descriptor)
+    if free is None:
+        return time.time() - max(entry.stat().st_mtime for entry in (path, folder)) < _ABANDONED
+    return not free
+
+
+def _locked(descriptor: int, *, wait: bool) -> bool | None:
+    """Lock a file until it is closed; whether that worked, None on systems without such locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX if wait else fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+# letting go -----------------------------------------------------------------------------------------------------------
+
+
+def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None = None) -> list[str]:
+    """Let go of runs that nobody has used for ``age`` seconds, and of the least recently used ones beyond the quota.
+
+    Runs that are being written stay, and so does ``keep``. Leftovers of processes that were killed are swept up.
+
+    Args:
+        runs: Folder of all runs.
+        quota: Bytes they may take together.
+        age: Seconds after its last use.
+        keep: A run that stays.
+
+    Returns:
+        Ids of what was let go.
+    """
+    _sweep(runs)
+    total, gone, now = 0, list[str](), time.time()
+    for folder in run_folders(runs):
+        size = _size_of(folder)
+        total += size
+        if keep is not None and folder.name == keep.name:
+            continue
+        try:
+            old = now - (folder / META).stat().st_mtime > age
+        except OSError:
+            continue
+        if (old or total > quota) and not _being_written(folder):
+            _remove(folder)
+            gone.append(folder.name)
+            total -= size
+        else:
+            _sweep_run(folder)
+    return gone
+
+
+def _size_of(folder: Path) -> int:
+    total = 0
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            with suppress(OSError):
+                total += entry.stat(follow_symlinks=False).st_size
+    return total
+
+
+def _remove(folder: Path) -> None:
+    """First out of sight as a whole, then bit by bit."""
+    trash = folder.with_name(f"{_TRASH}{folder.name}-{secrets.token_hex(3)}")
+    with suppress(OSError):
+        os.rename(folder, trash)
+        shutil.rmtree(trash, ignore_errors=True)
+
+
+def _sweep(runs: Path) -> None:
+    """Remove what a killed process left: half-removed runs, and folders that never became a run."""
+    for folder in _children(runs):
+        if folder.name.startswith(_TRASH):
+            shutil.rmtree(folder, ignore_errors=True)
+        elif _ID.fullmatch(folder.name) and not (folder / META).exists():
+            with suppress(OSError):
+                young = time.time() - folder.stat().st_mtime < _ABANDONED
+                if not young and not _being_written(folder):
+                    _remove(folder)
+
+
+def _sweep_run(folder: Path) -> None:
+    """Remove temporary files that a killed process left in a run."""
+    if _being_written(folder):
+        return
+    with suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.startswith(_TEMPORARY):
+                with suppress(OSError):
+                    if time.time() - entry.stat(follow_symlinks=False).st_mtime > _ABANDONED:
+                        os.unlink(entry.path)
+
+
+def _children(runs: Path) -> Iterator[Path]:
+    with suppress(OSError), os.scandir(runs) as entries:
+        yield from [Path(entry.path) for entry in entries if entry.is_dir(follow_symlinks=False)]

@@ -1,0 +1,291 @@
+"""Metrics of paths that can be worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from irsim.episode import read_scenario
+from irsim.metrics import METRICS, episode_metrics, robot_metrics
+from irsim.metrics.motion import curvatures, runs_of
+from irsim.observers.events import Event
+from irsim.observers.trace import Trace
+
+ROBOT = (
+    "  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, state: {state}, goal: {goal}, "
+    "vel_max: [1, 0]}}\n"
+)
+NAN = math.nan
+
+
+def scenario(*robots: tuple[list[float], list[float]], rest: str = "", world: str = "width: 20, height: 20"):
+    text = f"world: {{{world}}}\nrobot:\n" + "".join(ROBOT.format(state=s, goal=g) for s, g in robots) + rest
+    return read_scenario(text=text, strict=True)[0]
+
+
+def trace(resolved, pose, goal, *, collided: Sequence[tuple[int, int]] = (), dt: float = 0.1) -> Trace:
+    """pose (T, N, 2 or 3), goal (N, 2) of the first objects."""
+    pose = np.asarray(pose, dtype=float)
+    rows, count = pose.shape[:2]
+    if pose.shape[2] == 2:
+        pose = np.concatenate([pose, np.zeros((rows, count, 1))], axis=2)
+    goals = np.full((rows, count, 3), NAN)
+    goals[:, : len(goal), :2] = goal
+    flags = np.zeros((rows, count), dtype=bool)
+    hits = flags.copy()
+    for row, robot in collided:
+        hits[row, robot] = True
+    step = np.arange(rows)
+    names = tuple(record.name for record in resolved.objects)
+    return Trace(step, step * dt, pose, np.zeros_like(pose), goals, flags, hits, flags, {}, names, dt)
+
+
+def event(kind: str, step: int, name: str, partner: str | None = None) -> Event:
+    return Event(kind, step * 0.1, step, name, partner, 0.0, 0.0)  # type: ignore[arg-type]
+
+
+def straight(steps: int, speed: float = 1.0, start: float = 1.0) -> np.ndarray:
+    """(T, 2) along x at y = 5."""
+    x = start + 0.1 * speed * np.arange(steps + 1)
+    return np.stack([x, np.full_like(x, 5.0)], axis=1)
+
+
+def test_a_straight_drive_to_the_goal() -> None:
+    resolved = scenario(([1, 5], [5, 5]))
+    done = trace(resolved, straight(40)[:, None], [[5, 5]])
+    name = resolved.objects[0].name
+    found = robot_metrics(done, resolved, [event("arrival", 40, name)])[0]
+    expected = {
+        "success": 1,
+        "goal_reached": 1,
+        "collision_count": 0,
+        "timeout": 0,
+        "time_to_goal": 4.0,
+        "path_length": 4.0,
+        "spl": 1.0,
+        "velocity_min": 1.0,
+        "velocity_avg": 1.0,
+        "velocity_max": 1.0,
+        "acceleration_max": 0.0,
+        "jerk_max": 0.0,
+        "stalled_time": 0.0,
+        "failure_to_progress": 0,
+        "path_efficiency": 1.0,
+        "path_irregularity": 0.0,
+        "curvature": 0.0,
+        "motion_energy": 4.0,
+        "stl": 1.0,
+        "barn_score": 0.5,
+        "final_distance_to_goal": 0.0,
+        "distance_to_human_min": NAN,
+        "space_compliance": NAN,
+        "clearing_distance_min": NAN,
+        "time_to_collision_min": NAN,
+    }
+    assert {key: found[key] for key in expected} == pytest.approx(expected, nan_ok=True, abs=1e-9)
+
+
+def test_every_key_and_no_other() -> None:
+    resolved = scenario(([1, 5], [5, 5]))
+    found = episode_metrics(trace(resolved, straight(3)[:, None], [[5, 5]]), resolved, [])
+    assert list(found.robots[0]) == [metric.key for metric in METRICS]
+    assert list(found.episode) == [*found.robots[0], "aggregated_time"]
+    assert len({metric.key for metric in METRICS}) == len(METRICS)
+
+
+def test_after_the_arrival_nothing_counts() -> None:
+    resolved = scenario(([1, 5], [5, 5]), ([1, 9], [9, 9]))
+    one, other = (record.name for record in resolved.objects)
+    path = np.stack([straight(60), straight(60) + np.array([0, 4])], axis=1)
+    path[41:, 0] = path[40, 0] + np.array([0, 3])  # pushed away
+    events = [event("arrival", 40, one), event("collision", 50, one, other)]
+    found = robot_metrics(trace(resolved, path, [[5, 5], [9, 9]]), resolved, events)
+    assert found[0]["success"] == 1
+    assert found[0]["collision_count"] == 0
+    assert found[0]["path_length"] == pytest.approx(4.0)
+    assert found[1]["agent_collisions"] == found[1]["collision_count"] == 1
+    assert (found[1]["success"], found[1]["goal_reached"], found[1]["timeout"]) == (0, 0, 0)
+
+
+def test_contacts_by_partner_and_steps_in_contact() -> None:
+    rest = "obstacle:\n  - {shape: {name: circle, radius: 0.2}, state: [9, 9]}\n"
+    rest += "  - {shape: {name: circle, radius: 0.2}, kinematics: {name: omni}, state: [2, 9]}\n"
+    rest += "  - {shape: {name: circle, radius: 0.2}, state: [3, 9], unobstructed: true}\n"
+    resolved = scenario(([1, 5], [9, 5]), rest=rest)
+    robot, wall, human, ghost = (record.name for record in resolved.objects)
+    pose = np.concatenate([straight(30)[:, None], np.tile([[9.0, 9], [2, 9], [3, 9]], (31, 1, 1))], axis=1)
+    events = [
+        event("collision", 3, wall, robot),
+        event("collision", 9, robot, human),
+        event("collision", 12, robot, wall),
+        event("collision", 14, robot, ghost),
+    ]
+    hits = [(3, 0), (4, 0), (9, 0), (12, 0)]
+    found = robot_metrics(trace(resolved, pose, [[9, 5]], collided=hits), resolved, events)[0]
+    keys = ("collision_count", "collision_steps", "wall_collisions", "agent_collisions", "human_collisions")
+    assert [found[key] for key in keys] == [3, 4, 2, 0, 1]
+    assert (found["success"], found["timeout"], found["spl"]) == (0, 0, 0)
+
+
+def test_speeds_accelerations_and_jerks() -> None:
+    resolved = scenario(([1, 5], [15, 5]))
+    time = 0.1 * np.arange(31)
+    x = 1 + 0.5 * 0.4 * time**2  # constant acceleration
+    found = robot_metrics(trace(resolved, np.stack([x, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
+    assert found["acceleration_min"] == pytest.approx(0.4)
+    assert found["acceleration_max"] == pytest.approx(0.4)
+    assert found["jerk_max"] == pytest.approx(0.0, abs=1e-9)
+    assert found["velocity_max"] == pytest.approx(0.4 * 2.95)
+    assert found["velocity_avg"] == pytest.approx(0.5 * 0.4 * 3.0)
+    assert found["timeout"] == 1
+    assert math.isnan(found["time_to_goal"])
+    cubic = 1 + time**3 / 6  # constant jerk
+    found = robot_metrics(trace(resolved, np.stack([cubic, 0 * x + 5], 1)[:, None], [[15, 5]]), resolved, [])[0]
+    assert found["jerk_avg"] == pytest.approx(1.0)
+    for rows, unknown in ((1, "velocity_avg"), (2, "acceleration_avg"), (3, "jerk_avg")):
+        short = robot_metrics(trace(resolved, straight(rows - 1)[:, None], [[15, 5]]), resolved, [])[0]
+        assert math.isnan(short[unknown])
+
+
+def test_stalls_freezing_and_no_progress() -> None:
+    resolved = scenario(([1, 5], [15, 5]))
+    part = straight(50)
+    path = np.concatenate([part, np.repeat(part[-1:], 120, 0), part[-1:] + straight(30)[1:] - straight(0)])
+    path = np.concatenate([path, np.repeat(path[-1:], 10, 0)])
+    found = robot_metrics(trace(resolved, path[:, None], [[15, 5]]), resolved, [])[0]
+    assert found["stalled_time"] == pytest.approx(13.0)
+    assert found["freezing_count"] == 1
+    assert found["freezing_time"] == pytest.approx(12.0)
+    assert found["failure_to_progress"] == 2  # of the windows from 0, 5, 10, 15 s those from 5 and 10
+    turning = np.zeros((21, 1, 3))
+    turning[:, 0] = 1, 5, 0
+    turning[:, 0, 2] = 0.1 * np.arange(21)
+    found = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
+    assert found["stalled_time"] == 0
+    assert found["cumulative_heading_change"] == pytest.approx(2.0)
+
+
+def test_a_detour_costs_what_it_is_longer() -> None:
+    resolved = scenario(([1, 5], [4, 9]))
+    corner = np.concatenate([straight(30), [[4.0, 5 + 0.1 * k] for k in range(1, 41)]])
+    found = robot_metrics(
+        trace(resolved, corner[:, None], [[4, 9]]), resolved, [event("arrival", 70, resolved.objects[0].name)]
+    )[0]
+    assert found["path_length"] == pytest.approx(7.0)
+    assert found["spl"] == pytest.approx(5 / 7)
+    assert found["path_efficiency"] == pytest.approx(7 / 5)
+    assert found["stl"] == pytest.approx(5 / 7)
+    assert found["barn_score"] == pytest.approx(2.5 / 7)
+
+
+WALL = "obstacle:\n  - {shape: {name: rectangle, length: 0.5, width: 6}, state: [10, 10, 0]}\n"
+
+
+def test_the_shortest_way_goes_round_walls() -> None:
+    resolved = scenario(([6, 10], [14, 10]), rest=WALL)
+    x = np.linspace(6, 14, 81)
+    y = 10 + 4 * np.sin((x - 6) / 8 * np.pi)
+    path = np.stack([x, y], axis=1)
+    done = trace(resolved, np.stack([path, np.full((81, 2), 10.0)], axis=1), [[14, 10]])
+    found = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
+    # tangents to the corners grown by the radius
+    ideal = 2 * math.hypot(4 - 0.25, 3.2) + 0.5
+    length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
+    assert found["spl"] == pytest.approx(ideal / length, rel=0.02)
+    assert found["path_efficiency"] == pytest.approx(length / ideal, rel=0.02)
+    assert found["clearing_distance_min"] == pytest.approx(
+        np.hypot(np.maximum(abs(x - 10) - 0.25, 0), np.maximum(abs(y - 10) - 3, 0)).min() - 0.2
+    )
+
+
+def test_a_goal_walled_in_is_flagged() -> None:
+    box = "obstacle:\n"
+    for state in ([14, 12, 0], [14, 8, 0], [12, 10, 1.5707963], [16, 10, 1.5707963]):
+        box += f"  - {{shape: {{name: rectangle, length: 4.6, width: 0.4}}, state: {state}}}\n"
+    resolved = scenario(([6, 10], [14, 10]), rest=box)
+    path = np.stack([np.linspace(6, 14, 81), np.full(81, 10.0)], axis=1)
+    pose = np.concatenate([path[:, None], np.zeros((81, 4, 2))], axis=1)
+    arrival = event("arrival", 80, resolved.objects[0].name)
+    found = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, [arrival])
+    assert found.flags == [["unreachable"]]
+    assert math.isnan(found.robots[0]["spl"])
+    missed = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, [])
+    assert missed.robots[0]["spl"] == 0
+
+
+HUMAN = "obstacle:\n  - {shape: {name: circle, radius: 0.3}, kinematics: {name: omni}, state: [5, 5]}\n"
+
+
+def passing(gap: float) -> dict[str, float]:
+    """Metrics of a straight drive past a standing human whose surface is `gap` to the side."""
+    resolved = scenario(([1, 5], [9, 5]), rest=HUMAN)
+    human = np.tile([5.0, 5.0 + 0.5 + gap], (81, 1))
+    path = np.stack([straight(80), human], axis=1)
+    done = trace(resolved, path, [[9, 5]])
+    return robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
+
+
+def test_distance_to_a_human_is_that_of_the_surfaces() -> None:
+    found = passing(0.4)
+    x = 1 + 0.1 * np.arange(81)
+    away = np.hypot(x - 5, 0.9) - 0.5
+    assert found["distance_to_human_min"] == pytest.approx(0.4)
+    assert found["distance_to_human_avg"] == pytest.approx(away.mean())
+    assert found["personal_space_intrusion_ratio"] == pytest.approx((away < 0.5).mean())
+    assert found["space_compliance"] == pytest.approx((away >= 0.5).mean())
+    shares = [found[f"proxemics_{zone}_ratio"] for zone in ("intimate", "personal", "social", "public")]
+    assert sum(shares) == pytest.approx(1.0)
+    assert shares[0] == pytest.approx((away < 0.45).mean())
+    assert found["near_misses"] == 0
+    assert math.isnan(found["time_to_collision_min"])  # it would never meet him
+
+
+def test_a_near_miss_and_discomfort() -> None:
+    found = passing(0.1)
+    x = 1 + 0.1 * np.arange(81)
+    away = np.hypot(x - 5, 0.6) - 0.5
+    close = away[away < 0.2]
+    assert found["near_misses"] == 1
+    assert found["discomfort_ratio"] == pytest.approx(len(close) / 81)
+    assert found["discomfort_min_dist"] == pytest.approx(close.mean())
+    assert passing(-0.1)["near_misses"] == 0  # a contact is none
+
+
+def test_time_to_collision_head_on() -> None:
+    resolved = scenario(([1, 5], [9, 5]), rest=HUMAN)
+    human = np.stack([9 - 0.1 * 0.5 * np.arange(31), np.full(31, 5.0)], axis=1)
+    found = robot_metrics(trace(resolved, np.stack([straight(30), human], 1), [[9, 5]]), resolved, [])[0]
+    # after the last step: 3.5 m between centres, 0.5 m of radii, closing at 1.5 m/s
+    assert found["time_to_collision_min"] == pytest.approx((3.5 - 0.5) / 1.5)
+
+
+def test_robots_of_an_episode_together() -> None:
+    resolved = scenario(([1, 5], [5, 5]), ([1, 9], [9, 9]))
+    one, other = (record.name for record in resolved.objects)
+    path = np.stack([straight(40), straight(40, 0.5) + np.array([0, 4])], axis=1)
+    done = trace(resolved, path, [[5, 5], [9, 9]])
+    found = episode_metrics(done, resolved, [event("arrival", 40, one)]).episode
+    assert found["success"] == 0
+    assert found["timeout"] == 1
+    assert found["path_length"] == pytest.approx(3.0)
+    assert (found["velocity_min"], found["velocity_max"]) == pytest.approx((0.5, 1.0))
+    assert found["time_to_goal"] == pytest.approx(4.0)  # of those that have one
+    assert math.isnan(found["aggregated_time"])
+    both = episode_metrics(done, resolved, [event("arrival", 40, one), event("arrival", 30, other)]).episode
+    assert (both["success"], both["aggregated_time"]) == (1, pytest.approx(4.0))
+    hit = episode_metrics(done, resolved, [event("collision", 20, one, other), event("arrival", 40, one)]).episode
+    assert (hit["success"], hit["timeout"]) == (0, 0)
+
+
+def test_curvature_of_a_circle() -> None:
+    angle = np.linspace(0, 6, 400)
+    assert curvatures(np.stack([2 * np.cos(angle), 2 * np.sin(angle)], axis=1)) == pytest.approx(0.5)
+    assert len(curvatures(np.zeros((10, 2)))) == 0
+
+
+def test_runs() -> None:
+    assert runs_of(np.array([True, True, False, True])) == [(0, 2), (3, 4)]
+    assert runs_of(np.zeros(0, dtype=bool)) == []

@@ -1,0 +1,107 @@
+"""Recording a run and reading it back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.env import Env
+from irsim.observers.trace import record
+from irsim.runs import RunError, list_runs, open_run
+from tests.runs.test_trace import assert_same
+
+
+def test_a_recorded_run_reads_back_bit_for_bit(room: Path) -> None:
+    result = irsim.run(room, seed=4, record=True)
+    plain = irsim.run(room, seed=4)
+    assert result.run_id is not None
+    assert result.model_dump(exclude={"run_id", "artifacts"}) == plain.model_dump(exclude={"run_id", "artifacts"})
+    run = open_run(result.run_id)
+    env = Env(room, seed=4, headless=True, log_level="ERROR")
+    assert_same(run.trace(), record(env.simulation, result.steps, scans=True))
+    assert run.status == "finished"
+    assert run.result == result
+    assert run.events == env.events
+    assert run.scenario_text == room.read_text()
+    assert run.last_step == result.steps
+    assert {run.meta[key] for key in ("seed", "scenario", "horizon")} == {4, str(room), 200}
+    assert all(Path(path).is_file() for path in result.artifacts.values())
+    assert (room.parent / ".irsim" / ".gitignore").read_text() == "*\n"
+
+
+def test_what_a_run_says_of_its_scenario_is_plain(room: Path) -> None:
+    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    rover, crate = run.resolved["objects"]
+    assert (rover["name"], rover["role"], rover["state"][:3], rover["goals"]) == (
+        "rover",
+        "robot",
+        [1, 1, 0],
+        [[4, 3, 0]],
+    )
+    assert crate["radius"] == 0.5
+    assert run.resolved["world"]["width"] == 8
+    json.dumps(run.resolved, allow_nan=False)
+
+
+def test_texts_are_recorded_too(workspace: Path, room: Path) -> None:
+    result = irsim.run(text=room.read_text(), seed=1, record=True)
+    assert str(result.run_id).startswith("scenario-")
+    assert [run.id for run in list_runs()] == [result.run_id]
+    assert open_run("last").meta["scenario"] is None
+
+
+def test_many_pieces_are_one_trace(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as small:
+        small.setattr("irsim.runs.recorder._PIECE", 1)
+        small.setattr("irsim.episode._CHUNK_STEPS", 7)
+        many = open_run(str(irsim.run(room, seed=4, record=True).run_id))
+    assert sum(name.startswith("trace-") for name in many.files()) > 5
+    one = open_run(str(irsim.run(room, seed=4, record=True).run_id), room.parent)
+    assert_same(many.trace(), one.trace())
+    assert many.events == one.events
+
+
+def test_a_folder_of_ones_own(room: Path, tmp_path: Path) -> None:
+    target = tmp_path / "kept" / "first"
+    result = irsim.run(room, seed=4, record=target)
+    assert open_run(target).result == result
+    assert not (tmp_path / ".irsim").exists()
+    with pytest.raises(RunError, match="file-exists"):
+        irsim.run(room, seed=4, record=target)
+
+
+def test_drawn_runs_are_recorded_too(room: Path, tmp_path: Path) -> None:
+    drawn = irsim.run(room, seed=4, steps=12, record=True, save=tmp_path / "film.gif")
+    plain = irsim.run(room, seed=4, steps=12, record=True)
+    assert_same(open_run(str(drawn.run_id)).trace(), open_run(str(plain.run_id)).trace())
+
+
+def test_a_failing_run_is_readable_until_then(room: Path) -> None:
+    @irsim.register_behavior("diff", "test_record_fails")
+    def fails(ego_object: object, external_objects: object, **kwargs: object) -> object:
+        fails_at.append(1)
+        return np.zeros((2, 1)) if len(fails_at) < 6 else None
+
+    fails_at: list[int] = []
+    room.write_text(room.read_text().replace("{name: dash}", "{name: test_record_fails}"))
+    with pytest.raises(irsim.IrsimError):
+        irsim.run(room, seed=0, record=True)
+    run = open_run("last")
+    assert run.status == "interrupted"
+    assert run.result is None
+    assert run.trace().step.tolist() == [0]
+
+
+def test_an_unknown_run_names_recent_ones(room: Path) -> None:
+    with pytest.raises(RunError, match="record one first"):
+        open_run("room-123456")
+    ids = [str(irsim.run(room, seed=n, steps=1, record=True).run_id) for n in range(7)]
+    with pytest.raises(RunError, match="unknown-run") as caught:
+        open_run("room-123456")
+    assert sum(name in str(caught.value) for name in ids) == 5
+    with pytest.raises(RunError):
+        open_run("../../room")
