@@ -14,6 +14,7 @@ refuse_conflicts()
 if TYPE_CHECKING:
     from irsim.api import render, run, validate
     from irsim.batch import Batch, batch
+    from irsim.benchmarks import benchmark
     from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.errors import IrsimError, NotSimulatedError, PlacementError, ScenarioError, ScenarioNotFoundError
     from irsim.lib import register_behavior
@@ -31,6 +32,7 @@ _HOMES = {
     "ScenarioError": "irsim.errors",
     "ScenarioNotFoundError": "irsim.errors",
     "batch": "irsim.batch",
+    "benchmark": "irsim.benchmarks",
     "make": "irsim.env",
     "register_behavior": "irsim.lib",
     "render": "irsim.api",
@@ -50,6 +52,7 @@ __all__ = [
     "ScenarioNotFoundError",
     "__version__",
     "batch",
+    "benchmark",
     "make",
     "register_behavior",
     "render",

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli import demo, describe, inspect, new, render, run, schema, templates, validate
+from irsim.cli import benchmark, demo, describe, inspect, new, render, run, schema, templates, validate
 from irsim.cli.guard import guarded
 from irsim.cli.map import map_app
 
@@ -47,6 +47,7 @@ for _verb in (
     validate.validate,
     run.run,
     inspect.inspect,
+    benchmark.benchmark,
     render.render,
     describe.describe,
     schema.schema,

@@ -58,7 +58,12 @@ def robot_metrics(
 
 
 def episode_metrics(
-    trace: Trace, scenario: ResolvedScenario | Simulation, events: Sequence[Event], *, seed: int = 0
+    trace: Trace,
+    scenario: ResolvedScenario | Simulation,
+    events: Sequence[Event],
+    *,
+    seed: int = 0,
+    ways: Geodesics | None = None,
 ) -> EpisodeMetrics:
     """The metrics of an episode, sampled at every step.
 
@@ -69,6 +74,7 @@ def episode_metrics(
         scenario: What was simulated, or the simulation in the scene of the trace.
         events: What happened.
         seed: With a scenario: the seed of the run.
+        ways: Shortest ways in a world in which the same things stand in the same places.
     """
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
     records = simulation.scenario.objects
@@ -84,7 +90,7 @@ def episode_metrics(
         [_top_speed(records[robot].vel_max, records[robot].kinematics) for robot in robots],
         passable,
     )
-    geodesics = Geodesics(simulation)
+    geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
     values, flags = [], []
     for track in cut:

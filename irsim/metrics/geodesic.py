@@ -20,6 +20,7 @@ __all__ = ["Geodesics", "inscribed_radius"]
 Floats = NDArray[np.float64]
 _FINE = 0.05  # cells at most [m]; half the radius where that is less
 _MOST_CELLS = 250_000
+_COARSER = 4.0
 _SLACK = 1e-3  # the disc is that much smaller than the body, which may touch
 _SMALLEST = 0.01  # radius [m]
 
@@ -46,13 +47,14 @@ class Geodesics:
         self._terrains: dict[tuple[float, float, float, float], core.Terrain] = {}
         self._known: dict[Any, Floats | None] = {}
 
-    def way(self, start: Floats, goal: Floats, radius: float) -> Floats | None:
+    def way(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> Floats | None:
         """Shortest way of a disc.
 
         Args:
             start: (2,) [m].
             goal: (2,) [m].
             radius: Of the disc [m].
+            coarse: On cells four times as large, if that finds one; much faster.
 
         Returns:
             (K, 2) corners from start to goal [m]; None if there is no way.
@@ -60,17 +62,19 @@ class Geodesics:
         line = np.array([start[:2], goal[:2]], dtype=np.float64)
         if self._empty:
             return line
-        key = (line.tobytes(), radius)
+        key = (line.tobytes(), radius, coarse)
         if key not in self._known:
-            self._known[key] = self._searched(line, max(radius - _SLACK, _SMALLEST))
+            size = max(radius - _SLACK, _SMALLEST)
+            found = self._searched(line, size, _COARSER) if coarse else None
+            self._known[key] = self._searched(line, size) if found is None else found
         return self._known[key]
 
-    def length(self, start: Floats, goal: Floats, radius: float) -> float:
+    def length(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> float:
         """Length of :meth:`way` [m]; NaN if there is none."""
-        way = self.way(start, goal, radius)
+        way = self.way(start, goal, radius, coarse=coarse)
         return math.nan if way is None else float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
-    def _searched(self, line: Floats, radius: float) -> Floats | None:
+    def _searched(self, line: Floats, radius: float, larger: float = 1.0) -> Floats | None:
         x0, y0, x1, y1 = self._bounds
         low, high = line.min(axis=0) - radius, line.max(axis=0) + radius
         bounds = (min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1]))
@@ -82,7 +86,7 @@ class Geodesics:
         if terrain.clear(body, 0.0, start, goal):
             return line
         width, height = bounds[2] - bounds[0], bounds[3] - bounds[1]
-        size = max(min(_FINE, radius / 2), math.sqrt(width * height / _MOST_CELLS))
+        size = larger * max(min(_FINE, radius / 2), math.sqrt(width * height / _MOST_CELLS))
         nx, ny = max(1, round(width / size)), max(1, round(height / size))
         path, *_ = terrain.plan(
             core.AstarOptions(resolution=0.0),

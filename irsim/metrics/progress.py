@@ -87,7 +87,7 @@ def _without_progress(track: Track, geodesics: Geodesics, radius: float) -> int:
         goal = track.goal[a, :2]
         if np.isnan(goal).any() or (track.goal[b, :2] != goal).any():
             continue
-        before, after = (geodesics.length(track.position[row], goal, radius) for row in (a, b))
+        before, after = (geodesics.length(track.position[row], goal, radius, coarse=True) for row in (a, b))
         if math.isnan(before) or math.isnan(after):  # no way: as the crow flies
             before, after = (float(np.linalg.norm(goal - track.position[row])) for row in (a, b))
         count += before - after < _LEAST

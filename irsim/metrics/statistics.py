@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ _Z = 1.959963984540054  # of the normal distribution, 95 % two-sided
 _RESAMPLES = 10_000
 _SEED = 20_230_616
 _BLOCK = 2_000_000  # numbers drawn at once
+_KEPT = 5_000_000  # numbers remembered for the next call
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
@@ -37,15 +39,30 @@ def bootstrap(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, flo
         return math.nan, math.nan
     if (known == known[0]).all():
         return float(known[0]), float(known[0])
-    rng = np.random.default_rng(_SEED)
-    means = []
-    left = _RESAMPLES
-    while left:
-        rows = min(left, max(1, _BLOCK // len(known)))
-        means.append(known[rng.integers(0, len(known), size=(rows, len(known)))].mean(axis=1))
-        left -= rows
-    low, high = np.percentile(np.concatenate(means), [2.5, 97.5])
+    means = np.concatenate([weights @ known for weights in _resamples(len(known))]) / len(known)
+    low, high = np.percentile(means, [2.5, 97.5])
     return float(low), float(high)
+
+
+def _resamples(count: int) -> Iterator[NDArray[np.float64]]:
+    """How often each of ``count`` values is drawn in each resample, in blocks of (resamples, count)."""
+    if count * _RESAMPLES <= _KEPT:
+        yield _weights(count)
+        return
+    rng = np.random.default_rng(_SEED)
+    rows = max(1, _BLOCK // count)
+    for begin in range(0, _RESAMPLES, rows):
+        yield _drawn(rng, min(rows, _RESAMPLES - begin), count)
+
+
+@lru_cache(maxsize=2)
+def _weights(count: int) -> NDArray[np.float64]:
+    return _drawn(np.random.default_rng(_SEED), _RESAMPLES, count)
+
+
+def _drawn(rng: np.random.Generator, rows: int, count: int) -> NDArray[np.float64]:
+    chosen = rng.integers(0, count, size=(rows, count)) + count * np.arange(rows)[:, None]
+    return np.bincount(chosen.ravel(), minlength=rows * count).reshape(rows, count).astype(np.float64)
 
 
 def spread(values: Sequence[float]) -> tuple[int, float, float]:

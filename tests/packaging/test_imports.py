@@ -61,7 +61,7 @@ LAYERS = (
     """,
     """
     api
-    benchmark
+    benchmarks
     bridges
     config
     episode

@@ -1,0 +1,210 @@
+"""``irsim.benchmark``: scenarios x behaviors x seeds on all cores, with metrics and intervals.
+
+The comparison is fair: every behavior meets the same scenarios with the same seeds and horizons, and differences are
+taken episode by episode.
+"""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.summary import rows_of
+from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of
+from irsim.diagnostics import nearest
+from irsim.episode import Progress, import_modules, read_scenario, source_of
+from irsim.errors import OverLimitError
+from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.results import BenchmarkResult, EpisodeRow, Finding
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.load import Document, load_path
+from irsim.scenario.randomness import random_parts
+from irsim.text import clean
+
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark"]
+
+DEFAULT_SEEDS = 10
+_NAMED = 3
+
+
+def benchmark(
+    files: str | Path | Sequence[str | Path],
+    behaviors: str | Sequence[str] = (AS_WRITTEN,),
+    seeds: int | Iterable[int] = DEFAULT_SEEDS,
+    *,
+    steps: int | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    workers: int | None = None,
+    limits: Limits | None = None,
+    most_episodes: int | None = None,
+    progress: Progress | None = None,
+) -> BenchmarkResult:
+    """Run every scenario under every behavior with every seed, and compare.
+
+    Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+
+    Args:
+        files: Scenario files.
+        behaviors: Names (``orca``), names with options in YAML (``{name: orca, timeHorizon: 5}``) for all robots, or
+            ``as-written`` for what the scenario says. Differences are to the first.
+        seeds: How many (0, 1, 2, …), or which.
+        steps: Horizon in steps, over ``world.time_limit``.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first, for behaviors they register.
+        workers: Processes at most; default: the cores of this machine.
+        limits: Limits of reading and of each run.
+        most_episodes: Refuse to run more.
+        progress: Told (episodes done, episodes).
+
+    Raises:
+        ScenarioError: A scenario can't be used, or not with that behavior; ScenarioNotFoundError: there is none.
+        OverLimitError: More is asked for than the limits allow.
+        BenchmarkError: A behavior or the seeds make no sense.
+    """
+    names = [str(name) for name in ([files] if isinstance(files, (str, Path)) else files)]
+    wanted = [behaviors] if isinstance(behaviors, str) else list(behaviors)
+    chosen = _seeds(seeds)
+    _check(names, wanted, chosen, most_episodes)
+    limits = limits or DEFAULT_LIMITS
+    import_modules(imports)
+    _check_names(wanted)
+    warnings: dict[str, list[Finding]] = {}
+    jobs: list[tuple[str, str, Job, Sequence[int]]] = []
+    periods, chances = dict[str, float](), dict[str, list[str]]()
+    for name in names:
+        scenario, warnings[name] = read_scenario(name, strict=strict, limits=limits)
+        periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
+        document = _document(name, limits)
+        for behavior in wanted:
+            job = Job(
+                text=str(document.text),
+                path=document.path,
+                behavior=behavior,
+                steps=steps,
+                strict=strict,
+                imports=tuple(imports),
+                limits=tuple(asdict(limits).items()),
+            )
+            chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
+            jobs.append((name, behavior, job, chosen))
+    plan = [
+        (name, behavior, Task(job, seed))
+        for name, behavior, job, every in jobs
+        for seed in (every if chances[name] else every[:1])
+    ]
+    found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress)
+    episodes = [
+        EpisodeRow(
+            scenario=name,
+            behavior=behavior,
+            seed=task.seed,
+            metrics={key: None if math.isnan(value) else value for key, value in result["metrics"].items()},
+            **{key: result[key] for key in ("outcome", "steps", "sim_time", "time_limit", "unreachable")},
+        )
+        for (name, behavior, task), result in zip(plan, found, strict=True)
+    ]
+    from irsim import __version__
+
+    return BenchmarkResult(
+        scenarios=names,
+        behaviors=wanted,
+        seeds=chosen,
+        step_time=periods,
+        random=chances,
+        rows=rows_of(episodes, names, wanted),
+        episodes=episodes,
+        notes=_notes(episodes, chances, chosen),
+        warnings=warnings,
+        version=__version__,
+        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+    )
+
+
+def _document(name: str, limits: Limits) -> Document:
+    source = source_of(name, None, limits)
+    return source if isinstance(source, Document) else load_path(source, limits)
+
+
+def _seeds(seeds: int | Iterable[int]) -> list[int]:
+    if isinstance(seeds, int):
+        return list(range(seeds))
+    return list(dict.fromkeys(int(seed) for seed in seeds))
+
+
+def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int | None) -> None:
+    for what, given in (("scenarios", names), ("behaviors", behaviors), ("seeds", seeds)):
+        if not given:
+            raise BenchmarkError(f"there are no {what}", f"give at least one of the {what}")
+    for what, listed in (("scenario", names), ("behavior", behaviors)):
+        twice = next((name for name in listed if listed.count(name) > 1), None)
+        if twice is not None:
+            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
+    if min(seeds) < 0 or max(seeds) >= 2**64:
+        raise BenchmarkError("a seed is outside 0 to 2^64 - 1", "give seeds from 0")
+    for behavior in behaviors:
+        behavior_of(behavior)
+    total = len(names) * len(behaviors) * len(seeds)
+    if most is not None and total > most:
+        product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
+        raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
+
+
+def _check_names(behaviors: list[str]) -> None:
+    known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
+    for behavior in behaviors:
+        name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
+        if name not in known:
+            near = nearest(name, known)
+            fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
+            raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
+
+
+def _notes(episodes: list[EpisodeRow], chances: dict[str, list[str]], seeds: list[int]) -> list[str]:
+    notes = []
+    fixed = [name for name, chance in chances.items() if not chance]
+    if fixed and len(seeds) > 1:
+        notes.append(
+            f"{_some(fixed)}: nothing is random, so every seed gives the same run and one was made; random placement "
+            "or motion noise would make seeds differ"
+        )
+    lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
+    if lost:
+        count = sum(bool(episode.unreachable) for episode in episodes)
+        notes.append(f"{_some(lost)}: in {count} episodes no way to a goal was found; spl is left out there")
+    cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
+    if cut:
+        notes.append(f"{_some(cut)}: episodes ended early with robots that stopped without arriving")
+    return notes
+
+
+def _some(names: list[str]) -> str:
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more
+
+
+def _command(
+    names: list[str],
+    behaviors: list[str],
+    seeds: list[int],
+    steps: int | None,
+    strict: bool,
+    imports: Sequence[str],
+) -> str:
+    words: list[Any] = ["irsim", "benchmark", *names]
+    if behaviors != [AS_WRITTEN]:
+        words += ["--behaviors", ",".join(behaviors)]
+    words += ["--seeds", len(seeds) if seeds == list(range(len(seeds))) else ",".join(map(str, seeds))]
+    if steps is not None:
+        words += ["--steps", steps]
+    if strict:
+        words.append("--strict")
+    for name in imports:
+        words += ["--import", name]
+    return shlex.join(map(str, words))

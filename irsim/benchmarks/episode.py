@@ -1,0 +1,112 @@
+"""One episode of a benchmark."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from typing import Any, Literal
+
+from irsim.benchmarks.variant import behavior_of, with_behavior
+from irsim.env import Env
+from irsim.episode import horizon_of, import_modules
+from irsim.metrics.episode import episode_metrics
+from irsim.metrics.geodesic import Geodesics
+from irsim.observers.trace import record
+from irsim.scenario.limits import Limits
+from irsim.scenario.load import load_text
+from irsim.scenario.objects import ResolvedScenario
+
+__all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
+
+Outcome = Literal["success", "collision", "timeout"]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One scenario under one behavior.
+
+    Attributes:
+        text: The scenario.
+        path: Its file, for what it names beside it; None for a text.
+        behavior: See :func:`irsim.benchmarks.variant.behavior_of`.
+        steps: Horizon; None: that of the scenario.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules of the user, for what they register.
+        limits: Of reading and running, as (name, value).
+    """
+
+    text: str
+    path: str | None
+    behavior: str
+    steps: int | None
+    strict: bool
+    imports: tuple[str, ...]
+    limits: tuple[tuple[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class Task:
+    """One episode to run."""
+
+    job: Job
+    seed: int
+
+    def as_data(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self)
+
+    @staticmethod
+    def of_data(data: dict[str, Any]) -> Task:
+        """From :meth:`as_data`."""
+        job = data["job"]
+        job["imports"] = tuple(job["imports"])
+        job["limits"] = tuple((name, value) for name, value in job["limits"])
+        return Task(Job(**job), data["seed"])
+
+
+@lru_cache(maxsize=4)
+def scenario_of(job: Job) -> ResolvedScenario:
+    """The scenario of a job, ready to build; the last few are remembered.
+
+    Raises:
+        ScenarioError: It cannot be used.
+    """
+    import_modules(job.imports)
+    document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
+    return with_behavior(document, behavior_of(job.behavior), strict=job.strict)
+
+
+def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
+    """Run an episode until every robot has arrived or stopped, or the horizon is reached, and measure it.
+
+    Args:
+        task: Which one.
+        ways: Shortest ways that are known of a world in which the same things stand in the same places.
+
+    Returns:
+        ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (robots without a way to their
+        goal), and ``metrics`` of the episode by key (NaN where undefined).
+    """
+    job = task.job
+    env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
+    horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
+    simulation = env.simulation
+    trace = record(simulation, horizon)
+    measured = episode_metrics(trace, simulation, env.events, ways=ways)
+    steps = int(simulation.count[0])
+    env.end(ending_time=0.0)
+    robots = measured.robots
+    outcome: Outcome = "timeout"
+    if robots and all(robot["success"] for robot in robots):
+        outcome = "success"
+    elif any(not robot["success"] and not robot["timeout"] for robot in robots):
+        outcome = "collision"
+    return {
+        "outcome": outcome,
+        "steps": steps,
+        "sim_time": steps * trace.step_time,
+        "time_limit": horizon * trace.step_time,
+        "robots": len(robots),
+        "unreachable": sum(bool(flags) for flags in measured.flags),
+        "metrics": measured.episode,
+    }

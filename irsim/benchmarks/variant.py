@@ -1,0 +1,114 @@
+"""One scenario under one behavior: the scenario as written, or with another behavior for every robot."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from irsim.errors import IrsimError
+from irsim.scenario.load import Document
+from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.opening import or_raise
+from irsim.scenario.read import read
+
+__all__ = ["AS_WRITTEN", "BenchmarkError", "behavior_of", "with_behavior"]
+
+AS_WRITTEN = "as-written"
+"""Stands for the behaviors that the scenario itself gives its robots."""
+_KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
+"""What a robot is to do, whatever decides how: kept when its behavior is replaced."""
+
+
+class BenchmarkError(IrsimError, ValueError):
+    """A benchmark that cannot be run as asked.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
+        fix: What to ask for instead.
+    """
+
+    code = "bad-argument"
+
+    def __init__(self, message: str, fix: str) -> None:
+        self.message, self.fix = message, fix
+        super().__init__(f"{self.code}: {message}. Fix: {fix}{'' if fix.endswith('?') else '.'}")
+
+
+def behavior_of(text: str) -> dict[str, Any] | None:
+    """What a behavior given as text stands for.
+
+    Args:
+        text: A name (``orca``), a name with options in YAML (``{name: orca, timeHorizon: 5}``), or ``as-written``.
+
+    Returns:
+        The mapping to write under ``behavior``; None for ``as-written``.
+
+    Raises:
+        BenchmarkError: It is neither.
+    """
+    text = text.strip()
+    if text == AS_WRITTEN:
+        return None
+    fix = "give a name such as orca, or {name: orca, timeHorizon: 5}, or as-written for the scenario's own"
+    if not text.startswith("{"):
+        if not text or any(character in text for character in " :{}[],"):
+            raise BenchmarkError(f"{text!r} is no behavior", fix)
+        return {"name": text}
+    from irsim.scenario.load import load_text
+
+    document = load_text(text)
+    if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
+        raise BenchmarkError(f"{text!r} is no behavior", fix)
+    return dict(document.data)
+
+
+def with_behavior(document: Document, behavior: Mapping[str, Any] | None, *, strict: bool) -> ResolvedScenario:
+    """The scenario in which every robot that can move follows one behavior, on its own.
+
+    Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``); one that
+    has the behavior already keeps its options unless other ones are given.
+
+    Args:
+        document: As written.
+        behavior: What to write under ``behavior`` of every robot; None leaves everything as it is.
+        strict: Refuse what IR-SIM would ignore.
+
+    Raises:
+        ScenarioError: It cannot be used.
+    """
+    if behavior is None or not isinstance(document.data, Mapping):
+        return or_raise(read(document, strict=strict, limits=document.limits))[0]
+    data = copy.deepcopy(dict(document.data))
+    entries = data.get("robot")
+    for entry in entries if isinstance(entries, list) else [entries]:
+        if isinstance(entry, dict) and entry.get("kinematics") is not None:
+            _give(entry, behavior)
+    changed = replace(document, data=data, text=None, _root=None)
+    return or_raise(read(changed, strict=strict, limits=document.limits))[0]
+
+
+def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
+    """Let the robots of an entry follow a behavior."""
+    own, group = entry.pop("behavior", None), entry.pop("group_behavior", None)
+    if isinstance(own, list):
+        entry["behavior"] = [_merged(one, group, behavior) for one in own]
+    else:
+        entry["behavior"] = _merged(own, group, behavior)
+
+
+def _merged(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
+    own, group = _mapping(own), _mapping(group)
+    told: dict[str, Any] = group or own
+    if told.get("name") == behavior["name"] and len(behavior) == 1:
+        return told
+    kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
+    return {**kept, **behavior}
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    if isinstance(value, str):
+        return {"name": value}
+    return dict(value) if isinstance(value, Mapping) else {}

@@ -1,0 +1,215 @@
+"""``irsim benchmark``: compare behaviors over scenarios and seeds."""
+
+from __future__ import annotations
+
+import csv
+import re
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from irsim.results import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+
+__all__ = ["benchmark", "show_benchmark"]
+
+_COLUMNS = (
+    ("velocity_avg", "m/s", 2),
+    ("path_length", "path m", 1),
+    ("spl", "spl", 2),
+    ("distance_to_human_min", "human m", 2),
+)
+_WIDE, _NARROW = 112, 96
+"""Characters that all columns need, and all but the last three."""
+
+
+def benchmark(
+    files: Annotated[list[str], typer.Argument(help="Scenario files (YAML).", show_default=False)],
+    behaviors: Annotated[
+        str,
+        typer.Option(
+            metavar="A,B,…",
+            help="Behaviors for all robots, such as rvo,orca or '{name: orca, timeHorizon: 5}'; differences are to the "
+            "first.",
+        ),
+    ] = "as-written",
+    seeds: Annotated[
+        str, typer.Option(metavar="N|LIST", help="How many seeds from 0, or which: 20, 5-9, 1,4,7.")
+    ] = "10",
+    steps: Steps = None,
+    json_output: Json = False,
+    csv_output: Annotated[
+        bool, typer.Option("--csv", help="Print every episode with all metrics as comma-separated values.")
+    ] = False,
+    strict: Strict = False,
+    imports: Imports = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes; default: all cores. Results don't depend on it.", show_default=False),
+    ] = None,
+    max_objects: MaxObjects = None,
+) -> None:
+    """Compare behaviors: every scenario under every behavior with the same seeds, on all cores.
+
+    Shows success, collision and time-out with 95 % intervals, and mean times, speeds and paths. All metrics are in
+    --json and --csv.
+    """
+    from irsim.benchmarks import BenchmarkError
+    from irsim.benchmarks import benchmark as compare
+    from irsim.cli.findings import import_user_modules, limits_for
+    from irsim.cli.output import console, print_json, progress
+
+    if json_output and csv_output:
+        raise BenchmarkError("--json and --csv are both given", "give one of them")
+    chosen = _seeds(seeds)
+    import_user_modules(imports)
+    with progress("simulating") as report:
+        result = compare(
+            files,
+            _listed(behaviors),
+            chosen,
+            steps=steps,
+            strict=strict,
+            imports=imports or (),
+            workers=workers,
+            limits=limits_for(max_objects),
+            progress=report,
+        )
+    if json_output:
+        print_json(result)
+    elif csv_output:
+        _print_csv(result)
+    else:
+        show_benchmark(result, console())
+
+
+def show_benchmark(result: BenchmarkResult, out: Console) -> None:
+    """Print the table of a benchmark.
+
+    Args:
+        result: From :func:`irsim.benchmark`.
+        out: Where to.
+    """
+    from rich.table import Table
+    from rich.text import Text
+
+    from irsim.text import clean
+
+    if not out.is_terminal:
+        out.width = max(out.width, _WIDE)
+    width = out.width
+    columns = list(_COLUMNS[: 1 if width < _NARROW else 3 if width < _WIDE else 4])
+    if not any(row.metrics["distance_to_human_min"].n for row in result.rows):
+        columns = [column for column in columns if column[1] != "human m"]
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column("scenario", no_wrap=True)
+    table.add_column("behavior", no_wrap=True, overflow="ellipsis")
+    for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
+        table.add_column(heading, justify="right", no_wrap=True)
+    labels = _labels(result.scenarios)
+    last = None
+    for row in result.rows:
+        if last not in (None, row.scenario):
+            table.add_section()
+        best = row.success.rate == max(r.success.rate for r in result.rows if r.scenario == row.scenario)
+        table.add_row(
+            clean(labels.get(row.scenario, row.scenario), 20) if row.scenario != last else "",
+            clean(row.behavior, 24),
+            str(row.episodes),
+            Text(_share(row.success), style="bold green" if best and row.success.count else ""),
+            Text(_share(row.collision), style="red" if row.collision.count else "dim"),
+            Text(_share(row.timeout), style="yellow" if row.timeout.count else "dim"),
+            _mean(row.metrics["time_to_goal"], 1, interval=True),
+            *(_mean(row.metrics[key], digits) for key, _, digits in columns),
+        )
+        last = row.scenario
+    out.print(table)
+    told = "95 % intervals, Wilson for shares, bootstrap for times; time s: of those that arrived"
+    if any(heading == "human m" for _, heading, _ in columns):
+        told += "; human m: least distance"
+    out.print(Text(told, "dim"))
+    for row in result.rows:
+        if row.paired and row.scenario == result.rows[-1].scenario:
+            out.print(_against(row, result.behaviors[0]))
+    for note in result.notes:
+        out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
+    periods = sorted(set(result.step_time.values()))
+    out.print(f"metrics are sampled every step ({', '.join(f'{period:g} s' for period in periods)})")
+    out.print(Text.assemble("again: ", (result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _against(row: BenchmarkRow, first: str) -> str:
+    """One line of paired differences."""
+    from irsim.text import clean
+
+    told = []
+    for key, name, unit in (("success", "success", ""), ("time_to_goal", "time", " s"), ("path_length", "path", " m")):
+        found = row.paired[key]
+        if found.mean is not None:
+            interval = "" if found.low is None else f" [{found.low:+.2f}, {found.high:+.2f}]"
+            told.append(f"{name} {found.mean:+.2f}{unit}{interval}")
+    return f"{clean(row.behavior, 40)} - {clean(first, 40)}, same seeds: " + (", ".join(told) or "no common episodes")
+
+
+def _share(found: Proportion) -> str:
+    return f"{100 * found.rate:.0f}% {100 * found.low:.0f}-{100 * found.high:.0f}"
+
+
+def _mean(found: Estimate, digits: int, *, interval: bool = False) -> str:
+    if found.mean is None:
+        return "-"
+    text = f"{found.mean:.{digits}f}"
+    if interval and found.low is not None and found.high is not None:
+        text += f" ±{(found.high - found.low) / 2:.{digits}f}"
+    return text
+
+
+def _labels(files: list[str]) -> dict[str, str]:
+    """Short names for files that differ in little."""
+    stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
+    short = {name: stem.rsplit("/", 1)[-1] for name, stem in stems.items()}
+    return short if len(set(short.values())) == len(files) else stems
+
+
+def _listed(text: str) -> list[str]:
+    """A list separated by commas, those inside braces left alone."""
+    depth, parts = 0, [""]
+    for character in text:
+        depth += (character in "{[") - (character in "}]")
+        if character == "," and depth <= 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts if part.strip()]
+
+
+def _seeds(text: str) -> int | list[int]:
+    from irsim.benchmarks import BenchmarkError
+
+    text = text.replace(" ", "")
+    if text.isdecimal():
+        return int(text)
+    found: list[int] = []
+    for part in text.strip(",").split(","):
+        ends = re.fullmatch(r"(\d{1,20})(?:-(\d{1,20}))?", part)
+        low, high = (0, -1) if ends is None else (int(ends[1]), int(ends[2] or ends[1]))
+        if ends is None or not 0 <= high - low < 1_000_000:
+            raise BenchmarkError(f"{text!r} are no seeds", "write how many, such as 20, or which, such as 5-9 or 1,4,7")
+        found += range(low, high + 1)
+    return found
+
+
+def _print_csv(result: BenchmarkResult) -> None:
+    from irsim.benchmarks.summary import KEYS
+
+    first = ("scenario", "behavior", "seed", "outcome", "steps", "sim_time", "time_limit", "unreachable")
+    lines = csv.writer(sys.stdout, lineterminator="\n")
+    lines.writerow([*first, *KEYS])
+    for episode in result.episodes:
+        values = [episode.metrics[key] for key in KEYS]
+        lines.writerow([*(getattr(episode, key) for key in first), *("" if v is None else v for v in values)])

@@ -1,0 +1,176 @@
+"""``irsim.benchmark``: fair, repeatable, the same on any number of processes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.benchmarks import AS_WRITTEN, BenchmarkError
+from irsim.benchmarks import pool as pool_module
+from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.variant import behavior_of
+from irsim.cli.app import app
+from irsim.errors import OverLimitError, PlacementError, ScenarioError, ScenarioNotFoundError
+
+CROWD = """
+world: {width: 8, height: 8, time_limit: 12}
+robot:
+  - kinematics: {name: diff}
+    number: 3
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [7, 7, 3]}
+    shape: {name: circle, radius: 0.2}
+    behavior: {name: dash, wander: false, target_roles: all}
+    goal: [4, 4, 0]
+obstacle:
+  - {shape: {name: circle, radius: 0.3}, state: [4, 6]}
+"""
+ALONE = "robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0], behavior: {name: dash}}\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    (tmp_path / "crowd.yaml").write_text(CROWD)
+    (tmp_path / "alone.yaml").write_text(ALONE)
+    return [str(tmp_path / "crowd.yaml"), str(tmp_path / "alone.yaml")]
+
+
+def test_each_episode_is_what_run_gives(files) -> None:
+    found = irsim.benchmark(files, seeds=[4, 7])
+    assert [(e.scenario, e.seed) for e in found.episodes] == [(files[0], 4), (files[0], 7), (files[1], 4)]
+    for episode in found.episodes:
+        alone = irsim.run(episode.scenario, seed=episode.seed)
+        assert (episode.outcome, episode.steps) == (alone.outcome, alone.steps)
+        assert (episode.time_limit, episode.sim_time) == (alone.time_limit, alone.sim_time)
+        times = [robot.time_to_goal for robot in alone.robots if robot.time_to_goal is not None]
+        mean = episode.metrics["time_to_goal"]
+        assert mean == (pytest.approx(sum(times) / len(times)) if times else None)
+
+
+def test_results_do_not_depend_on_the_number_of_processes(files, monkeypatch) -> None:
+    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    told = []
+    one = irsim.benchmark(files, ["rvo", "orca"], 6, workers=1)
+    many = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, progress=lambda *now: told.append(now))
+    assert one.model_dump_json() == many.model_dump_json()
+    assert told == sorted(told)
+    assert told[-1][1] == 14
+
+
+def test_behaviors_meet_the_same_scenes_and_are_compared_pair_by_pair(files) -> None:
+    found = irsim.benchmark(files[0], ["dash", "{name: rvo, neighbor_threshold: 2}"], 5)
+    dash, rvo = found.rows
+    assert (dash.paired, dash.success.n, rvo.episodes) == ({}, 5, 5)
+    assert found.behaviors == ["dash", "{name: rvo, neighbor_threshold: 2}"]
+    by = {(e.behavior, e.seed): e for e in found.episodes}
+    differences = []
+    for seed in range(5):
+        a, b = (by[name, seed].metrics["path_length"] for name in reversed(found.behaviors))
+        differences.append(a - b)
+    assert rvo.paired["path_length"].mean == pytest.approx(math.fsum(differences) / 5)
+    assert rvo.paired["path_length"].low <= rvo.paired["path_length"].mean <= rvo.paired["path_length"].high
+    assert dash.success.count + dash.collision.count + dash.timeout.count == 5
+    assert rvo.success.low <= rvo.success.rate <= rvo.success.high
+
+
+def test_what_is_not_random_is_run_once_and_said(files) -> None:
+    found = irsim.benchmark(files[1], seeds=20)
+    assert len(found.episodes) == 1
+    assert "nothing is random" in found.notes[0]
+
+
+def test_several_scenarios_are_also_taken_together(files) -> None:
+    found = irsim.benchmark(files, seeds=3)
+    assert [(row.scenario, row.episodes) for row in found.rows] == [(files[0], 3), (files[1], 1), ("(all)", 4)]
+
+
+def job(text: str, behavior: str) -> Job:
+    return Job(text, None, behavior, None, True, (), ())
+
+
+def test_robots_keep_what_they_are_to_do() -> None:
+    text = "robot:\n  - {kinematics: {name: diff}, number: 2, group_behavior: {name: orca, timeHorizon: 3}}\n"
+    text += "  - {kinematics: {name: omni}, behavior: {name: dash, wander: true, range_high: [3, 3]}}\n"
+    text += "  - {shape: {name: circle}}\nobstacle: {kinematics: {name: omni}, behavior: {name: sfm}, state: [5, 5]}\n"
+    records = scenario_of(job(text, "rvo")).objects
+    assert [r.behavior and r.behavior.name for r in records] == ["rvo", "rvo", "rvo", None, "sfm"]
+    assert [r.group_behavior for r in records] == [None] * 5
+    assert records[2].wander
+    assert records[2].range_high[:2] == [3, 3]
+    kept = scenario_of(job(text, "orca")).objects
+    assert kept[0].behavior.timeHorizon == 3
+    written = scenario_of(job(text, AS_WRITTEN)).objects
+    assert written[0].group_behavior.name == "orca"
+
+
+@pytest.mark.parametrize("wrong", ["", "a b", "{name: 3}", "{timeHorizon: 5}", "{name: [", "name: orca"])
+def test_what_is_no_behavior(wrong) -> None:
+    with pytest.raises(BenchmarkError, match="bad-argument"):
+        behavior_of(wrong)
+
+
+def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path) -> None:
+    with pytest.raises(OverLimitError, match="2 scenarios x 3 behaviors x 100 seeds = 600 episodes"):
+        irsim.benchmark(files, ["rvo", "orca", "sfm"], 100, most_episodes=500)
+    with pytest.raises(BenchmarkError, match="did you mean rvo"):
+        irsim.benchmark(files, "rov")
+    with pytest.raises(BenchmarkError, match="given twice"):
+        irsim.benchmark([files[0], files[0]])
+    with pytest.raises(BenchmarkError, match="no seeds"):
+        irsim.benchmark(files, seeds=0)
+    with pytest.raises(BenchmarkError, match="outside"):
+        irsim.benchmark(files, seeds=[-1])
+    with pytest.raises(ScenarioNotFoundError):
+        irsim.benchmark([*files, str(tmp_path / "none.yaml")])
+    with pytest.raises(ScenarioError, match="timeHorizn"):
+        irsim.benchmark(files, "{name: orca, timeHorizn: 5}", strict=True)
+
+
+def test_an_episode_that_fails_is_raised_as_it_is(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    path = tmp_path / "full.yaml"
+    path.write_text(CROWD.replace("number: 3", "number: 30").replace("radius: 0.2", "radius: 0.7"))
+    with pytest.raises(PlacementError, match="seed 0"):
+        irsim.benchmark(str(path), seeds=4, workers=2)
+
+
+def test_a_behavior_that_only_this_program_knows(files, monkeypatch) -> None:
+    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+
+    @irsim.register_behavior("diff", "creep_along_here")
+    def creep(ego_object, external_objects, **kwargs):
+        return [[0.1], [0.0]]
+
+    found = irsim.benchmark(files[0], "creep_along_here", 4, workers=2)
+    assert [episode.seed for episode in found.episodes] == [0, 1, 2, 3]
+    assert [episode.metrics["velocity_max"] for episode in found.episodes] == pytest.approx([0.1] * 4)
+
+
+def test_tasks_cross_a_process_unchanged() -> None:
+    task = Task(Job("text", "a.yaml", "rvo", 5, True, ("module",), (("root", None), ("steps", 3))), 7)
+    assert Task.of_data(json.loads(json.dumps(task.as_data()))) == task
+
+
+def test_the_command(files) -> None:
+    runner = CliRunner()
+    shown = runner.invoke(app, ["benchmark", *files, "--behaviors", "dash,{name: rvo, vxmax: 1}", "--seeds", "3"])
+    assert shown.exit_code == 0, shown.output
+    assert "crowd" in shown.output
+    assert "same seeds" in shown.output
+    told = runner.invoke(app, ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "2-4", "--json"])
+    same = irsim.benchmark(files[0], ["dash", "rvo"], [2, 3, 4])
+    assert told.stdout.rstrip("\n") == same.model_dump_json(indent=2)
+    assert same.reproduce == f"irsim benchmark {files[0]} --behaviors dash,rvo --seeds 2,3,4"
+    table = list(
+        csv.DictReader(io.StringIO(runner.invoke(app, ["benchmark", *files, "--csv", "--seeds", "1,3"]).stdout))
+    )
+    assert [row["seed"] for row in table] == ["1", "3", "1"]
+    assert float(table[2]["path_length"]) > 3
+    assert table[0]["distance_to_human_min"] == ""
+    for wrong in (["--seeds", "x"], ["--seeds", "9-2"], ["--seeds", "0"], ["--json", "--csv"], ["--behaviors", ","]):
+        assert runner.invoke(app, ["benchmark", files[0], *wrong]).exit_code == 2
