@@ -22,7 +22,8 @@ class Follow(BehaviorOptions):
     says so.
 
     The local behavior avoids who moves. From what stands still it only keeps the room its path needs, without the
-    margins, horizons and forces it has on its own, which would close narrow ways.
+    margins, horizons and forces it has on its own, which would close narrow ways. Where there is no room to turn,
+    `diff` and `acker` drive a way of poses instead, with the turning circle of a car, and wait for who is in the way.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}

@@ -1,5 +1,6 @@
 #include "route.hpp"
 
+#include "collision/touch.hpp"
 #include "features.hpp"
 #include "geometry/predicates.hpp"
 #include "phases.hpp"
@@ -17,7 +18,11 @@ constexpr double kFacing = 0.35;                     // larger heading errors ar
 constexpr double kPatience = 1.0;                    // between plans because the path was lost [s]
 constexpr int kTries = 10;                           // of a planner that draws samples
 constexpr int kBackingSteps = 8;                     // once begun
-constexpr int kMostBraking = 40;                     // steps of braking looked ahead
+constexpr double kLegEnd = 0.01;                     // a leg this near its end is done [m], and [rad] of a turn
+constexpr double kLegGain = 2.0;                     // of turning back to the line of a leg [1/s], [rad/(m s)]
+constexpr double kSteeringShare = 0.9;               // of the largest steering angle that poses are planned with
+constexpr int kMostWaits = 30;    // steps something is in the way of a leg before there is a new plan
+constexpr int kMostBraking = 40;  // steps of braking looked ahead
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;
 
 /// Distances of a body from its origin: farthest, and farthest to the side.
@@ -106,6 +111,11 @@ class Follower {
       target.x = target.y = kNone;
       return;
     }
+    if (!route_.legs.empty()) {
+      const Vec2 point = route_.legs[route_.leg].pose.position();
+      target = {point.x, point.y, kNone};
+      return;
+    }
     advance();
     if (route_.next + 1 == route_.path.size() && !(options_.lookahead > 0.0)) return;
     aim(target);
@@ -118,7 +128,12 @@ class Follower {
       u = {};
       return;
     }
+    if (!route_.legs.empty()) {
+      go_on_legs(u);
+      if (!route_.legs.empty()) return;
+    }
     if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer(u);
+    if (route_.hold) u[2] = 0.0;
     back_off_goal();
     keep_clear(u);
   }
@@ -150,17 +165,25 @@ class Follower {
     route_.planned_at = state_.count[w_];
     route_.among = state_.scenes[w_].fixed;
     route_.path.clear();
+    route_.legs.clear();
+    route_.hold = false;
+    route_.waits = 0;
     route_.next = 1;
     route_.room = room_of(shapes_, object_);
     const Extent extent = extent_of(shapes_, object_);
     const double margin = std::min(kMargin * extent.reach, kMostMargin);
     // who keeps a heading needs room for the body as it stands; others for all headings, or at least for driving ahead
-    if (std::holds_alternative<OmniOptions>(world_.drive[object_])) {
+    const bool sideways = std::holds_alternative<OmniAngularOptions>(world_.drive[object_]);
+    const auto as_it_stands = [&] {
       const double theta = state_.pose[row_].theta;
       const Body tight = Body::of(shapes_, object_, theta, 0.0);
       for (const double share : kShares) {
-        if (attempt(Body::of(shapes_, object_, theta, share * margin), tight, true)) break;
+        if (attempt(Body::of(shapes_, object_, theta, share * margin), tight, true)) return true;
       }
+      return false;
+    };
+    if (std::holds_alternative<OmniOptions>(world_.drive[object_])) {
+      as_it_stands();
     } else {
       const double side = std::min(extent.side, extent.reach);
       const Body ahead = Body::disc(side), easy = Body::disc(side * (1.0 + 0.5 * kMargin));
@@ -172,11 +195,141 @@ class Follower {
         // enough to turn anywhere; a car keeps its heading nearly
         if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) route_.room = extent.reach;
       }
+      if (!found && !round && sideways) found = route_.hold = as_it_stands();
+      if (!found && !round && !sideways) found = find_legs(extent.reach);
       found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
     }
     if (!route_.path.empty() || route_.told) return;
     route_.told = true;
     state_.log(world_, w_, EventKind::no_path, object_, -1, position());
+  }
+
+  /// Poses for a drive that does not move sideways where there is no room to turn everywhere.
+  bool find_legs(double reach) {
+    const Drive& drive = world_.drive[object_];
+    const auto* car = std::get_if<AckerOptions>(&drive);
+    if (car == nullptr && !std::holds_alternative<DiffOptions>(drive)) return false;
+    const double radius = car == nullptr ? 0.0 : car->wheelbase / std::tan(kSteeringShare * most_steering(*car));
+    const double room = room_of(shapes_, object_);
+    const bool backs = world_.vel_min[object_][0] < 0.0;
+    const PoseProblem problem{
+        blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
+        backs,     radius,  reach,   room};
+    route_.legs = search_poses(problem);
+    route_.leg = 1;
+    if (route_.legs.size() < 2) {
+      route_.legs.clear();
+      return false;
+    }
+    route_.bodies.assign(2, Body::disc(room));
+    for (const Leg& leg : route_.legs) route_.path.push_back(leg.pose.position());
+    route_.path.push_back(route_.goal);
+    return true;
+  }
+
+  double most_steering(const AckerOptions& car) const {
+    const double psi = std::min(car.psi_max, 1.4);
+    return car.mode == Steering::steer ? std::min(psi, world_.vel_max[object_][1]) : psi;
+  }
+
+  /// The command that goes on along the legs; they are cleared when the last one is done.
+  void go_on_legs(Vec3& u) {
+    if (std::holds_alternative<AckerOptions>(world_.drive[object_])) {
+      roll(u);
+    } else {
+      turn_and_roll(u);
+    }
+    if (route_.leg >= route_.legs.size()) {  // the rest of the way is straight
+      route_.legs.clear();
+      route_.path = {position(), route_.goal};
+      route_.next = 1;
+      return;
+    }
+    for (const double share : {1.0, 0.5, 0.25, 0.1}) {
+      Vec3 v = u;
+      v[0] *= share;
+      if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) v[1] *= share;
+      if (!clear_after(v)) continue;
+      u = v;
+      route_.waits = 0;
+      return;
+    }
+    u = {};
+    if (++route_.waits > kMostWaits) {
+      route_.waits = 0;
+      plan();
+    }
+  }
+
+  /// Speed at which the rest of a piece can be ended in time.
+  double speed_for(double left, int control, double most) const {
+    const double acce = world_.acce[object_][control];
+    double speed = std::min(most, left / world_.step_time);
+    if (std::isfinite(acce) && acce > 0.0) {
+      const double change = acce * world_.step_time;
+      speed = std::min(speed, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * left));
+    }
+    return std::max(speed, 0.0);
+  }
+
+  double top(int way) const { return way > 0 ? world_.vel_max[object_][0] : std::fabs(world_.vel_min[object_][0]); }
+
+  void turn_and_roll(Vec3& u) {
+    const Pose& pose = state_.pose[row_];
+    std::vector<Leg>& legs = route_.legs;
+    for (; route_.leg < legs.size(); ++route_.leg) {
+      const Leg& leg = legs[route_.leg];
+      u = {};
+      if (leg.way == 0) {
+        const double error = wrap(leg.pose.theta - pose.theta);
+        if (std::fabs(error) < kLegEnd) continue;
+        const double rate = speed_for(std::fabs(error), 1, std::fabs(world_.vel_max[object_][1]));
+        u[1] = error > 0.0 ? rate : -rate;
+        return;
+      }
+      const Vec2 along = unit(leg.pose.theta), gap = leg.pose.position() - pose.position();
+      const double left = leg.way * dot(gap, along);
+      if (left < kLegEnd) continue;
+      const double most = std::fabs(world_.vel_max[object_][1]);
+      u[0] = leg.way * speed_for(left, 0, top(leg.way));
+      u[1] = clip(-kLegGain * (wrap(pose.theta - leg.pose.theta) + leg.way * cross(gap, along)), -most, most);
+      return;
+    }
+  }
+
+  /// A car, by pure pursuit along legs of one direction. Coulter: "Implementation of the Pure Pursuit Path Tracking
+  /// Algorithm" (1992).
+  void roll(Vec3& u) {
+    const auto& car = std::get<AckerOptions>(world_.drive[object_]);
+    const Pose& pose = state_.pose[row_];
+    const std::vector<Leg>& legs = route_.legs;
+    u = {};
+    while (route_.leg < legs.size()) {
+      const int way = legs[route_.leg].way;
+      std::size_t last = route_.leg;
+      while (last + 1 < legs.size() && legs[last + 1].way == way) ++last;
+      const double ahead = std::max(0.15, 0.6 * car.wheelbase);
+      while (route_.leg < last && norm(legs[route_.leg].pose.position() - pose.position()) < ahead) ++route_.leg;
+      Vec2 gap = legs[route_.leg].pose.position() - pose.position();
+      double left = kInfinity;
+      if (route_.leg == last) {
+        const Vec2 along = unit(legs[last].pose.theta);
+        left = way * dot(gap, along);
+        if (left < kLegEnd) {
+          ++route_.leg;
+          continue;
+        }
+        const double short_by = ahead - norm(gap);
+        if (short_by > 0.0) gap = gap + along * (way * short_by);
+      }
+      const Vec2 point = unrotate(gap, state_.heading(row_));
+      const double most = most_steering(car);
+      const double psi = clip(std::atan(2.0 * point.y / squared(point) * car.wheelbase), -most, most);
+      const double now = state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+      u[0] = way * speed_for(left, 0, std::min(top(way), 0.4 * ahead / world_.step_time));
+      u[1] = car.mode == Steering::steer ? psi : (psi - now) / world_.step_time;
+      return;
+    }
   }
 
   /// Look for a path for a body, wider than that for which sight is asked for; `search`: not only the straight one.
@@ -299,9 +452,7 @@ class Follower {
     const Vec2 way = state_.goal[row_].position() - position();
     const double threshold = world_.goal_threshold[object_];
     if (norm(way) < threshold) return;
-    double psi = std::min(car->psi_max, 1.4);
-    if (car->mode == Steering::steer) psi = std::min(psi, world_.vel_max[object_][1]);
-    const double radius = car->wheelbase / std::tan(psi);
+    const double radius = car->wheelbase / std::tan(most_steering(*car));
     const Vec2 point = unrotate(way, state_.heading(row_)), centre{0.0, point.y >= 0.0 ? radius : -radius};
     if (norm(point - centre) < radius - 0.5 * threshold) route_.backing = kBackingSteps;
   }
@@ -373,7 +524,13 @@ class Follower {
   bool clear_at(const Pose& pose) {
     work_.ghost.resize(shapes_.size[0]);
     work_.ghost.place(shapes_, object_, pose, unit(pose.theta));
-    return !blockers_.meet(work_.ghost.footprint(shapes_, object_));
+    const Footprint body = work_.ghost.footprint(shapes_, object_);
+    if (blockers_.meet(body)) return false;
+    if (route_.legs.empty()) return true;
+    // legs are driven as they are: who is in the way is waited for
+    return std::none_of(world_.moving.begin(), world_.moving.end(), [&](int i) {
+      return i != object_ && !world_.unobstructed[i] && touch(body, state_.scenes[w_].moving.footprint(shapes_, i));
+    });
   }
 
   /// Whether a command, then braking as hard as the limits allow, meets nothing.

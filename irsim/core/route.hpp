@@ -7,6 +7,7 @@
 
 #include "fields.hpp"
 #include "planners.gen.hpp"
+#include "planning/pose_search.hpp"
 #include "planning/problem.hpp"
 #include "vec.hpp"
 
@@ -34,6 +35,10 @@ struct Route {
   std::size_t next = 0;                // of the path: the corner headed for
   std::int64_t planned_at = 0;         // step
   std::uint64_t plans = 0;             // made in this episode
+  std::vector<Leg> legs;               // poses of a narrow way; empty: corners are enough
+  std::size_t leg = 0;                 // of those: the one headed for
+  int waits = 0;                       // steps in a row in which something was in the way of a leg
+  bool hold = false;                   // the heading is kept: the path is free for that one
   int backing = 0;                     // steps for which it goes on backing out of a corner
   double room = 0.0;                   // behaviors keep a disc so large about the origin off walls [m]
   bool told = false;                   // that there is no path to this goal

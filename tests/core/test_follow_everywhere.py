@@ -60,3 +60,46 @@ def test_through_a_maze(made_of: str, drive: str, shape: str, local: str, pictur
     result = irsim.run(text=maze(drive, shape, local, world, obstacles), seed=1, steps=700)
     assert result.outcome == "success", result.reason
     assert not [event for event in result.events if event.kind == "collision"]
+
+
+def gap(x: float, y: float, width: float, thickness: float = 0.3) -> str:
+    """A wall across the world at ``x`` with a gap about ``y``."""
+    text = ""
+    for low, high in ((0, y - width / 2), (y + width / 2, 10)):
+        shape = f"{{name: rectangle, length: {thickness}, width: {high - low}}}"
+        text += f"\n  - {{shape: {shape}, state: [{x}, {(low + high) / 2}, 0]}}"
+    return text
+
+
+def narrow(drive: str, shape: str, walls: str, local: str, top: list[float]) -> str:
+    return (
+        f"world: {{width: 10, height: 10, boundary: walls}}\nrobot:\n  - kinematics: {{name: {drive}}}\n"
+        f"    shape: {shape}\n    state: [1, 1, 0]\n    goal: [9, 9, 0]\n    vel_max: {top}\n"
+        f"    vel_min: {[-v for v in top]}\n    behavior: {{name: follow, local: {local}}}\nobstacle:{walls}\n"
+    )
+
+
+@pytest.mark.parametrize("local", ["dash", "rvo", "orca", "sfm"])
+@pytest.mark.parametrize("drive", ["omni", "diff", "omni_angular"])
+@pytest.mark.parametrize("walls", [gap(5, 5, 0.5), gap(4, 3, 0.6) + gap(6.5, 7, 0.6), gap(5, 5, 0.6, 4)])
+def test_long_and_thin_through_gaps_without_room_to_turn(drive: str, local: str, walls: str) -> None:
+    shape = "{name: rectangle, length: 1.4, width: 0.3}"
+    result = irsim.run(text=narrow(drive, shape, walls, local, [1.0] * DRIVES[drive]), seed=1, steps=400)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+@pytest.mark.parametrize("local", ["dash", "rvo", "orca", "sfm"])
+@pytest.mark.parametrize("steering", [1.0, 0.6, 0.4])
+def test_a_car_through_gaps_with_its_turning_circle(steering: float, local: str) -> None:
+    shape = "{name: rectangle, length: 0.8, width: 0.4, wheelbase: 0.5}"
+    walls = gap(4, 3, 0.8) + gap(6.5, 7, 0.8)
+    result = irsim.run(text=narrow("acker", shape, walls, local, [1.0, steering]), seed=1, steps=400)
+    assert result.outcome == "success", result.reason
+    assert not [event for event in result.events if event.kind == "collision"]
+
+
+def test_too_narrow_is_said() -> None:
+    shape = "{name: rectangle, length: 1.4, width: 0.3}"
+    result = irsim.run(text=narrow("diff", shape, gap(5, 5, 0.28), "dash", [1.0, 1.0]), seed=1, steps=30)
+    assert [event.kind for event in result.events] == ["no_path"]
