@@ -29,6 +29,8 @@ class EnvMaps(EnvAccess):
         world = self.scenario.world
         corner = world.bounds[0], world.bounds[1]
         made = world_map(world.width, world.height, corner, self._world.grid_map, resolution, self.obstacle_list)
+        if self.scenario.grid is not None and self.scenario.grid.cells is not None:
+            made.share_cells(self.scenario.grid.cells)
         made.robot = next(iter(self.robot_list), None)
         made.seed = self._simulation.key()
         made.canvas = self._canvas

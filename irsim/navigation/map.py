@@ -84,6 +84,12 @@ class Map:
         self.seed: tuple[int, int, int] | None = None
         self.canvas: Any = None
         self._terrain: tuple[Any, core.Terrain] | None = None
+        self._cells: tuple[Any, core.OccupancyGrid] | None = None
+
+    def share_cells(self, cells: core.OccupancyGrid) -> None:
+        """Take the core's form of the grid from ``cells`` as long as nobody writes to ``grid``."""
+        if self.grid is not None and cells.shape == self.grid.shape:
+            self._cells = self.grid.copy(), cells
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -197,8 +203,11 @@ def _grid(env_map: Any) -> list[Any]:
     """The grid as a part of the core; nothing without occupied cells."""
     if env_map.grid is None:
         return []
-    occupied = np.ascontiguousarray(np.asarray(env_map.grid) > OCCUPIED, dtype=np.uint8)
     origin, cell, _, _ = cells_of(env_map)
+    kept = getattr(env_map, "_cells", None)
+    if kept is not None and (kept[1].origin, kept[1].cell) == (origin, cell) and np.array_equal(kept[0], env_map.grid):
+        return [core.GridCells(grid=kept[1])] if kept[1].count else []
+    occupied = np.ascontiguousarray(np.asarray(env_map.grid) > OCCUPIED, dtype=np.uint8)
     return [core.GridCells(grid=core.OccupancyGrid(occupied, origin, cell))] if occupied.any() else []
 
 

@@ -40,6 +40,21 @@ def test_map_of_an_environment(env: irsim.Env) -> None:
     assert Map(5, 5).grid_occupied(1, 1) is None
 
 
+def test_what_is_written_to_a_grid_counts(tmp_path: Path) -> None:
+    (tmp_path / "cave.yaml").write_text(
+        "world: {width: 50, height: 50, obstacle_map: cave.png}\n"
+        "robot: {shape: {name: circle, radius: 0.2}, state: [1, 1]}"
+    )
+    env_map = irsim.make(tmp_path / "cave.yaml", headless=True, log_level="ERROR").get_map(0.0)
+    free, full = (np.argwhere(env_map.grid == value)[7] for value in (0, 100))
+    cells = [shapely.Point((index + 0.5) * env_map.grid_resolution) for index in (free, full)]
+    assert [env_map.is_collision(point) for point in cells] == [False, True]
+    env_map.grid[tuple(free)], env_map.grid[tuple(full)] = 100, 0
+    assert [env_map.is_collision(point) for point in cells] == [True, False]
+    env_map.grid = 100 - env_map.grid
+    assert [env_map.is_collision(point) for point in cells] == [False, True]
+
+
 def test_resolutions(env: irsim.Env) -> None:
     with pytest.warns(UserWarning, match="joined"):
         joined = env.get_map(0.2)

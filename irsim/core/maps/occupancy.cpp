@@ -28,30 +28,34 @@ OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, cons
   if (!(cell.x > 0.0 && cell.y > 0.0 && std::isfinite(cell.x) && std::isfinite(cell.y)))
     throw std::invalid_argument("cells need a size");
   for (int j = 0; j < rows; ++j) {
+    int least = columns, most = -1;
     for (int i = 0; i < columns; ++i) {
       if (occupied[at(i, j)] == 0) continue;
-      bounds_.include(box(i, j));
       ++count_;
+      least = std::min(least, i), most = i;
     }
+    if (most >= 0) bounds_.include(box(least, j)), bounds_.include(box(most, j));
   }
+  for (std::vector<std::uint8_t>& squares : free_) squares.resize(cells);
+  // each row from the one it looks at, to the left and to the right at once: none waits for the other
   const std::vector<std::uint8_t> beyond(static_cast<std::size_t>(columns), kFar);
-  for (const bool down : {false, true}) {
-    for (const bool left : {false, true}) {
-      std::vector<std::uint8_t>& squares = free_[left + 2 * down];
-      squares.resize(cells);
-      const std::uint8_t* next_row = beyond.data();
-      for (int row = 0; row < rows; ++row) {
-        const std::size_t first = at(0, down ? row : rows - 1 - row);
-        std::uint8_t next = kFar, corner = kFar;  // of the cell before, and of the one diagonally ahead
-        for (int column = 0; column < columns; ++column) {
-          const int i = left ? column : columns - 1 - column;
-          const int least = std::min({next, corner, next_row[i]});
-          corner = next_row[i];
-          next = occupied[first + i] != 0 ? 0 : static_cast<std::uint8_t>(std::min(least, kFar - 1) + 1);
-          squares[first + i] = next;
-        }
-        next_row = squares.data() + first;
+  for (const int down : {0, 1}) {
+    const std::uint8_t *right_ahead = beyond.data(), *left_ahead = beyond.data();
+    for (int row = 0; row < rows; ++row) {
+      const std::size_t first = at(0, down ? row : rows - 1 - row);
+      const std::uint8_t* full = occupied.data() + first;
+      std::uint8_t *right = free_[2 * down].data() + first, *left = free_[2 * down + 1].data() + first;
+      int right_next = kFar, right_corner = kFar, left_next = kFar, left_corner = kFar;
+      const auto square = [&](bool is_full, int& next, int& corner, int ahead) {
+        const int least = std::min(next, std::min(corner, std::min(ahead, kFar - 1))) + 1;
+        corner = ahead, next = is_full ? 0 : least;
+        return static_cast<std::uint8_t>(next);
+      };
+      for (int i = 0, k = columns - 1; k >= 0; ++i, --k) {
+        right[k] = square(full[k] != 0, right_next, right_corner, right_ahead[k]);
+        left[i] = square(full[i] != 0, left_next, left_corner, left_ahead[i]);
       }
+      right_ahead = right, left_ahead = left;
     }
   }
 }
