@@ -62,7 +62,7 @@ class Raster:
         """(nx, ny) occupancies, 0 to 100."""
         import numpy as np
 
-        return np.asarray(self.levels if self.table is None else self.table[self.levels], dtype=np.float64)
+        return np.asarray(self.levels if self.table is None else np.take(self.table, self.levels), dtype=np.float64)
 
     def occupied(self) -> NDArray[np.uint8]:
         """(nx, ny) 1 where the occupancy is above 50."""
