@@ -588,6 +588,54 @@ class Trace:
     ranges: Floats
     returns: NDArray[np.float32]  # (steps, W * beams) ranges, infinite where a beam hit nothing
 
+class Log:
+    """What world 0 of a state writes down of each step while it is attached.
+
+    Arrays look at the memory of the log and stay as they are when it goes on. Goals, flags and ranges are there for the
+    rows in which they differ from the row before.
+    """
+
+    def __init__(self, world: World, movers: Sequence[int], columns: int, scans: bool) -> None: ...
+    def attach(self, state: State) -> None: ...
+    def detach(self, state: State) -> None: ...
+    def add(self, state: State) -> None:
+        """Write the present state down: what native steps do by themselves."""
+
+    def clear(self) -> None: ...
+    @property
+    def first(self) -> int:
+        """Step of the first row."""
+
+    @property
+    def rows(self) -> int: ...
+    @property
+    def bytes(self) -> int: ...
+    @property
+    def pose(self) -> Floats:
+        """(rows, movers, 3)."""
+
+    @property
+    def control(self) -> NDArray[np.float32]:
+        """(rows, movers, columns)."""
+
+    @property
+    def goal_rows(self) -> NDArray[np.int64]: ...
+    @property
+    def goal(self) -> Floats:
+        """(goal_rows, N, 3)."""
+
+    @property
+    def flag_rows(self) -> NDArray[np.int64]: ...
+    @property
+    def flags(self) -> Flags:
+        """(flag_rows, N): 1 arrived, 2 collided, 4 stopped."""
+
+    @property
+    def scan_rows(self) -> NDArray[np.int64]: ...
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """(scan_rows, beams), infinite where a beam hit nothing."""
+
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
 ) -> int:

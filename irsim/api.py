@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from irsim.env import Env
@@ -82,6 +82,7 @@ def run(
     save: str | Path | None = None,
     show: bool = False,
     record: bool | str | Path = False,
+    recorded: Callable[[str], None] | None = None,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> RunResult:
@@ -99,6 +100,7 @@ def run(
         record: Also keep everything that happens: True for a folder below ``.irsim/runs`` of the current directory,
             where it is let go 24 hours after its last use; or a new folder to keep it in. :func:`irsim.runs.open_run`
             reads it.
+        recorded: Told the id of the record as soon as that has begun.
         limits: Limits of the loader and of the run.
         progress: Told how far it is.
 
@@ -113,6 +115,8 @@ def run(
     env = Env(scenario, seed=seed, display=show, headless=save is None and not show, log_level="ERROR")
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     with recording(env, path, record, horizon=horizon, strict=strict, imports=imports) as recorder:
+        if recorder is not None and recorded is not None:
+            recorded(recorder.folder.name)
         if save is None and not show:
             advance(env, horizon, progress, recorder=recorder)
             files: list[str] = []

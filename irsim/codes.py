@@ -452,7 +452,8 @@ TOOL_CODES: dict[str, Code] = {
     ),
     "out-of-time": Code(
         "time of computation is over",
-        "The work was stopped; nothing of it is kept. Fewer steps, objects or lidar beams take less time.",
+        "The work was stopped. A run is recorded until then, see inspect_run; of other work nothing is kept. Fewer "
+        "steps, objects or lidar beams take less time.",
     ),
     "busy": Code(
         "too much at once", "As many calls are being worked on as the server allows. Call again a little later."

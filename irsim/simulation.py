@@ -65,6 +65,7 @@ class Simulation:
         scene_drawn: Called with the indices of worlds that have begun their next scene.
         report: Told once about what goes wrong in code of users and does not end the run.
         revision: Grows whenever objects come, go or change their shape.
+        log: Writes down every step of the first world while somebody records it.
         owner: Gives the environment it belongs to, or None.
         user: Whose draws ``rng`` gives: 0 those of an environment; an object on its own has a number of its own.
 
@@ -96,6 +97,7 @@ class Simulation:
         self._history = history
         self._reseeded = False
         self.user = 0
+        self.log: core.Log | None = None
         self.owner: Callable[[], Any] = _nobody
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
@@ -185,6 +187,8 @@ class Simulation:
         core.arrive(world, state)
         core.sense(world, state)
         self.measure()
+        if self.log is not None:
+            self.log.add(state)
 
     def step_external(self) -> None:
         """Count a period in which the caller moved the objects: collisions, arrivals and sensors are evaluated."""

@@ -15,7 +15,7 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
 from irsim.verdict import command
 
-__all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of"]
+__all__ = ["OVERLAYS", "Overlay", "drawn", "snapshot", "snapshot_of"]
 
 Overlay = Literal["names", "goals", "paths", "sensors"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -94,6 +94,25 @@ def snapshot_of(
     env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
     horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     advance(env, horizon, progress, until_done=steps is None)
+    count = int(env.simulation.count[0])
+    again = command("render", path, env.seed, count, strict, extra=["--size", str(size), "-o", "snapshot.png"])
+    result = drawn(env, path, size=size, overlays=overlays, draw=draw, warnings=warnings, reproduce=again)
+    env.end(ending_time=0.0)
+    return result
+
+
+def drawn(
+    env: Env,
+    path: str | Path | None,
+    *,
+    size: int,
+    overlays: Iterable[Overlay] | None,
+    draw: bool,
+    warnings: list[Finding],
+    reproduce: str,
+) -> SnapshotResult:
+    """An environment as it is now: like :func:`snapshot`, with the command that draws the same moment."""
+    scenario = env.scenario
     png, pixels = b"", (0, 0)
     if draw:
         from irsim.render.snapshot import render_scene
@@ -103,23 +122,20 @@ def snapshot_of(
         png = render_scene(env.simulation, size_px=size, overrides=keys)
         pixels = _size_of(png)
     x, y, right, top = scenario.world.bounds
-    count = int(env.simulation.count[0])
-    result = SnapshotResult(
+    return SnapshotResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
         random=random_parts(scenario),
-        steps=count,
+        steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         extent=(x, right, y, top),
         obstacles=len(scenario.objects) - len(env.robot_list),
         robots=_poses(env),
         size=pixels,
         warnings=warnings,
-        reproduce=command("render", path, env.seed, count, strict, extra=["--size", str(size), "-o", "snapshot.png"]),
+        reproduce=reproduce,
         png=png,
     )
-    env.end(ending_time=0.0)
-    return result
 
 
 def _poses(env: Env) -> list[RobotPose]:

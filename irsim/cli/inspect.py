@@ -24,7 +24,10 @@ def inspect(
         typer.Argument(help="Id or folder of a run, or 'last'; without it, the runs there are.", show_default=False),
     ] = None,
     view: Annotated[
-        str, typer.Option(help="rows: step by step; collisions: who touched whom; speeds: how far and fast they went.")
+        str,
+        typer.Option(
+            help="rows: step by step; collisions: who touched whom; closest: nearest approach; speeds: way and speed."
+        ),
     ] = "rows",
     robot: Annotated[str | None, typer.Option(help="Only this robot or object.", show_default=False)] = None,
     from_step: Annotated[int, typer.Option("--from", min=0, metavar="STEP", help="First step.")] = 0,
@@ -129,7 +132,9 @@ def _show(table: RunTable, out: object) -> None:
     shown = Table(box=None, pad_edge=False, header_style="dim")
     for column in table.columns:
         shown.add_column(
-            column, overflow="fold", justify="left" if column in ("robot", "object", "partner", "status") else "right"
+            column,
+            overflow="fold",
+            justify="left" if column in ("robot", "object", "partner", "to", "kind", "status") else "right",
         )
     for row in table.rows:
         shown.add_row(*(_cell(value) for value in row))

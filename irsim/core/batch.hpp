@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 
 #include "phases.hpp"
 
@@ -29,11 +28,6 @@ struct Recording {
 struct Scans {
   bool ranges, returns;
 };
-
-/// The range a beam returned, infinite if it hit nothing.
-inline float returned(const State& state, std::size_t beam) {
-  return state.valid[beam] ? static_cast<float>(state.ranges[beam]) : std::numeric_limits<float>::infinity();
-}
 
 /// Run all worlds; returns the largest number of steps one of them executed. `recordings`: one per world or null.
 long long run_worlds(const World& world, State& state, const Schedule& schedule, std::vector<Recording>* recordings,

@@ -3,6 +3,7 @@
 
 NB_MODULE(_core, m) {
   irsim::nb::set_leak_warnings(false);  // options kept by Python modules outlive this one at exit
+  irsim::bind_log(m);
   irsim::bind_maps(m);
   irsim::bind_features(m);
   irsim::bind_planning(m);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "array.hpp"
+#include "log.hpp"
 #include "random.hpp"
 #include "route.hpp"
 #include "scene.hpp"
@@ -70,6 +72,7 @@ struct State {
   std::vector<std::uint8_t> fresh;           // (W,) the next reset draws scene 0, noise 0
   std::vector<std::int64_t> event_count;     // (W,) events ever
   std::vector<Workspace> workspaces;         // one per thread
+  std::shared_ptr<Log> record;               // of world 0, while somebody records it
 
   /// Scene and noise of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
@@ -99,6 +102,11 @@ struct State {
     goal[row] = q.empty() ? Goal{kNone, kNone, kNone} : q.goals[q.head];
   }
 };
+
+/// The range [m] a beam returned, infinite if it hit nothing.
+inline float returned(const State& state, std::size_t beam) {
+  return state.valid[beam] ? static_cast<float>(state.ranges[beam]) : std::numeric_limits<float>::infinity();
+}
 
 /// Draw world w anew for its present seed and scene counter: shapes, placements, goals; then `restart`.
 void draw_scene(const World& world, State& state, int w);

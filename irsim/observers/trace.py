@@ -51,7 +51,8 @@ class Trace:
         step: (T,) steps executed, 0 at the start of the episode.
         time: (T,) simulated time [s].
         pose: (T, N, 3) x, y [m], heading [rad], world frame.
-        control: (T, N, 3) control executed in the step that led to the row, command frame, zero padded.
+        control: (T, N, 3) control executed in the step that led to the row, command frame, zero padded; of a run that
+            was read back, to single precision.
         goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN where there is none.
         arrived, collided, stopped: (T, N) flags.
         ranges: (T, B) ranges [m] of each sensor, infinite where a beam hit nothing; by ``<object name>/<number of the

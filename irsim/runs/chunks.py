@@ -1,54 +1,86 @@
-"""A piece of a trace as a file: what changes in it row by row, what does not only once."""
+"""A piece of a trace as a file: NPZ, not compressed, with what changes row by row and what does not only once."""
 
 from __future__ import annotations
 
 import zipfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim import _core as core
 from irsim.observers.trace import Trace
 from irsim.runs.store import RunError
 
-__all__ = ["Sensors", "load_chunk", "save_chunk"]
+__all__ = ["Layout", "load_chunk", "save_chunk"]
 
-Sensors = Sequence[tuple[str, int]]
-"""Key and number of beams of each sensor whose ranges are kept."""
 _MOST_BYTES = 256 * 1024**2
 _MOST_NUMBERS = 2**27
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
+_EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
-def save_chunk(file: IO[bytes], rows: Trace) -> None:
-    """Write rows of a trace as NPZ.
+@dataclass(frozen=True)
+class Layout:
+    """What the pieces of one run have in common.
 
-    ``pose``, ``control`` and ``goal`` hold, for the objects of which anything changes in these rows (``…_of``), all
-    rows, and the first row of everybody (``…_at``). ``flags``: 1 arrived, 2 collided, 4 stopped. ``ranges``: (T, beams
-    of all sensors).
+    Attributes:
+        names: Names of the N objects.
+        sensors: Key and number of beams of each sensor whose ranges are kept.
+        step_time: Period [s].
     """
-    flags = sum(getattr(rows, name).astype(np.uint8) * np.uint8(bit) for name, bit in _BITS.items())
-    arrays: dict[str, Any] = {"step": rows.step}
-    for name, values in (("pose", rows.pose), ("control", rows.control), ("goal", rows.goal), ("flags", flags)):
-        wide = np.asarray(values).reshape(len(rows), len(rows.names), -1)
-        raw = np.ascontiguousarray(wide).view(np.uint8 if name == "flags" else np.int64)
-        changing = np.flatnonzero((raw != raw[0]).any(axis=(0, 2))).astype(np.int32)
-        arrays |= {name: wide[:, changing], f"{name}_of": changing, f"{name}_at": wide[0]}
-    if rows.ranges:
-        arrays["ranges"] = np.concatenate(list(rows.ranges.values()), axis=1)
-    np.savez(file, **arrays)
+
+    names: tuple[str, ...]
+    sensors: Sequence[tuple[str, int]]
+    step_time: float
 
 
-def load_chunk(path: Path, names: tuple[str, ...], sensors: Sensors, step_time: float) -> Trace:
-    """Read such a file.
+def save_chunk(file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: NDArray[np.float64]) -> None:
+    """Write what a log holds.
+
+    ``steps``: the first one and how many. ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the
+    objects ``movers``; ``pose_at`` (N, 3) of everybody. ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4
+    stopped) and ``ranges`` (K, beams) hold from the rows ``goal_rows``, ``flag_rows`` and ``scan_rows`` on.
 
     Args:
-        path: The file.
-        names: Names of the objects.
-        sensors: Whose ranges it holds.
-        step_time: Period [s].
+        file: Where to.
+        log: What happened since the last piece.
+        movers: Objects whose poses it holds.
+        pose: (N, 3) present pose of everybody.
+    """
+    arrays: dict[str, NDArray[Any]] = {
+        "steps": np.array([log.first, log.rows], dtype=np.int64),
+        "movers": movers,
+        "pose_at": pose,
+        "pose": log.pose,
+        "control": log.control,
+        "goal_rows": log.goal_rows,
+        "goal": log.goal,
+        "flag_rows": log.flag_rows,
+        "flags": log.flags,
+        "scan_rows": log.scan_rows,
+        "ranges": log.ranges,
+    }
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, array in arrays.items():
+            with archive.open(zipfile.ZipInfo(f"{name}.npy", _EPOCH), "w") as entry:
+                entry.write(_head(array))
+                if array.size:
+                    entry.write(array.data.cast("B"))
+
+
+def _head(array: NDArray[Any]) -> bytes:
+    """Of a file in NPY format 1.0; the data begin at a multiple of 64 bytes."""
+    text = f"{{'descr': {array.dtype.str!r}, 'fortran_order': False, 'shape': {array.shape}, }}"
+    text += " " * (-(len(text) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
+
+
+def load_chunk(path: Path, layout: Layout) -> Trace:
+    """Read such a file.
 
     Raises:
         RunError: It is not what :func:`save_chunk` writes.
@@ -56,43 +88,62 @@ def load_chunk(path: Path, names: tuple[str, ...], sensors: Sensors, step_time: 
     try:
         _check_size(path)
         with np.load(path, allow_pickle=False) as file:
-            step = np.asarray(file["step"], dtype=np.int64)
-            columns = {name: _whole(file, name, len(step), len(names)) for name in ("pose", "control", "goal", "flags")}
-            ranges: dict[str, NDArray[np.float32]] = {}
-            if sensors:
-                cuts = np.cumsum([beams for _, beams in sensors])
-                if file["ranges"].shape != (len(step), cuts[-1]):
-                    raise ValueError("ranges of another shape")
-                parts = np.split(np.asarray(file["ranges"], dtype=np.float32), cuts[:-1], axis=1)
-                ranges = {key: part for (key, _), part in zip(sensors, parts, strict=True)}
+            return _trace({name: file[name] for name in file.files}, layout)
     except (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, zipfile.BadZipFile) as error:
         raise RunError("unreadable-run", f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
-    flags = columns["flags"][:, :, 0].astype(np.uint8)
+
+
+def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
+    first, rows = (int(value) for value in arrays["steps"])
+    count, beams = len(layout.names), sum(number for _, number in layout.sensors)
+    if first < 0 or not 0 < rows * max(1, count * 3, beams) <= _MOST_NUMBERS:
+        raise ValueError("more rows than are written")
+    movers, columns = arrays["movers"], arrays["control"].shape[-1]
+    _expect(arrays["pose_at"], (count, 3))
+    _expect(arrays["pose"], (rows, len(movers), 3))
+    _expect(arrays["control"], (rows, len(movers), columns))
+    pose = np.repeat(arrays["pose_at"][None], rows, axis=0)
+    pose[:, movers] = arrays["pose"]
+    control = np.zeros((rows, count, 3))
+    control[:, movers, :columns] = arrays["control"]
+    flags = _held(arrays, "flag_rows", "flags", rows, (count,)).astype(np.uint8)
+    ranges: dict[str, NDArray[np.float32]] = {}
+    if layout.sensors:
+        scans = _held(arrays, "scan_rows", "ranges", rows, (beams,)).astype(np.float32, copy=False)
+        cuts = np.cumsum([number for _, number in layout.sensors])[:-1]
+        ranges = {key: part for (key, _), part in zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)}
+    step = np.arange(first, first + rows, dtype=np.int64)
     return Trace(
         step=step,
-        time=step.astype(np.float64) * step_time,
-        pose=columns["pose"],
-        control=columns["control"],
-        goal=columns["goal"],
+        time=step.astype(np.float64) * layout.step_time,
+        pose=pose,
+        control=control,
+        goal=_held(arrays, "goal_rows", "goal", rows, (count, 3)),
         arrived=(flags & _BITS["arrived"]).astype(bool),
         collided=(flags & _BITS["collided"]).astype(bool),
         stopped=(flags & _BITS["stopped"]).astype(bool),
         ranges=ranges,
-        names=names,
-        step_time=step_time,
+        names=layout.names,
+        step_time=layout.step_time,
     )
 
 
-def _whole(file: Any, name: str, rows: int, objects: int) -> NDArray[Any]:
-    """(T, N, K) of all objects from those that change and the first row of everybody."""
-    first = file[f"{name}_at"]
-    if first.ndim != 2 or len(first) != objects or first.shape[1] != (1 if name == "flags" else 3):
-        raise ValueError(f"{name} of another shape")
-    if rows * first.size > _MOST_NUMBERS:
-        raise ValueError("more rows than are written")
-    whole = np.repeat(first[None], rows, axis=0)
-    whole[:, file[f"{name}_of"]] = file[name]
-    return whole
+def _held(
+    arrays: dict[str, NDArray[Any]], rows_name: str, name: str, rows: int, shape: tuple[int, ...]
+) -> NDArray[Any]:
+    """(T, …) of values that each hold from their row on."""
+    begins, values = arrays[rows_name], arrays[name]
+    _expect(values, (len(begins), *shape))
+    if not values.size:
+        return np.zeros((rows, *shape), dtype=values.dtype)
+    if begins[0] != 0 or (np.diff(begins) <= 0).any() or begins[-1] >= rows:
+        raise ValueError(f"{rows_name} out of order")
+    return np.repeat(values, np.diff([*begins, rows]), axis=0)
+
+
+def _expect(array: NDArray[Any], shape: tuple[int, ...]) -> None:
+    if array.shape != shape:
+        raise ValueError(f"an array of shape {array.shape} where {shape} is written")
 
 
 def _check_size(path: Path) -> None:

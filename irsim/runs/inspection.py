@@ -12,18 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.diagnostics import nearest
+from irsim.metrics import clearance
+from irsim.metrics.company import KINDS
 from irsim.observers.trace import Trace
 from irsim.results import RunTable
 from irsim.runs.reading import Run, open_run
+from irsim.runs.replaying import scenario_of
 from irsim.runs.store import RunError
+from irsim.scenario.limits import Limits
 from irsim.text import clean
 
 __all__ = ["FIELDS", "VIEWS", "Field", "View", "inspect_run"]
 
-View = Literal["rows", "collisions", "speeds"]
-Field = Literal[
-    "x", "y", "heading", "speed", "turn_rate", "control", "goal_x", "goal_y", "goal_distance", "nearest_hit", "status"
-]
+View = Literal["rows", "collisions", "closest", "speeds"]
+Field = Literal["x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"]
 FIELDS: tuple[Field, ...] = get_args(Field)
 _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "status")
 _STANDING = 1e-3
@@ -46,6 +48,7 @@ class _Question:
     fields: Sequence[Field]
     start: int
     limit: int | None
+    limits: Limits | None
 
 
 @dataclass(frozen=True)
@@ -68,12 +71,15 @@ def inspect_run(
     limit: int | None = 20,
     cursor: str | None = None,
     workspace: str | Path | None = None,
+    limits: Limits | None = None,
 ) -> RunTable:
     """A part of a recorded run as a table.
 
     Args:
         run: Its id, its folder, or ``last``.
         view: ``rows``: positions and more, step by step; ``collisions``: who touched whom, where and how fast;
+            ``closest``: for each robot the moment at which it was nearest to another robot, a human, something that
+            stands still (distances between footprints; negative: overlap);
             ``speeds``: for each robot how far and fast it went, and where it stood still longest.
         robot: Name of one robot, or of another object; by default all robots.
         from_step: First step.
@@ -83,6 +89,7 @@ def inspect_run(
         limit: Rows of the table at most, None for all.
         cursor: ``next_cursor`` of the page before; all else as in that call.
         workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
+        limits: Of the reader of the scenario, which ``closest`` needs.
 
     Raises:
         RunError: There is no such run, robot, step or field.
@@ -97,7 +104,7 @@ def inspect_run(
     chosen = _fields(fields)
     objects = _objects(opened, trace, robot)
     start = _start(cursor)
-    question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit)
+    question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit, limits)
     found = VIEWS[view](question)
     if start and start >= found.total:
         raise RunError(
@@ -180,7 +187,7 @@ def _rows(asked: _Question) -> _Found:
     return _Found(["step", "time", "robot", *columns], rows, total, every)
 
 
-_COLUMNS = {"control": ("control_0", "control_1", "control_2")}
+_COLUMNS = {"control": ("control_0", "control_1", "control_2"), "goal": ("goal_x", "goal_y")}
 
 
 def _cells(trace: Trace, field: Field, row: int, index: int) -> list[Cell]:
@@ -188,6 +195,8 @@ def _cells(trace: Trace, field: Field, row: int, index: int) -> list[Cell]:
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
     if field == "control":
         return [_number(value) for value in trace.control[row, index]]
+    if field == "goal":
+        return [_number(goal_x), _number(goal_y)]
     if field == "status":
         flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
         return [" ".join(word for word, flag in flags if flag[row, index]) or "under way"]
@@ -205,8 +214,6 @@ def _cells(trace: Trace, field: Field, row: int, index: int) -> list[Cell]:
         "x": x,
         "y": y,
         "heading": heading,
-        "goal_x": goal_x,
-        "goal_y": goal_y,
         "goal_distance": math.hypot(goal_x - x, goal_y - y),
     }[field]
     return [_number(value)]
@@ -232,6 +239,30 @@ def _collisions(asked: _Question) -> _Found:
     return _paged(asked, columns, rows)
 
 
+def _closest(asked: _Question) -> _Found:
+    """The nearest approach of each robot to each kind of neighbor, the closest first."""
+    scenario = scenario_of(asked.run, asked.limits)
+    part = asked.trace.pose[asked.first : asked.last + 1]
+    near = clearance(part, scenario, seed=int(asked.run.meta["seed"]))
+    found = []
+    for column, index in enumerate(near.robots.tolist()):
+        if index not in asked.objects:
+            continue
+        for kind, distances in zip(KINDS, near.distance[:, column].T, strict=True):
+            if np.isfinite(distances).any():
+                row = int(np.nanargmin(distances))
+                partner = near.names[near.partner[row, column, KINDS.index(kind)]]
+                found.append((float(distances[row]), index, partner, kind, asked.first + row))
+    trace = asked.trace
+    rows: list[list[Cell]] = []
+    for distance, index, partner, kind, row in sorted(found, key=lambda item: (item[0], item[1])):
+        moment: list[Cell] = [int(trace.step[row]), _number(trace.time[row])]
+        place: list[Cell] = [_number(value) for value in trace.pose[row, index, :2]]
+        speed = _number(float(_speeds(trace, index, row, row)[0]))
+        rows.append([trace.names[index], _number(distance), partner, kind, *moment, *place, speed])
+    return _paged(asked, ["robot", "distance", "to", "kind", "step", "time", "x", "y", "speed"], rows)
+
+
 def _speeds_of_robots(asked: _Question) -> _Found:
     """How far and how fast each robot went, and its longest stand before it arrived."""
     trace, rows = asked.trace, list[list[Cell]]()
@@ -255,6 +286,7 @@ def _speeds_of_robots(asked: _Question) -> _Found:
 VIEWS: dict[str, Callable[[_Question], _Found]] = {
     "rows": _rows,
     "collisions": _collisions,
+    "closest": _closest,
     "speeds": _speeds_of_robots,
 }
 

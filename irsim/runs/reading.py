@@ -11,7 +11,7 @@ from typing import Any
 from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
-from irsim.runs.chunks import Sensors, load_chunk
+from irsim.runs.chunks import Layout, load_chunk
 from irsim.runs.store import (
     META,
     RESULT,
@@ -97,10 +97,11 @@ class Run:
     @cached_property
     def resolved(self) -> dict[str, Any]:
         """World and objects with all defaults, at their start, as plain data."""
-        data = json_of(self.folder, "resolved.json")
-        if not isinstance(data, dict):
-            raise RunError("unreadable-run", f"run {self.id} has no resolved.json")
-        return data
+        data: Any = json_of(self.folder, "resolved.json")
+        objects = data.get("objects") if isinstance(data, dict) else None
+        if not isinstance(objects, list) or not all(isinstance(item, dict) for item in objects):
+            raise RunError("unreadable-run", f"resolved.json of run {self.id} is missing or has been changed")
+        return dict(data)
 
     @property
     def last_step(self) -> int:
@@ -131,8 +132,8 @@ class Run:
         path = plain_file(self.folder, name)
         if path is None:
             raise RunError("unreadable-run", f"'{name}' of run {self.id} is no ordinary file")
-        sensors: Sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
-        return load_chunk(path, self.names, sensors, self.step_time)
+        sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
+        return load_chunk(path, Layout(self.names, sensors, self.step_time))
 
 
 def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> Run:

@@ -9,14 +9,14 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime, timezone
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from irsim.observers.events import read_events
-from irsim.observers.trace import Trace, joined, next_rows, present_row
+from irsim import _core as core
+from irsim.observers.trace import present_row
 from irsim.runs.chunks import save_chunk
 from irsim.runs.plain import plain_scenario
 from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, written
@@ -77,13 +77,16 @@ class Recorder:
             self.folder = _new(folder)
         self._claim = claim(self.folder)
         beams = simulation.world.beams_per_world
-        self._scans = bool(beams) and (horizon + 1) * beams * 4 <= _MOST_SCANS
-        self._parts, self._held = [present_row(simulation, self._scans)], 0
+        scans = bool(beams) and (horizon + 1) * beams * 4 <= _MOST_SCANS
+        self._revision = simulation.revision
+        self._log, self._movers = _log_of(simulation, scans)
+        self._log.attach(simulation.state)
+        self._log.add(simulation.state)
+        simulation.log = self._log
         self._pieces = self._events = self._bytes = self._pruned_at = 0
-        self._cut: int | None = None
         self._done = False
         self._due = time.monotonic() + _PERIOD
-        first = self._parts[0]
+        start = present_row(simulation, scans)
         self._meta = {
             "id": self.folder.name,
             "status": "running",
@@ -92,30 +95,30 @@ class Recorder:
             **_origin(simulation),
             "seed": int(simulation.key()[0]),
             "horizon": horizon,
-            "step_time": first.step_time,
+            "step_time": start.step_time,
             "options": dict(options),
-            "names": list(first.names),
-            "sensors": [[key, block.shape[1]] for key, block in first.ranges.items()],
-            "scans": self._scans or not beams,
+            "names": list(start.names),
+            "sensors": [[key, block.shape[1]] for key, block in start.ranges.items()],
+            "scans": scans or not beams,
             "trace_until": None,
             **_versions(),
         }
         self._write("scenario.yaml", _text_of(simulation))
-        self._write("resolved.json", json.dumps(plain_scenario(simulation), allow_nan=False))
+        written(self.folder / "resolved.json", lambda file: file.write(plain_scenario(simulation)))
         self._write_meta()
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""
-        if self._cut is not None:
-            return self._simulation.advance(steps, until_done=until_done)
-        rows = next_rows(self._simulation, steps, until_done=until_done, scans=self._scans)
-        self._keep(rows)
-        return len(rows)
+        done = self._simulation.advance(steps, until_done=until_done)
+        self.look()
+        return done
 
     def look(self) -> None:
-        """Keep the present state, after somebody else has let one period pass."""
-        if self._cut is None:
-            self._keep(present_row(self._simulation, self._scans))
+        """Write a piece if it is time to: to be called now and then, best after every step."""
+        if self._simulation.revision != self._revision:
+            raise RunError("unreadable-run", "objects came or went: only runs with the same objects are recorded")
+        if self._log.bytes >= _PIECE or time.monotonic() >= self._due:
+            self._flush()
 
     def finish(self, result: RunResult) -> None:
         """Write what is left and the result, which is told where its record is; the run is complete."""
@@ -124,47 +127,43 @@ class Recorder:
         result.run_id = self.folder.name
         result.artifacts = {name: str(self.folder / name) for name in ARTIFACTS}
         self._write(RESULT, result.model_dump_json(indent=1))
-        self._done = True
-        self._claim.release()
-        if self._runs is not None:
-            prune(self._runs, keep=self.folder)
+        self._stop()
 
     def close(self, status: str = "interrupted") -> None:
         """End without a result, unless there is one: what happened so far is kept."""
         if not self._done:
-            self._done = True
             self._flush()
             self._write_meta(status=status)
-            self._claim.release()
+            self._stop()
 
-    def _keep(self, rows: Trace) -> None:
-        if not len(rows):
-            return
-        if len(rows.names) != len(self._meta["names"]):
-            raise RunError("unreadable-run", "objects came or went: only runs with the same objects are recorded")
-        self._parts.append(rows)
-        self._held += rows.pose.nbytes + rows.control.nbytes + sum(block.nbytes for block in rows.ranges.values())
-        if self._held >= _PIECE or time.monotonic() >= self._due:
-            self._flush()
+    def _stop(self) -> None:
+        self._done = True
+        self._detach()
+        self._claim.release()
+
+    def _detach(self) -> None:
+        self._simulation.log = None
+        self._log.detach(self._simulation.state)
 
     def _flush(self) -> None:
         """Write what is held: first what happened, then how everybody moved."""
-        events = read_events(self._simulation, start=self._events)
+        events = self._simulation.state.events(0, self._events)
         if events:
             self._events += len(events)
-            told = [{name: getattr(event, name) for name in event.__slots__} for event in events]
-            self._write(f"events-{self._pieces:04d}.json", json.dumps(told))
-        if self._parts:
-            rows = joined(self._parts)
+            told = json.dumps([_told(event, self._simulation.names, self._meta["step_time"]) for event in events])
+            self._write(f"events-{self._pieces:04d}.json", told)
+        log = self._log
+        if log.rows:
             name = f"trace-{self._pieces:04d}.npz"
-            written(self.folder / name, partial(save_chunk, rows=rows))
-            self._bytes += (self.folder / name).stat().st_size
-            self._parts.clear()
+            written(self.folder / name, lambda file: save_chunk(file, log, self._movers, self._simulation.pose))
+            self._bytes += log.bytes
+            last = log.first + log.rows - 1
+            log.clear()
             if self._bytes >= _MOST_TRACE:
-                self._cut = int(rows.step[-1])
-                self._write_meta(trace_until=self._cut)
+                self._detach()
+                self._write_meta(trace_until=last)
         self._pieces += 1
-        self._held, self._due = 0, time.monotonic() + _PERIOD
+        self._due = time.monotonic() + _PERIOD
         if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
             self._pruned_at = self._bytes
             prune(self._runs, keep=self.folder)
@@ -208,6 +207,22 @@ def recording(
         raise
     finally:
         recorder.close()
+
+
+def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, NDArray[np.int32]]:
+    """A log of what can move: everybody where Python takes part."""
+    records = simulation.scenario.objects
+    movers = [row for row, record in enumerate(records) if simulation.in_python or not record.static]
+    columns = max((records[row].vel_dim for row in movers), default=0)
+    return core.Log(simulation.world, movers, min(3, columns), scans), np.array(movers, dtype=np.int32)
+
+
+def _told(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
+    """What :func:`irsim.observers.events.read_events` makes of it, as JSON has it."""
+    kind, step, first, second, x, y = event
+    partner = names[second] if second >= 0 else None
+    time = step * step_time
+    return {"kind": kind, "time": time, "step": step, "object": names[first], "partner": partner, "x": x, "y": y}
 
 
 def _new(folder: Path) -> Path:

@@ -296,7 +296,7 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
     _sweep(runs)
     total, gone, now = 0, list[str](), time.time()
     for folder in run_folders(runs):
-        size = _size_of(folder)
+        size, leftovers = _size_of(folder)
         total += size
         if keep is not None and folder.name == keep.name:
             continue
@@ -308,18 +308,21 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
             _remove(folder)
             gone.append(folder.name)
             total -= size
-        else:
-            _sweep_run(folder)
+        elif leftovers and not _being_written(folder):
+            _sweep_run(leftovers)
     return gone
 
 
-def _size_of(folder: Path) -> int:
-    total = 0
+def _size_of(folder: Path) -> tuple[int, list[str]]:
+    """Bytes of a run, and its temporary files."""
+    total, leftovers = 0, list[str]()
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             with suppress(OSError):
                 total += entry.stat(follow_symlinks=False).st_size
-    return total
+            if entry.name.startswith(_TEMPORARY):
+                leftovers.append(entry.path)
+    return total, leftovers
 
 
 def _remove(folder: Path) -> None:
@@ -342,16 +345,12 @@ def _sweep(runs: Path) -> None:
                     _remove(folder)
 
 
-def _sweep_run(folder: Path) -> None:
+def _sweep_run(leftovers: list[str]) -> None:
     """Remove temporary files that a killed process left in a run."""
-    if _being_written(folder):
-        return
-    with suppress(OSError), os.scandir(folder) as entries:
-        for entry in entries:
-            if entry.name.startswith(_TEMPORARY):
-                with suppress(OSError):
-                    if time.time() - entry.stat(follow_symlinks=False).st_mtime > _ABANDONED:
-                        os.unlink(entry.path)
+    for path in leftovers:
+        with suppress(OSError):
+            if time.time() - os.lstat(path).st_mtime > _ABANDONED:
+                os.unlink(path)
 
 
 def _children(runs: Path) -> Iterator[Path]:

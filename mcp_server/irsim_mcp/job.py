@@ -84,6 +84,10 @@ class _Progress:
             self._next = now + _PROGRESS_PERIOD
             self._answer(json.dumps({"progress": [done, total]}))
 
+    def recorded(self, run_id: str) -> None:
+        """Tell how the run is called that has begun."""
+        self._answer(json.dumps({"run": run_id}))
+
 
 def _limits(job: dict[str, Any]) -> Limits:
     from irsim.scenario.limits import Limits
@@ -101,7 +105,8 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 def _run(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import run
 
-    result = run(**job["arguments"], strict=True, limits=_limits(job), progress=progress)
+    arguments = {**job["arguments"], "record": True, "recorded": progress.recorded}
+    result = run(**arguments, strict=True, limits=_limits(job), progress=progress)
     return result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})
 
 
@@ -124,10 +129,55 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     return f'{{"png": "{png}", "scene": {result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})}}}'
 
 
+def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
+    import base64
+
+    from irsim.runs import open_run
+    from irsim.runs.replaying import replayed
+    from irsim.snapshot import drawn
+
+    arguments = job["arguments"]
+    run = open_run(arguments["run_id"], job["workspace"])
+    env = replayed(run, arguments["steps"], limits=_limits(job), progress=progress)
+    if arguments["draw"]:
+        os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
+    result = drawn(
+        env,
+        run.meta.get("scenario"),
+        size=arguments["size"],
+        overlays=arguments["overlays"],
+        draw=arguments["draw"],
+        warnings=[],
+        reproduce="",
+    )
+    png = base64.b64encode(result.png).decode()
+    return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
+
+
+def _inspect(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.runs.inspection import inspect_run
+
+    arguments = job["arguments"]
+    table = inspect_run(arguments.pop("run_id"), **arguments, workspace=job["workspace"], limits=_limits(job))
+    return table.model_dump_json()
+
+
+def _artifact(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.runs import open_run
+    from irsim.runs.artifacts import artifact
+
+    arguments = job["arguments"]
+    run = open_run(arguments.pop("run_id"), job["workspace"])
+    return json.dumps({"text": artifact(run, arguments.pop("name"), **arguments)})
+
+
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "validate": _validate,
     "run": _run,
     "snapshot": _snapshot,
+    "run_snapshot": _run_snapshot,
+    "inspect": _inspect,
+    "artifact": _artifact,
 }
 
 

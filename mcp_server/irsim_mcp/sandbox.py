@@ -1,10 +1,12 @@
-"""The workspace: the one folder that scenarios are read from. Nothing is written there."""
+"""The workspace: the one folder that scenarios are read from. Only records of runs are written there."""
 
 from __future__ import annotations
 
 import difflib
+from contextlib import suppress
 from pathlib import Path
 
+from irsim.runs.store import RunError, find_run, mark_cancelled
 from irsim.scenario.confine import why_outside
 from irsim.text import clean
 from irsim_mcp.errors import failure
@@ -50,6 +52,22 @@ class Workspace:
             raise failure("not-a-file", f"{clean(name)!r} is a folder", where=argument, fix=self._advice(target))
         what = f"there is no file {clean(name)!r} in the workspace {self.root}"
         raise failure("file-not-found", what, where=argument, fix=self._advice(target))
+
+    def check_run(self, run_id: str) -> None:
+        """See that a run is recorded here.
+
+        Raises:
+            ToolError: It is not; names recent ones.
+        """
+        try:
+            find_run(run_id, self.root)
+        except RunError as error:
+            raise failure(error.code, error.message, where="run_id", fix=error.fix) from None
+
+    def mark_cancelled(self, run_id: str) -> None:
+        """Note that a run was stopped on purpose."""
+        with suppress(RunError, OSError):
+            mark_cancelled(find_run(run_id, self.root))
 
     def _relative(self, name: str) -> str | None:
         """The name that an absolute path inside the workspace should have had."""

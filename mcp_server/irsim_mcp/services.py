@@ -12,7 +12,7 @@ from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["ScenarioPath", "ScenarioYaml", "Seed", "Services"]
+__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services"]
 
 ScenarioPath = Annotated[str | None, Field(description="Scenario file: path relative to the workspace.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or the scenario itself as YAML text (at most 256 KiB).")]
@@ -20,6 +20,9 @@ Seed = Annotated[
     int | None,
     Field(ge=0, le=2**53, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),
 ]
+
+
+RunId = Annotated[str, Field(max_length=100, description="Of run_episode.")]
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,28 @@ class Services:
         result: dict[str, Any] = answer["result"]
         return result
 
+    async def run_job(
+        self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
+    ) -> dict[str, Any]:
+        """Have a worker do something with a recorded run.
+
+        Args:
+            task: What to do.
+            run_id: Which run of the workspace.
+            seconds: Wall-clock time it may take.
+            progress: Told how far it is.
+            **arguments: Further arguments of the task.
+
+        Raises:
+            ToolError: There is no such run, or the work failed.
+        """
+        self.workspace.check_run(run_id)
+        answer = await self.workers.call(task, {"run_id": run_id, **arguments}, seconds=seconds, progress=progress)
+        if "error" in answer:
+            raise _as_failure(answer["error"], "run_id")
+        result: dict[str, Any] = answer["result"]
+        return result
+
     def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
         if bool(scenario_path) == bool(scenario_yaml):
             given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"
@@ -80,7 +105,7 @@ class Services:
 
 
 def _as_failure(error: dict[str, Any], source: str) -> Exception:
-    argument = {"path": "scenario_path", "text": "scenario_yaml"}[source]
+    argument = {"path": "scenario_path", "text": "scenario_yaml"}.get(source, source)
     if error["code"] == "invalid-scenario":
         first = "; ".join(
             f"{item['where']} line {item['line']} {item['code']}: {item['what']}" for item in error["first"]

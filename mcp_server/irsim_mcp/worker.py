@@ -105,6 +105,8 @@ class Workers:
             start_new_session=True,
         )
         reached: tuple[int, int] | None = None
+        run: str | None = None
+        cancelled = False
         try:
             with anyio.move_on_after(seconds + _STARTING):
                 assert process.stdin is not None
@@ -118,15 +120,23 @@ class Workers:
                     except (anyio.EndOfStream, anyio.IncompleteRead, anyio.DelimiterNotFound):
                         await process.wait()
                         break
+                    if "run" in message:
+                        run = message["run"]
+                        continue
                     if "progress" not in message:
                         return dict(message)
                     reached = (message["progress"][0], message["progress"][1])
                     if progress is not None:
                         await progress(*reached)
-            raise _gone(process.returncode, seconds, reached)
+            raise _gone(process.returncode, seconds, reached, run)
+        except anyio.get_cancelled_exc_class():
+            cancelled = True
+            raise
         finally:
             with anyio.CancelScope(shield=True):
                 await _end(process)
+            if cancelled and run is not None:
+                self._workspace.mark_cancelled(run)
 
 
 async def _end(process: Process) -> None:
@@ -139,14 +149,15 @@ async def _end(process: Process) -> None:
     await process.aclose()
 
 
-def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None) -> Exception:
+def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None, run: str | None) -> Exception:
     """The error for a process that gave no result; ``code`` is None if it had to be stopped."""
+    kept = "" if run is None else f"; inspect_run run_id={run} shows how far it came"
     if code is None or (os.name == "posix" and code == -signal.SIGXCPU):
         done = "" if reached is None else f" after {reached[0]:,} of {reached[1]:,} steps"
         fix = "use fewer objects or lidar beams"
         if reached is not None:
             fix = f"ask for fewer steps (about {max(1, reached[0] * 9 // 10):,} fit), or {fix}"
-        return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix)
+        return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix + kept)
     fix = "use fewer objects or lidar beams; if it happens with a small scenario too, please report it"
     return failure("worker-failed", f"the process that did the work ended with code {code}", fix=fix)
 

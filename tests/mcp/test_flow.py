@@ -55,4 +55,4 @@ async def test_from_a_template_to_a_run(workspace: Path, era: str) -> None:
             await client.call_tool("render_snapshot", {**source, "seed": 7, "step": -1, "return_image": False})
         )
         assert "r0 'nurse' arrived" in end
-    assert [path.name for path in workspace.iterdir()] == ["mine.yaml"]
+    assert sorted(path.name for path in workspace.iterdir()) == [".irsim", "mine.yaml"]

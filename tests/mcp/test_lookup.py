@@ -105,7 +105,7 @@ async def test_resources_can_be_listed_and_read(empty: Path, era: str) -> None:
         patterns = [template.uri_template for template in (await client.list_resource_templates()).resource_templates]
         text = await text_at(client, "irsim://templates/crossing")
         deeper = json.loads(await text_at(client, "irsim://schema/robot.sensors.lidar2d"))
-    assert patterns == ["irsim://schema/{section}", "irsim://templates/{name}"]
+    assert patterns[:2] == ["irsim://schema/{section}", "irsim://templates/{name}"]
     assert len(uris) == len(set(uris)) == len(SECTIONS) + len(templates.names())
     assert api.validate(text=text).valid
     assert "range_max" in deeper["properties"]

@@ -13,8 +13,8 @@ from tests.mcp.golden.write import FILE, listed
 
 pytestmark = pytest.mark.anyio
 
-NAMES = ["lookup", "validate_scenario", "render_snapshot", "run_episode"]
-MOST_BYTES = 9000
+NAMES = ["lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run"]
+MOST_BYTES = 14_000
 
 
 @pytest.mark.parametrize("era", ERAS)
@@ -49,7 +49,7 @@ def test_every_tool_is_complete() -> None:
 def test_data_tools_have_output_schemas_and_the_others_none() -> None:
     tools = {tool["name"]: tool for tool in json.loads(FILE.read_text(encoding="utf-8"))}
     with_schema = [name for name, tool in tools.items() if "outputSchema" in tool]
-    assert with_schema == ["validate_scenario", "run_episode"]
+    assert with_schema == ["validate_scenario", "run_episode", "inspect_run"]
     for name in with_schema:
         schema = tools[name]["outputSchema"]
         assert (schema["type"], schema["additionalProperties"]) == ("object", False)

@@ -9,8 +9,10 @@ from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
 from irsim.text import clean
+from irsim_mcp.errors import failure
 from irsim_mcp.limits import STEPS
 from irsim_mcp.progress import reporter
+from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
 
@@ -18,11 +20,11 @@ __all__ = ["tool"]
 
 _DESCRIPTION = """
     Draw one moment of a scenario as a PNG and look at it: bodies, headings (yellow arrows, none for omni), goals
-    (pale), names, lidar beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0 is
-    the start: do things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first; -1
-    is the end of the episode, with the path of every robot. Returns one line of text, which says what the labels r0,
-    G-r0 (its goal) stand for and where the robots are, and the image; writes no file. Next: edit and validate again, or
-    run_episode.
+    (pale), names, lidar beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0
+    is the start: do things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated
+    first (of a run_id too, the same again); -1 is the end of the episode, with the path of every robot. Returns one
+    line of text, which says what the labels r0, G-r0 (its goal) stand for and where the robots are, and the image;
+    writes no file. Next: edit and validate again, or run_episode.
 """
 _NAMED = 10
 
@@ -34,6 +36,9 @@ def tool(services: Services) -> StrictTool:
         ctx: Context[Any, Any],
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
+        run_id: Annotated[
+            str | None, Field(max_length=100, description="Or a run of run_episode, with its seed.")
+        ] = None,
         step: Annotated[int, Field(ge=-1, le=STEPS, description="0: start; -1: end of the episode.")] = 0,
         seed: Seed = None,
         size_px: Annotated[
@@ -47,19 +52,22 @@ def tool(services: Services) -> StrictTool:
         ] = None,
         return_image: Annotated[bool, Field(description="false: only the line of text.")] = True,
     ) -> list[TextContent | ImageContent]:
-        answer = await services.scenario_job(
-            "snapshot",
-            scenario_path,
-            scenario_yaml,
-            seconds=services.limits.draw_seconds,
-            progress=reporter(ctx, "steps"),
-            steps=None if step == -1 else step,
-            seed=seed,
-            size=size_px,
-            overlays=overlays,
-            draw=return_image,
-        )
-        line = TextContent(type="text", text=_line(answer["scene"]))
+        what: dict[str, Any] = {
+            "seconds": services.limits.draw_seconds,
+            "progress": reporter(ctx, "steps"),
+            "steps": None if step == -1 else step,
+            "size": size_px,
+            "overlays": overlays,
+            "draw": return_image,
+        }
+        if run_id is None:
+            answer = await services.scenario_job("snapshot", scenario_path, scenario_yaml, seed=seed, **what)
+        elif scenario_path or scenario_yaml or seed is not None:
+            fix = "give run_id alone: the run has its scenario and its seed"
+            raise failure("bad-argument", "a run_id and a scenario or a seed are given", where="run_id", fix=fix)
+        else:
+            answer = await services.run_job("run_snapshot", run_id, **what)
+        line = TextContent(type="text", text=_line(answer["scene"], run_id))
         if not return_image:
             return [line]
         return [line, ImageContent(type="image", data=answer["png"], mime_type="image/png")]
@@ -67,7 +75,7 @@ def tool(services: Services) -> StrictTool:
     return strict(render_snapshot, title="Draw a scenario", description=_DESCRIPTION, read_only=True, idempotent=True)
 
 
-def _line(scene: dict[str, Any]) -> str:
+def _line(scene: dict[str, Any], run_id: str | None) -> str:
     left, right, low, top = scene["extent"]
     size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
     chance = "" if scene["random"] else ", nothing is random"
@@ -83,7 +91,8 @@ def _line(scene: dict[str, Any]) -> str:
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
-    return "; ".join(parts) + f". Again: {clean(scene['reproduce'], 300)}"
+    again = f"Run: {uri(run_id, 'run.json')}" if run_id else f"Again: {clean(scene['reproduce'], 300)}"
+    return "; ".join(parts) + f". {again}"
 
 
 def _robot(robot: dict[str, Any]) -> str:

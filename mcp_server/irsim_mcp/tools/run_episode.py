@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from irsim.text import clean
 from irsim_mcp.limits import RUN_SECONDS, STEPS
 from irsim_mcp.progress import reporter
+from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
 
@@ -20,11 +21,14 @@ _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up, and say how it ended. Outcome is
     success (every robot reached its goal without a collision), collision, or timeout; none of them is an error. The
     reason says who hit what, where and when, and who was how far from its goal, doing what. Returns outcome, reason,
-    robots (unsuccessful ones first), first events and the command that repeats the run; the same scenario and seed
-    give the same result. Next: after a failure draw that moment with render_snapshot (same seed), change the scenario,
-    validate and run again; after a success try a few other seeds if anything is random.
+    robots (unsuccessful ones first), first events, the command that repeats the run, and a run_id: its record is kept
+    for 24 hours after its last use. The same scenario and seed give the same result. Next: after a failure inspect_run
+    and draw that moment with render_snapshot (run_id, step), change the scenario, validate and run again; after a
+    success try a few other seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
+_ARTIFACTS = ("events.json", "trace.csv")
+"""Named in the result; the template of the resource names them all."""
 _CONCISE, _DETAILED, _DECIMALS = 10, 50, 3
 
 
@@ -62,6 +66,7 @@ class Episode(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
+    run_id: str
     outcome: Literal["success", "collision", "timeout"]
     reason: str | None = None
     summary: str
@@ -76,6 +81,7 @@ class Episode(BaseModel):
     events: list[Event]
     event_count: int
     warnings: list[str]
+    artifacts: dict[str, str]
     reproduce: str
     next: str
 
@@ -123,7 +129,9 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
     told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:_CONCISE]]
     if len(warnings) > _CONCISE:
         told.append(f"{len(warnings) - _CONCISE} more: validate_scenario lists them")
+    run_id = found["run_id"]
     return Episode(
+        run_id=run_id,
         outcome=found["outcome"],
         reason=None if found["reason"] is None else clean(found["reason"], 500),
         summary=clean(found["summary"], 300),
@@ -138,6 +146,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         events=[_event(event) for event in _chosen(found, detailed)[:most]],
         event_count=found["event_count"],
         warnings=[clean(line, 300) for line in told],
+        artifacts={name: uri(run_id, name) for name in _ARTIFACTS},
         reproduce=clean(found["reproduce"], 300),
         next=_advice(found),
     )
@@ -177,21 +186,27 @@ def _event(event: dict[str, Any]) -> Event:
 
 
 def _advice(found: dict[str, Any]) -> str:
-    seed = found["seed"]
+    run = found["run_id"]
     if found["outcome"] == "success":
         more = "; try other seeds" if found["random"] else ""
-        return f"See the paths with render_snapshot step=-1 seed={seed}{more}."
+        return f"See the paths with render_snapshot run_id={run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
         return "As it should be if a program gives the actions; to try the layout, run a copy with behavior dash."
     hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
-    step = hits[0] if found["outcome"] == "collision" and hits else -1
-    return f"Look with render_snapshot step={step} seed={seed}, change the scenario, validate and run again."
+    if found["outcome"] == "collision" and hits:
+        look, view = f"step={hits[0]}", "collisions"
+    else:
+        look, view = "step=-1", "speeds"
+    return (
+        f"Look with render_snapshot run_id={run} {look} and inspect_run view={view}, change the scenario, validate and "
+        "run again."
+    )
 
 
 def _text(episode: Episode) -> str:
     """The result in words; it says all that the structure says."""
     limit = f"{episode.time_limit:g} s ({episode.time_limit_from})"
-    lines = [f"{episode.outcome}: {episode.summary}"]
+    lines = [f"{episode.outcome}: {episode.summary}", f"Run: {episode.run_id}"]
     if episode.reason is not None:
         lines.append(f"Reason: {episode.reason}")
     chance = f"random: {', '.join(episode.random)}" if episode.random else "nothing is random"
@@ -205,6 +220,7 @@ def _text(episode: Episode) -> str:
         place = f"({event.x:g}, {event.y:g})"
         lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{whom} at {place}")
     lines += [f"Warning: {warning}" for warning in episode.warnings]
+    lines.append("Record: " + ", ".join(episode.artifacts.values()))
     return "\n".join([*lines, f"Again: {episode.reproduce}", f"Next: {episode.next}"])
 
 

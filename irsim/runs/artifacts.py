@@ -1,0 +1,143 @@
+"""The files of a run as text that somebody can read a part at a time."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from typing import Any
+
+import numpy as np
+
+from irsim.runs.inspection import inspect_run
+from irsim.runs.reading import Run
+from irsim.runs.store import RunError, text_of
+from irsim.text import clean
+
+__all__ = ["ARTIFACTS", "artifact"]
+
+ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json", "events.json", "trace.json", "trace.csv")
+"""What there is of a run."""
+_FILES = ARTIFACTS[:4]
+_DECIMALS = 4
+_COLUMNS = ("x", "y", "heading", "speed", "turn_rate", "control", "goal", "status")
+
+
+def artifact(
+    run: Run,
+    name: str,
+    *,
+    from_step: int = 0,
+    to_step: int | None = None,
+    every: int = 1,
+    robot: str | None = None,
+    offset: int = 0,
+    most: int = 1_000_000,
+) -> str:
+    """A part of what was recorded.
+
+    Files are given from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. What does not
+    fit ends with whole rows; ``next_step`` of ``events.json`` and ``trace.json`` says where to go on, null at the end.
+
+    Args:
+        run: Which run.
+        name: One of :data:`ARTIFACTS`.
+        from_step: First step.
+        to_step: Last step; by default the last there is.
+        every: Every how many-th step of a trace.
+        robot: Only this object; ``trace.json`` then has its ranges, too.
+        offset: First character of a file.
+        most: Bytes at most.
+
+    Raises:
+        RunError: There is no such artifact, object or step.
+    """
+    if name in _FILES:
+        text = text_of(run.folder, name)
+        if text is None:
+            raise RunError("unknown-run", f"run {run.id} has no {name}: it is {run.status}")
+        return text[offset:].encode()[:most].decode(errors="ignore")
+    if name == "events.json":
+        return _events(run, from_step, to_step, robot, most)
+    if name == "trace.json":
+        return _trace(run, from_step, to_step, every, robot, most)
+    if name == "trace.csv":
+        return _csv(run, from_step, to_step, every, robot, most)
+    raise RunError("unknown-run", f"a run has no {clean(name)!r}", f"there are {', '.join(ARTIFACTS)}")
+
+
+def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, most: int) -> str:
+    room, parts, next_step = most - 200, list[str](), None
+    for event in run.events:
+        if event.step < from_step or (to_step is not None and event.step > to_step):
+            continue
+        if robot is not None and robot not in (event.object, event.partner):
+            continue
+        part = json.dumps({field: getattr(event, field) for field in event.__slots__})
+        room -= len(part) + 2
+        if room < 0:
+            next_step = event.step
+            break
+        parts.append(part)
+    head = json.dumps({"run_id": run.id, "status": run.status, "next_step": next_step})
+    return f'{head[:-1]}, "events": [{", ".join(parts)}]}}'
+
+
+def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str | None, most: int) -> str:
+    trace = run.trace()
+    begin, end = int(trace.step[0]), int(trace.step[-1])
+    if not begin <= from_step <= end:
+        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", f"it has {begin} to {end}")
+    if robot is not None and robot not in trace.names:
+        raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}")
+    objects = slice(None) if robot is None else [trace.names.index(robot)]
+    last = end if to_step is None else min(to_step, end)
+    rows = range(from_step - begin, last - begin + 1, max(1, every))
+    keys = [] if robot is None else [key for key in trace.ranges if key.startswith(f"{robot}/")]
+    head: dict[str, Any] = {
+        "run_id": run.id,
+        "status": run.status,
+        "step_time": trace.step_time,
+        "names": [name for name in trace.names if robot in (None, name)],
+        "last_step": end,
+        "every": max(1, every),
+    }
+    room, parts, next_step = most - len(json.dumps(head)) - 100, list[str](), None
+    for row in rows:
+        values: dict[str, Any] = {
+            "step": int(trace.step[row]),
+            "pose": np.round(trace.pose[row, objects], _DECIMALS).tolist(),
+            "flags": (
+                trace.arrived[row, objects] + 2 * trace.collided[row, objects] + 4 * trace.stopped[row, objects]
+            ).tolist(),
+        }
+        if keys:
+            values["ranges"] = {key: _finite(trace.ranges[key][row]) for key in keys}
+        part = json.dumps(values, separators=(",", ":"))
+        room -= len(part) + 1
+        if room < 0:
+            next_step = int(trace.step[row])
+            break
+        parts.append(part)
+    text = json.dumps({**head, "next_step": next_step})
+    return f'{text[:-1]}, "rows": [{",".join(parts)}]}}'
+
+
+def _csv(run: Run, from_step: int, to_step: int | None, every: int, robot: str | None, most: int) -> str:
+    table = inspect_run(
+        run, robot=robot, from_step=from_step, to_step=to_step, every=max(1, every), fields=_COLUMNS, limit=None
+    )
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    lines: list[list[Any]] = [list(table.columns), *table.rows]
+    for row in lines:
+        before = out.tell()
+        writer.writerow(row)
+        if out.tell() > most:
+            return out.getvalue()[:before]
+    return out.getvalue()
+
+
+def _finite(ranges: Any) -> list[float | None]:
+    """To a millimetre; None where nothing was hit."""
+    return [round(float(value), 3) if np.isfinite(value) else None for value in ranges]

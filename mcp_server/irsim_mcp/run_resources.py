@@ -1,0 +1,59 @@
+"""Recorded runs as resources: ``irsim://runs/{run_id}/{artifact}``, at most 1 MB at a time. Tools do not need them."""
+
+from __future__ import annotations
+
+from mcp.server import MCPServer
+from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
+
+from irsim_mcp.services import Services
+
+__all__ = ["ARTIFACTS", "RUN", "add_run_resources", "uri"]
+
+RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
+ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json", "events.json", "trace.json", "trace.csv")
+"""The same as in :mod:`irsim.runs.artifacts`, which a server does not load."""
+_MOST_BYTES = 1_000_000
+
+
+def uri(run_id: str, artifact: str) -> str:
+    """Address of a part of a run."""
+    return f"irsim://runs/{run_id}/{artifact}"
+
+
+def add_run_resources(server: MCPServer, services: Services) -> None:
+    """Register the template with a server."""
+
+    async def run_artifact(
+        run_id: str,
+        artifact: str,
+        from_step: int = 0,
+        to_step: int | None = None,
+        every: int = 1,
+        robot: str | None = None,
+        offset: int = 0,
+    ) -> str:
+        try:
+            found = await services.run_job(
+                "artifact",
+                run_id,
+                seconds=services.limits.check_seconds,
+                name=artifact,
+                from_step=max(0, from_step),
+                to_step=to_step,
+                every=max(1, every),
+                robot=robot,
+                offset=max(0, offset),
+                most=_MOST_BYTES,
+            )
+        except ToolError as error:
+            raise ResourceNotFoundError(str(error)) from None
+        return str(found["text"])
+
+    description = (
+        f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB at a time: files go on with offset (characters),"
+        " events and traces with from_step (their next_step); every thins a trace, robot picks one object and, in "
+        "trace.json, adds its ranges."
+    )
+    server.resource(RUN, name="run", title="Recorded run", description=description, mime_type="text/plain")(
+        run_artifact
+    )

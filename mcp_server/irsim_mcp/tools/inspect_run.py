@@ -1,0 +1,111 @@
+"""``inspect_run``: look into a recorded run without reading all of it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from mcp.types import CallToolResult, TextContent
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
+
+from irsim.text import clean
+from irsim_mcp.services import RunId, Services
+from irsim_mcp.tool import StrictTool, strict
+
+__all__ = ["Table", "tool"]
+
+_DESCRIPTION = """
+    Look into a run to tell why it failed. view=collisions: who touched whom, where, how fast; closest: nearest
+    approaches of each robot; speeds: path, speed, longest stand; rows: `fields` step by step, spread over the run
+    unless `every` is given. Returns a table, in pages (next_cursor). Next: draw the moment with render_snapshot
+    run_id step.
+"""
+_LONGEST_CELL = 60
+
+
+Cell = Annotated[float | int | str | bool | None, WithJsonSchema({"type": ["number", "string", "boolean", "null"]})]
+
+
+Column = Literal[
+    "x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"
+]  # fmt: skip
+
+
+class Table(BaseModel):
+    """Part of a run: m, s, rad."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    summary: str
+    columns: list[str]
+    rows: list[list[Cell]]
+    total: int
+    every: int
+    next_cursor: str | None = None
+    next: str
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def inspect_run(
+        run_id: RunId,
+        view: Literal["rows", "collisions", "closest", "speeds"] = "rows",
+        robot: Annotated[str | None, Field(description="Name; default: all robots.")] = None,
+        from_step: Annotated[int, Field(ge=0)] = 0,
+        to_step: Annotated[int | None, Field(ge=0)] = None,
+        every: Annotated[int | None, Field(ge=1)] = None,
+        fields: list[Column] | None = None,
+        limit: Annotated[int, Field(ge=1, le=200)] = 20,
+        cursor: str | None = None,
+    ) -> Annotated[CallToolResult, Table]:  # fmt: skip
+        found = await services.run_job(
+            "inspect",
+            run_id,
+            seconds=services.limits.check_seconds,
+            view=view,
+            robot=robot,
+            from_step=from_step,
+            to_step=to_step,
+            every=every,
+            fields=fields,
+            limit=limit,
+            cursor=cursor,
+        )
+        table = _table(found, view)
+        text = TextContent(type="text", text=_text(table))
+        return CallToolResult(content=[text], structured_content=table.model_dump(exclude_none=True))
+
+    return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
+
+
+def _table(found: dict[str, Any], view: str) -> Table:
+    ended = found["status"] if found["outcome"] is None else found["outcome"]
+    rows = [[clean(cell, _LONGEST_CELL) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
+    return Table(
+        summary=f"{ended}: {clean(found['summary'], 300)}",
+        columns=found["columns"],
+        rows=rows,
+        total=found["total"],
+        every=found["every"],
+        next_cursor=found["next_cursor"],
+        next=_advice(found, view, rows),
+    )
+
+
+def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
+    if found["next_cursor"] is not None:
+        return f"More rows: the same call with cursor={found['next_cursor']}."
+    if "step" in found["columns"] and rows and view != "rows":
+        step = rows[0][found["columns"].index("step")]
+        return f"Look at it: render_snapshot run_id={found['run_id']} step={step}."
+    if view == "rows" and found["every"] > 1:
+        return "Look closer with from_step, to_step, robot and every=1, or try view=collisions, closest, speeds."
+    return f"Look at a moment with render_snapshot run_id={found['run_id']} step=N, then change the scenario."
+
+
+def _text(table: Table) -> str:
+    """The table in words; it says all that the structure says."""
+    lines = [table.summary, ", ".join(table.columns)]
+    lines += [", ".join("-" if cell is None else str(cell) for cell in row) for row in table.rows]
+    spread = f", every {table.every} steps" if table.every > 1 else ""
+    return "\n".join([*lines, f"{len(table.rows)} of {table.total} rows{spread}", f"Next: {table.next}"])

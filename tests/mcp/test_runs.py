@@ -1,0 +1,159 @@
+"""Recorded runs through the server: inspect_run, pictures of runs, resources, limits, and what a restart finds."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import anyio
+import pytest
+from irsim_mcp.run_resources import ARTIFACTS as NAMED
+from mcp import Client
+from mcp.shared.exceptions import MCPError
+
+from irsim.runs import list_runs, open_run
+from irsim.runs.artifacts import ARTIFACTS
+from irsim.runs.inspection import inspect_run
+from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, as_process, connected, data_of, error_of, image_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+
+async def crashed(client: Client, **arguments: Any) -> str:
+    """Run a crash; its run id."""
+    result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3, **arguments})
+    return str(data_of(result)["run_id"])
+
+
+@pytest.mark.parametrize("era", ERAS)
+async def test_an_episode_is_recorded(workspace: Path, era: str) -> None:
+    async with connected(workspace, era) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3})
+    data, text = data_of(result), text_of(result)
+    run = open_run(data["run_id"], workspace)
+    assert run.status == "finished"
+    assert f"Run: {run.id}" in text
+    assert f"run_id={run.id}" in data["next"]
+    assert all(uri in text for uri in data["artifacts"].values())
+    assert list((workspace / ".irsim").rglob(".new-*")) == []
+    assert sorted(path.name for path in workspace.iterdir()) == [".irsim"]
+
+
+async def test_inspect_run_is_the_same_as_python(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        run_id = await crashed(client)
+        for view in ("rows", "collisions", "closest", "speeds"):
+            result = await client.call_tool("inspect_run", {"run_id": run_id, "view": view})
+            data, text = data_of(result), text_of(result)
+            table = inspect_run(run_id, view=view, workspace=workspace)
+            assert data["rows"] == json.loads(table.model_dump_json())["rows"]
+            assert data["columns"] == table.columns
+            assert all(str(cell) in text for row in data["rows"] for cell in row if cell is not None)
+        hit = data_of(await client.call_tool("inspect_run", {"run_id": run_id, "view": "collisions"}))
+    assert [hit["rows"][0][n] for n in (2, 3)] == ["rover", "crate"]
+    assert f"step={hit['rows'][0][0]}" in hit["next"]
+
+
+async def test_pages(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        run_id = await crashed(client)
+        first = data_of(await client.call_tool("inspect_run", {"run_id": run_id, "every": 1, "limit": 5}))
+        assert f"cursor={first['next_cursor']}" in first["next"]
+        more = {"run_id": run_id, "every": 1, "limit": 5, "cursor": first["next_cursor"]}
+        second = data_of(await client.call_tool("inspect_run", more))
+    assert [row[0] for row in first["rows"] + second["rows"]] == list(range(10))
+
+
+async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        assert "record one first" in error_of(await client.call_tool("inspect_run", {"run_id": "x"}))
+        run_id = await crashed(client)
+        for wrong in ("crash-000000", "../..", "", "\x00", "a" * 100, f"{run_id}/../{run_id}"):
+            for tool in ("inspect_run", "render_snapshot"):
+                error = error_of(await client.call_tool(tool, {"run_id": wrong}))
+                assert error.startswith("unknown-run: ")
+                assert run_id in error
+        error = error_of(await client.call_tool("inspect_run", {"run_id": run_id, "from_step": 4000}))
+        assert error.startswith("step-out-of-range: ")
+        error = error_of(await client.call_tool("inspect_run", {"run_id": run_id, "robot": "rovr"}))
+        assert "'rover'" in error
+
+
+async def test_a_picture_of_a_run_is_that_of_the_scenario(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        run_id = await crashed(client)
+        of_run = await client.call_tool("render_snapshot", {"run_id": run_id, "step": 20})
+        scenario = {"scenario_yaml": CRASH, "seed": 3, "step": 20}
+        of_scenario = await client.call_tool("render_snapshot", scenario)
+        assert image_of(of_run).data == image_of(of_scenario).data
+        assert f"irsim://runs/{run_id}/run.json" in text_of(of_run)
+        last = await client.call_tool("render_snapshot", {"run_id": run_id, "step": -1, "return_image": False})
+        assert f"step {open_run(run_id, workspace).last_step}," in text_of(last)
+        beyond = await client.call_tool("render_snapshot", {"run_id": run_id, "step": 4000})
+        assert error_of(beyond).startswith("step-out-of-range: ")
+        both = await client.call_tool("render_snapshot", {"run_id": run_id, "seed": 1})
+        assert error_of(both).startswith("bad-argument: ")
+
+
+@pytest.mark.parametrize("era", ERAS)
+async def test_runs_are_resources(workspace: Path, era: str) -> None:
+    assert NAMED == ARTIFACTS
+    async with connected(workspace, era) as client:
+        run_id = await crashed(client)
+        templates = (await client.list_resource_templates()).resource_templates
+        assert any(item.uri_template.startswith("irsim://runs/{run_id}/{artifact}") for item in templates)
+        for name in ARTIFACTS:
+            assert await read(client, f"irsim://runs/{run_id}/{name}")
+        assert await read(client, f"irsim://runs/{run_id}/scenario.yaml") == CRASH
+        part = json.loads(await read(client, f"irsim://runs/{run_id}/trace.json?from_step=3&to_step=9&every=2"))
+        assert [row["step"] for row in part["rows"]] == [3, 5, 7, 9]
+        for wrong in (f"{run_id}/secret", "nobody-123456/run.json", f"{run_id}/..%2Frun.json"):
+            with pytest.raises(MCPError):
+                await read(client, f"irsim://runs/{wrong}")
+
+
+async def read(client: Client, uri: str) -> str:
+    (content,) = (await client.read_resource(uri)).contents
+    return str(getattr(content, "text", ""))
+
+
+async def test_a_cancelled_run_says_so_and_can_be_read(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        with anyio.move_on_after(6):
+            await client.call_tool("run_episode", {"scenario_yaml": LONG, "seed": 1})
+        with anyio.fail_after(20):
+            while not (runs := list_runs(workspace)) or runs[0].status == "running":
+                await anyio.sleep(0.1)
+        assert runs[0].status == "cancelled"
+        result = await client.call_tool("inspect_run", {"run_id": runs[0].id, "limit": 3})
+        assert data_of(result)["summary"].startswith("cancelled: ")
+
+
+async def test_a_run_whose_time_is_over_is_named(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        error = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG, "seed": 1, "max_wall_s": 4}))
+        (run,) = list_runs(workspace)
+        assert error.startswith("out-of-time: ")
+        assert f"inspect_run run_id={run.id}" in error
+        assert run.status == "interrupted"
+        assert len(run.trace()) > 0
+
+
+async def test_runs_survive_a_restart(workspace: Path) -> None:
+    async with Client(as_process(workspace)) as client:
+        run_id = await crashed(client)
+    async with Client(as_process(workspace)) as client:
+        result = await client.call_tool("inspect_run", {"run_id": run_id, "view": "speeds"})
+        assert data_of(result)["rows"][0][0] == "rover"
+
+
+async def test_links_out_of_the_workspace_are_not_followed(workspace: Path, tmp_path: Path) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (workspace / ".irsim").symlink_to(outside, target_is_directory=True)
+    async with connected(workspace) as client:
+        error = error_of(await client.call_tool("run_episode", {"scenario_yaml": ROOM}))
+        assert error.startswith("path-outside-workspace: ")
+        assert error_of(await client.call_tool("inspect_run", {"run_id": "x"})).startswith("path-outside-workspace: ")
+    assert list(outside.iterdir()) == []

@@ -1,0 +1,219 @@
+"""Looking into a run: each number against one worked out from the trace."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.cli.app import app
+from irsim.runs import Run, RunError, open_run
+from irsim.runs.artifacts import ARTIFACTS, artifact
+from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
+from irsim.runs.replaying import replayed
+
+PAIR = """\
+world: {width: 10, height: 6, time_limit: 6}
+robot:
+  - {name: left, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [1, 3, 0], goal: [9, 3, 0],
+     vel_max: [1, 1], behavior: {name: dash}}
+  - {name: right, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [9, 3.9, 0], goal: [1, 3.9, 0],
+     vel_max: [1, 1], behavior: {name: dash}}
+obstacle:
+  - {name: crate, shape: {name: rectangle, length: 1, width: 1}, state: [5, 1, 0]}
+  - {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [2, 5.5, 0], goal: [2, 5.5, 0],
+     behavior: {name: dash}}
+"""
+
+
+@pytest.fixture
+def pair(workspace: Path) -> Run:
+    """Two robots that pass each other."""
+    return open_run(str(irsim.run(text=PAIR, seed=0, record=True).run_id))
+
+
+@pytest.fixture
+def crashed(crash: Path) -> Run:
+    """A robot that hits a crate."""
+    return open_run(str(irsim.run(crash, seed=0, record=True).run_id))
+
+
+def test_rows_are_spread_over_the_run(pair: Run) -> None:
+    table = inspect_run(pair, limit=10)
+    steps = sorted({row[0] for row in table.rows})
+    assert (steps[0], steps[-1]) == (0, pair.last_step)
+    assert len(table.rows) <= 12
+    assert table.next_cursor is None or int(table.next_cursor) == len(table.rows)
+    assert [row[2] for row in table.rows[:2]] == ["left", "right"]
+
+
+def test_rows_say_what_the_trace_says(pair: Run) -> None:
+    trace = pair.trace()
+    table = inspect_run(pair, robot="right", every=7, fields=FIELDS, limit=None)
+    assert table.columns == [
+        "step", "time", "robot", "x", "y", "heading", "speed", "turn_rate", "control_0", "control_1", "control_2",
+        "goal_x", "goal_y", "goal_distance", "nearest_hit", "status",
+    ]  # fmt: skip
+    assert [row[0] for row in table.rows] == list(range(0, len(trace), 7))
+    for row in table.rows:
+        cells, at = dict(zip(table.columns, row, strict=True)), int(str(row[0]))
+        x, y, heading = trace.pose[at, 1]
+        speed = 0.0 if at == 0 else float(np.linalg.norm(trace.pose[at, 1, :2] - trace.pose[at - 1, 1, :2])) / 0.1
+        assert (cells["x"], cells["y"], cells["heading"]) == (round(x, 4), round(y, 4), round(heading, 4))
+        assert cells["speed"] == pytest.approx(speed, abs=1e-4)
+        assert cells["goal_distance"] == pytest.approx(math.hypot(x - 1, y - 3.9), abs=1e-4)
+        assert cells["nearest_hit"] is None
+        assert cells["status"] == ("arrived" if trace.arrived[at, 1] else "under way")
+
+
+def test_lidar_ranges_are_told(room: Path) -> None:
+    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    ranges = run.trace().ranges["rover/0"]
+    table = inspect_run(run, every=1, fields=["nearest_hit"], limit=None)
+    least = [float(row.min()) for row in ranges]
+    assert [row[3] for row in table.rows] == [round(value, 4) if math.isfinite(value) else None for value in least]
+    assert any(math.isfinite(value) for value in least)
+
+
+def test_pages_are_the_whole(pair: Run) -> None:
+    whole = inspect_run(pair, every=3, limit=None)
+    rows, cursor = [], None
+    while True:
+        page = inspect_run(pair, every=3, limit=7, cursor=cursor)
+        assert page.total == len(whole.rows)
+        rows += page.rows
+        cursor = page.next_cursor
+        if cursor is None:
+            break
+    assert rows == whole.rows
+
+
+def test_collisions_say_who_where_and_how_fast(crashed: Run) -> None:
+    table = inspect_run(crashed, view="collisions")
+    assert crashed.result is not None
+    hit = next(event for event in crashed.result.events if event.kind == "collision")
+    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    assert (cells["object"], cells["partner"], cells["step"]) == ("rover", "crate", hit.step)
+    assert cells["speed"] == pytest.approx(1.0, abs=0.01)
+    assert cells["partner_speed"] == 0.0
+    assert inspect_run(crashed, view="collisions", to_step=hit.step - 1).rows == []
+
+
+def test_closest_is_between_footprints(pair: Run) -> None:
+    table = inspect_run(pair, view="closest")
+    rows = {(row[0], row[3]): dict(zip(table.columns, row, strict=True)) for row in table.rows}
+    robot, human_free = rows["left", "robot"], {kind for _, kind in rows}
+    assert (robot["to"], robot["distance"]) == ("right", pytest.approx(0.4, abs=0.01))
+    assert rows["right", "robot"]["distance"] == robot["distance"]
+    assert rows["left", "static"]["distance"] == pytest.approx(1.3, abs=0.01)
+    assert table.rows[0][1] == min(row[1] for row in table.rows if isinstance(row[1], float))
+    assert "robot" in human_free
+    part = inspect_run(pair, view="closest", to_step=5)
+    assert all(int(str(row[4])) <= 5 for row in part.rows)
+
+
+def test_speeds(pair: Run) -> None:
+    trace = pair.trace()
+    table = inspect_run(pair, view="speeds", robot="left")
+    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    way = float(np.linalg.norm(np.diff(trace.pose[:, 0, :2], axis=0), axis=1).sum())
+    assert cells["path_length"] == pytest.approx(way, abs=1e-3)
+    assert cells["max_speed"] == pytest.approx(1.0, abs=1e-3)
+    assert cells["mean_speed"] == pytest.approx(way / trace.time[-1], abs=1e-3)
+    standing = inspect_run(pair, view="speeds", robot="walker")
+    cells = dict(zip(standing.columns, standing.rows[0], strict=True))
+    assert cells["path_length"] == 0.0
+
+
+def test_a_long_stand_is_found(workspace: Path) -> None:
+    text = PAIR.replace("behavior: {name: dash}}\n  - {name: right", "}\n  - {name: right")
+    run = open_run(str(irsim.run(text=text, seed=0, record=True).run_id))
+    table = inspect_run(run, view="speeds", robot="left")
+    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    assert (cells["longest_stand"], cells["stands_from_step"]) == (6.0, 1)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"robot": "lefd"}, "did you mean 'left'"),
+        ({"fields": ["speeed"]}, "did you mean speed"),
+        ({"from_step": 1000}, "step-out-of-range"),
+        ({"from_step": 5, "to_step": 3}, "step-out-of-range"),
+        ({"cursor": "x"}, "no cursor"),
+        ({"cursor": "9999"}, "beyond the last row"),
+    ],
+)
+def test_wrong_questions_are_explained(pair: Run, options: dict[str, object], said: str) -> None:
+    with pytest.raises(RunError, match=said):
+        inspect_run(pair, **options)  # type: ignore[arg-type]
+
+
+def test_artifacts_fit_and_go_on(pair: Run) -> None:
+    for name in ARTIFACTS:
+        assert artifact(pair, name)
+    for name in ("scenario.yaml", "result.json"):
+        text, whole = "", artifact(pair, name)
+        while piece := artifact(pair, name, offset=len(text), most=100):
+            text += piece
+        assert text == whole
+    steps, start = [], 0
+    while True:
+        part = json.loads(artifact(pair, "trace.json", from_step=start, robot="left", most=2000))
+        steps += [row["step"] for row in part["rows"]]
+        if part["next_step"] is None:
+            break
+        start = part["next_step"]
+    assert steps == list(range(pair.last_step + 1))
+    table = artifact(pair, "trace.csv", every=10)
+    rows = list(csv.reader(io.StringIO(table)))
+    assert rows[0][:4] == ["step", "time", "robot", "x"]
+    assert len(artifact(pair, "trace.csv", most=500)) <= 500
+    with pytest.raises(RunError, match="there are scenario"):
+        artifact(pair, "trace.exe")
+
+
+def test_a_run_can_be_replayed(crashed: Run) -> None:
+    env = replayed(crashed, 5)
+    np.testing.assert_array_equal(env.simulation.pose, crashed.trace().pose[5])
+    env.end()
+    with pytest.raises(RunError, match="step-out-of-range"):
+        replayed(crashed, crashed.last_step + 1)
+
+
+def test_a_replay_that_goes_otherwise_is_told(crashed: Run) -> None:
+    path = crashed.folder / "scenario.yaml"
+    path.write_text(path.read_text().replace("goal: [7, 1, 0]", "goal: [7, 2, 0]"))
+    with pytest.raises(RunError, match="other poses"):
+        replayed(open_run(crashed.id), 5)
+
+
+def test_the_command_line(crash: Path) -> None:
+    def call(*words: str) -> str:
+        result = CliRunner().invoke(app, words)
+        assert result.exit_code == 0, result.output
+        return result.stdout
+
+    assert "no recorded runs here" in call("inspect")
+    assert "recorded: irsim inspect crash-" in call("run", str(crash), "--seed", "3", "--record")
+    run = open_run("last")
+    assert run.id in call("inspect")
+    for view in VIEWS:
+        shown = json.loads(call("inspect", run.id, "--view", view, "--json"))
+        assert shown == json.loads(inspect_run(run, view=view).model_dump_json())
+        assert run.id in call("inspect", "last", "--view", view)
+    rows = list(csv.reader(io.StringIO(call("inspect", "last", "--csv"))))
+    assert len(rows) == run.last_step + 2
+    kept = crash.parent / "kept"
+    assert f"irsim inspect {kept}" in call("run", str(crash), "--record-to", str(kept))
+    assert "collision" in call("inspect", str(kept))
+    for words in (("inspect", "nothing-123456"), ("inspect", "last", "--view", "speed"), ("inspect", "..")):
+        result = CliRunner().invoke(app, words)
+        assert result.exit_code == 2

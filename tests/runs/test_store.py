@@ -1,0 +1,233 @@
+"""What is kept, what is let go, and what happens when a process dies or somebody has been at the files."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.runs import RunError, list_runs, open_run
+from irsim.runs.store import META, claim, find_run, made_folder, mark_cancelled, prune, runs_folder, status_of
+
+ENDLESS = """\
+world: {width: 100, height: 100}
+robot:
+  - number: 40
+    kinematics: {name: diff}
+    behavior: {name: dash, wander: true}
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [99, 99, 3]}
+    shape: {name: circle, radius: 0.2}
+    sensors: [{name: lidar2d, number: 50}]
+"""
+
+
+def made(workspace: Path, name: str, size: int = 10, age: float = 0.0) -> Path:
+    """A run as the store sees it: so large, last used so many seconds ago."""
+    folder = made_folder(runs_folder(workspace, make=True), name)
+    (folder / "trace-0000.npz").write_bytes(b"x" * size)
+    (folder / META).write_text(json.dumps({"id": folder.name, "status": "finished"}))
+    used = time.time() - age
+    os.utime(folder / META, (used, used))
+    return folder
+
+
+def test_the_least_recently_used_make_room(workspace: Path) -> None:
+    runs = [made(workspace, f"run-{n}", 1000, age=100 - n) for n in range(6)]
+    gone = prune(runs_folder(workspace), quota=3500)
+    assert sorted(gone) == sorted(folder.name for folder in runs[:3])
+    assert [folder.exists() for folder in runs] == [False] * 3 + [True] * 3
+    find_run(runs[3].name, workspace)
+    assert prune(runs_folder(workspace), quota=2500) == [runs[4].name]
+
+
+def test_old_ones_are_let_go_unless_they_are_written(workspace: Path) -> None:
+    old, young, busy = (made(workspace, name, age=age) for name, age in (("a", 90_000), ("b", 80_000), ("c", 90_000)))
+    held = claim(busy)
+    assert prune(runs_folder(workspace)) == [old.name]
+    held.release()
+    assert prune(runs_folder(workspace)) == [busy.name]
+    assert young.exists()
+
+
+def test_a_run_alone_may_exceed_the_quota_while_it_is_kept(workspace: Path) -> None:
+    folder = made(workspace, "big", 1000)
+    assert prune(runs_folder(workspace), quota=10, keep=folder) == []
+    assert prune(runs_folder(workspace), quota=10) == [folder.name]
+    assert list(runs_folder(workspace).iterdir()) == []
+
+
+def test_leftovers_are_swept(workspace: Path) -> None:
+    folder = made(workspace, "a")
+    runs = runs_folder(workspace)
+    half, trash, empty = folder / ".new-abc", runs / ".gone-b-123456-abc", runs / "b-123456"
+    half.write_text("half")
+    trash.mkdir()
+    empty.mkdir()
+    long_ago = time.time() - 1000
+    for path in (half, empty):
+        os.utime(path, (long_ago, long_ago))
+    prune(runs)
+    assert [path.exists() for path in (folder, half, trash, empty)] == [True, False, False, False]
+
+
+def test_names_are_slugs() -> None:
+    from irsim.runs.store import _ID
+
+    for stem in ("Crossing of 8 robots, é & more than that!", "...", "", "a" * 200, "../../x"):
+        folder = Path(os.environ.get("TMPDIR", "/tmp"))
+        made_one = made_folder(folder, stem)
+        made_one.rmdir()
+        assert made_one.parent == folder
+        assert _ID.fullmatch(made_one.name)
+        assert len(made_one.name) <= 31
+
+
+def test_status(workspace: Path) -> None:
+    folder = made(workspace, "a")
+    assert status_of(folder) == "interrupted"
+    held = claim(folder)
+    assert status_of(folder) == "running"
+    held.release()
+    mark_cancelled(folder)
+    assert status_of(folder) == "cancelled"
+    (folder / "result.json").write_text("{}")
+    assert status_of(folder) == "finished"
+
+
+@pytest.mark.parametrize("where", [".irsim", ".irsim/runs"])
+def test_nothing_is_written_or_read_through_links(
+    workspace: Path, room: Path, tmp_path_factory: Any, where: str
+) -> None:
+    outside = tmp_path_factory.mktemp("outside")
+    place = workspace / where
+    place.parent.mkdir(exist_ok=True)
+    place.symlink_to(outside, target_is_directory=True)
+    with pytest.raises(RunError, match="path-outside-workspace"):
+        irsim.run(room, record=True)
+    with pytest.raises(RunError, match="path-outside-workspace"):
+        open_run("room-123456", workspace)
+    assert list(outside.iterdir()) == []
+
+
+def test_links_in_a_run_are_not_followed(workspace: Path, room: Path, tmp_path_factory: Any) -> None:
+    secret = tmp_path_factory.mktemp("outside") / "secret"
+    secret.write_text("secret")
+    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    folder = runs_folder(workspace) / run_id
+    (folder / "scenario.yaml").unlink()
+    (folder / "scenario.yaml").symlink_to(secret)
+    with pytest.raises(RunError, match="unreadable-run"):
+        _ = open_run(run_id).scenario_text
+    (runs_folder(workspace) / "linked-123456").symlink_to(folder, target_is_directory=True)
+    with pytest.raises(RunError, match="unknown-run"):
+        open_run("linked-123456", workspace)
+
+
+@pytest.mark.parametrize("name", ["run.json", "trace-0000.npz", "events-0000.json", "result.json", "resolved.json"])
+def test_changed_files_are_told(room: Path, name: str) -> None:
+    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    path = runs_folder() / run_id / name
+    content = path.read_bytes()
+    rng = random.Random(name)
+    for damaged in (
+        b"",
+        b"[1, 2",
+        b"[7]",
+        b'{"a": 1}',
+        content[: len(content) // 2],
+        rng.randbytes(500),
+        b"\xff" + content,
+    ):
+        path.write_bytes(damaged)
+        with pytest.raises(RunError, match="unreadable-run"):
+            read_all(run_id)
+    path.write_bytes(content)
+    open_run(run_id).trace()
+    list_runs()
+
+
+def read_all(run_id: str) -> None:
+    run = open_run(run_id)
+    _ = run.trace(), run.events, run.result, run.resolved
+
+
+def test_pickles_and_packed_arrays_are_refused(room: Path) -> None:
+    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    path = runs_folder() / run_id / "trace-0000.npz"
+    with np.load(path) as file:
+        arrays = dict(file)
+    for change in ({"pose": np.array([object()])}, {"steps": np.array([0, 2**40])}, {"flag_rows": np.array([5, 3])}):
+        np.savez(path, **{**arrays, **change})
+        with pytest.raises(RunError, match="unreadable-run"):
+            open_run(run_id).trace()
+    np.savez_compressed(path, **{**arrays, "more": np.zeros(10**7)})
+    with pytest.raises(RunError, match="unreadable-run"):
+        open_run(run_id).trace()
+
+
+def endless(workspace: Path) -> subprocess.Popen[bytes]:
+    """A process that records a run without end."""
+    code = (
+        "import irsim.runs.recorder as r, irsim\n"
+        "r._PERIOD = 0.01\n"
+        f"irsim.run(text={ENDLESS!r}, seed=1, steps=10**7, record=True)\n"
+    )
+    return subprocess.Popen([sys.executable, "-c", code], cwd=workspace, stderr=subprocess.DEVNULL)
+
+
+def test_a_run_that_is_being_written_can_be_read(workspace: Path) -> None:
+    process = endless(workspace)
+    try:
+        run = first_run(workspace)
+        assert run.status == "running"
+        assert run.trace().step.tolist() == list(range(len(run.trace())))
+        process.send_signal(signal.SIGINT)
+        process.wait(20)
+        assert run.status == "cancelled"
+        assert run.result is None
+    finally:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.02, 0.07, 0.15, 0.4])
+def test_what_a_killed_process_leaves_is_whole(workspace: Path, delay: float) -> None:
+    process = endless(workspace)
+    run = first_run(workspace)
+    time.sleep(delay)
+    process.kill()
+    process.wait()
+    assert run.status == "interrupted"
+    trace, events = run.trace(), run.events
+    assert trace.step.tolist() == list(range(len(trace)))
+    assert np.isfinite(trace.pose).all()
+    assert all(event.step <= trace.step[-1] for event in events)
+    assert run.resolved["objects"]
+    later = time.time() + 1000
+    leftovers = [path for path in run.folder.iterdir() if path.name.startswith(".")]
+    for path in leftovers:
+        os.utime(path, (later - 2000, later - 2000))
+    prune(runs_folder(workspace))
+    assert not [path for path in run.folder.iterdir() if path.name.startswith(".")]
+    assert open_run(run.id, workspace).trace().step[-1] == trace.step[-1]
+
+
+def first_run(workspace: Path) -> Any:
+    """The run that a process has begun, once it has a first piece."""
+    end = time.monotonic() + 30
+    while time.monotonic() < end:
+        runs = list_runs(workspace)
+        if runs and runs[0].last_step >= 0:
+            return runs[0]
+        time.sleep(0.005)
+    raise AssertionError("no run has begun")
