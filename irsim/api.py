@@ -21,6 +21,7 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import read
 from irsim.snapshot import snapshot
+from irsim.survey import survey
 from irsim.verdict import command, run_result
 
 __all__ = ["default_time_limit", "import_modules", "read_scenario", "render", "run", "snapshot", "validate"]
@@ -43,7 +44,7 @@ def validate(
         ScenarioNotFoundError: No such file.
         ValueError: Neither or both of ``path`` and ``text``.
     """
-    reading = read(source_of(path, text, limits), strict=strict, limits=limits or DEFAULT_LIMITS)
+    reading = read(source_of(path, text, limits), strict=strict, limits=limits or DEFAULT_LIMITS, survey=survey)
     findings = [as_finding(d) for d in reading.diagnostics]
     count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
     scenario, counts = reading.scenario, dict[str, int]()

@@ -221,7 +221,9 @@ CODES: dict[str, Code] = {
     ),
     "initial-overlap": Code(
         "objects start in collision",
-        "Two objects overlap at the start, one of which moves. With 'collision_mode: stop' both stay where they are.",
+        "Two objects overlap at the start, one of which moves. With 'collision_mode: stop' both stay where they are. "
+        "'deep' is the shortest move that would part them; the fix names a free place nearby. Example: a robot of "
+        "radius 0.2 at [1, 1] and one at [1.3, 1] are 0.1 m deep in each other.",
     ),
     "goal-reached": Code(
         "goal reached at the start",
@@ -229,6 +231,55 @@ CODES: dict[str, Code] = {
         "the first step and never moves; waypoints that near to each other count together. With 'arrive_mode: state' "
         "the heading counts too, one radian like one metre. Example: state [1, 1, 0] with goal [1.05, 1]; move the "
         "goal, or lower 'goal_threshold'.",
+    ),
+    "goal-blocked": Code(
+        "no room at the goal",
+        "The body overlaps an obstacle or the map wherever within 'goal_threshold' of the goal it might stand, so it "
+        "never arrives. The finding says what is there and names a free place nearby. Example: goal [5, 5] in an "
+        "obstacle at [5, 5], or a goal 0.1 m from a wall for a robot of radius 0.3.",
+    ),
+    "goal-unreachable": Code(
+        "no way to the goal that is wide enough",
+        "A way was looked for among everything that stands still, for the largest disc inside of the body: where that "
+        "does not fit, the body cannot. The finding gives the narrowest gap on the widest way, its place, and the "
+        "width needed. Example: a door of 0.5 m for a robot of radius 0.3, which needs 0.6 m; widen the door, or "
+        "narrow the robot.",
+    ),
+    "narrow-passage": Code(
+        "a gap hardly wider than the robot",
+        "The widest way has a gap less than a quarter wider than the body (its largest inner disc). It can be passed, "
+        "but behaviors that keep a distance may refuse, and one that is a little off hits the side. Example: a door of "
+        "0.65 m for a robot 0.6 m wide; 0.75 m or more is easier.",
+    ),
+    "goals-overlap": Code(
+        "robots share a place at the end",
+        "Last goals are so near to each other that only one robot can stand there; the others push against it or "
+        "collide. Often one 'goal' was given for an entry with 'number'. Example: number: 3 with goal: [9, 9]; write "
+        "goal: [[9, 9], [9, 7], [9, 5]].",
+    ),
+    "wander-blocked": Code(
+        "random goals in obstacles",
+        "The goals of 'wander' are drawn between 'range_low' and 'range_high' without a look at what stands there. An "
+        "object whose goal lies in an obstacle, or in a place without a way, never gets a next one. Example: a range "
+        "over a whole office; choose one room: range_low: [1, 1], range_high: [4, 4].",
+    ),
+    "dash-into-obstacle": Code(
+        "straight into an obstacle",
+        "'dash' drives straight to the goal and looks at nobody, and something stands on that line. Example: an "
+        "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo, sfm or orca to get round single things, and 'follow' "
+        "to plan a way through a building.",
+    ),
+    "needs-planning": Code(
+        "a behavior that plans no way round",
+        "'rvo', 'sfm' and 'orca' choose a velocity for the next seconds. Before a long wall, or in a dead end, they "
+        "stand still. The finding compares the way round with the straight line. Example: a maze with 'rvo'; write "
+        "behavior: {name: follow, planner: astar, local: rvo}, or give waypoints.",
+    ),
+    "time-too-short": Code(
+        "too little time for the way",
+        "The shortest way to the last goal, at top speed without a halt, takes longer than the run lasts: until "
+        "'world.time_limit', or else 30 s or four times the straight line. A hint says that it hardly suffices. "
+        "Example: 12 m at 1 m/s with time_limit: 10; write time_limit: 24, or raise vel_max.",
     ),
     "goal-overshoot": Code(
         "steps longer than the goal is wide",
@@ -375,7 +426,7 @@ CODES: dict[str, Code] = {
     "placement-tight": Code(
         "random placement is likely to fail",
         "Objects that are dropped one after another jam when they cover about half of the ground. Some seeds may "
-        "succeed, most end with 'placement-crowded'.",
+        "succeed, most end with 'placement-crowded'. irsim validate tries 20 seeds and says how many fail.",
     ),
     "heading-not-reached": Code(
         "the goal's heading is not steered for",

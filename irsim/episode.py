@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from irsim.runs.recorder import Recorder
 
 __all__ = [
+    "HORIZON_FACTOR",
+    "MIN_HORIZON",
     "Progress",
     "advance",
     "as_finding",
@@ -38,8 +40,8 @@ __all__ = [
 Progress = Callable[[int, int], None]
 """Told (steps done, steps at most) now and then."""
 
-_MIN_HORIZON = 30.0
-_HORIZON_FACTOR = 4.0
+MIN_HORIZON = 30.0
+HORIZON_FACTOR = 4.0
 _CHUNK_STEPS = 50
 
 
@@ -77,7 +79,7 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
         way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
-    return max(_MIN_HORIZON, _HORIZON_FACTOR * longest)
+    return max(MIN_HORIZON, HORIZON_FACTOR * longest)
 
 
 def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:

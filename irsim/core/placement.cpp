@@ -92,10 +92,10 @@ class Crowd {
 };
 
 /// Draw until there is room. False if there never was; the last draw is kept.
-bool draw_pose(const RandomPlacement& entry, const Draws& draws, std::uint64_t first, int object, const Spread& spread,
-               Crowd& crowd, Pose& pose) {
+bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first, int object,
+               const Spread& spread, Crowd& crowd, Pose& pose) {
   const auto &low = entry.range_low, &high = entry.range_high;
-  for (int attempt = 0; attempt < std::max(1, entry.attempts); ++attempt) {
+  for (int attempt = 0; attempt < std::max(1, attempts); ++attempt) {
     const auto u = draws.uniforms(first + static_cast<std::uint64_t>(attempt));
     pose = {low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1], low[2] + (high[2] - low[2]) * u[2]};
     if (spread.fits(pose.position()) && crowd.fits(object, pose)) return true;
@@ -112,6 +112,10 @@ void place_randomly(const World& world, State& state, int w) {
   const auto failed = [&](int object) {
     if (state.failed_placement[w] < 0) state.failed_placement[w] = object;
   };
+  // a scene in which somebody found no room is not used: the others need not look for any
+  const auto attempts = [&](const RandomPlacement& entry) {
+    return state.failed_placement[w] < 0 ? entry.attempts : 1;
+  };
 
   std::vector<std::uint8_t> random(world.objects, 0);
   for (const RandomPlacement& entry : world.placements) {
@@ -125,7 +129,9 @@ void place_randomly(const World& world, State& state, int w) {
     Spread spread(entry.min_distance);
     for (const int i : entry.objects) {
       Pose& pose = state.initial_pose[first + i];
-      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), 0, i, spread, states, pose)) failed(i);
+      if (!draw_pose(entry, attempts(entry), Draws(key, Stream::placement, world.number[i]), 0, i, spread, states,
+                     pose))
+        failed(i);
       spread.add(pose.position());
       states.add(i, pose);
     }
@@ -146,7 +152,8 @@ void place_randomly(const World& world, State& state, int w) {
                                            low[2] + (high[2] - low[2]) * u[2]}};
         continue;
       }
-      if (!draw_pose(entry, Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread, goals, goal))
+      if (!draw_pose(entry, attempts(entry), Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread,
+                     goals, goal))
         failed(i);
       spread.add(goal.position());
       goals.add(i, goal);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -23,6 +23,7 @@ from irsim.scenario.translate import translate
 
 __all__ = ["Reading", "read"]
 
+Survey = Callable[[Context], Iterable[Finding]]
 _STAND_INS = {"entry.kinematics.name": "diff", "entry.distribution.name": "random"}
 """Names in place of wrong ones, so that the other checks see something that moves, somewhere."""
 _ROUNDS = 6  # of repairing and validating again; each finds what the errors before had hidden
@@ -54,6 +55,7 @@ def read(
     strict: bool = False,
     limits: Limits = DEFAULT_LIMITS,
     name: str | None = None,
+    survey: Survey | None = None,
 ) -> Reading:
     """Read, validate, check and resolve a scenario. Every problem is found in one go; nothing is raised for any.
 
@@ -62,12 +64,13 @@ def read(
         strict: Keep as errors what IR-SIM 2.12 carries on with; otherwise do what it does, and warn.
         limits: What to refuse.
         name: What to call a text in messages.
+        survey: Further checks, of scenarios that nothing stands in the way of.
     """
     document = _document(source, limits, name)
     findings = [Finding(problem) for problem in document.problems]
     if document.data is None and document.fatal:
         return Reading(None, _diagnostics(findings, document, strict), document)
-    resolved = _Reader(document, limits, findings).resolved()
+    resolved = _Reader(document, limits, findings, survey).resolved()
     blocked = document.fatal or any(f.blocking or (strict and f.diagnostic.severity == "error") for f in findings)
     return Reading(None if blocked else resolved, _diagnostics(findings, document, strict), document)
 
@@ -85,8 +88,10 @@ def _document(source: Any, limits: Limits, name: str | None) -> Document:
 class _Reader:
     """Validates, repairs what is wrong on a copy, and goes on, so that one error does not hide the next."""
 
-    def __init__(self, document: Document, limits: Limits, findings: list[Finding]) -> None:
-        self.document, self.limits, self.findings = document, limits, findings
+    def __init__(
+        self, document: Document, limits: Limits, findings: list[Finding], survey: Survey | None = None
+    ) -> None:
+        self.document, self.limits, self.findings, self.survey = document, limits, findings, survey
         self.data = document.data
         self.touched: list[Path] = []
         self._map: tuple[Any, LoadedMap] | None = None
@@ -106,7 +111,10 @@ class _Reader:
         resolved = self._resolve(scenario)
         scenario = scenario.model_copy(update={"world": resolved.world})
         map_findings = self._map[1].findings if self._map is not None else []
-        found = run_checks(Context(scenario, resolved, self.data, self.document, map_findings))
+        context = Context(scenario, resolved, self.data, self.document, map_findings)
+        found = run_checks(context)
+        if self.survey is not None and not any(f.blocking for f in [*self.findings, *found]):
+            found = [*self.survey(context), *found]  # of two findings alike the first is told: it was tried
         found = [f for f in found if not self._under_repair(f.diagnostic.path)]
         self._add(found)
         edits = [f.carry_on for f in found if f.carry_on is not None]

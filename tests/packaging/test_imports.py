@@ -73,6 +73,7 @@ LAYERS = (
     results
     runs
     snapshot
+    survey
     templates
     testing
     util

@@ -201,5 +201,6 @@ def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                     f"{words} at ({lost[0][0]:g}, {lost[0][1]:g}), outside the world "
                     f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
                     + ("" if context.given(record, written) else f" (the default {key})"),
+                    fix=f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
                 )
                 break

@@ -20,6 +20,9 @@ _MOST_PAIRS = 300_000
 """Pairs that are looked at; thousands of objects in one place have more, and are told of as stacked."""
 
 
+_DIRECTIONS, _HALVINGS, _RINGS = 16, 12, 30
+
+
 def check(context: Context) -> Iterator[Finding]:
     """Pairs with a member that moves or is a robot, unless one is placed at random or not to be collided with."""
     random = {index for placement in context.resolved.placements for index in placement.objects}
@@ -36,15 +39,70 @@ def check(context: Context) -> Iterator[Finding]:
         if core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
             first = found.setdefault(key, (mover, other, 0))
             found[key] = (*first[:2], first[2] + 1)
+    by_id = {body.record.id: body for body in bodies}
     for mover, other, count in found.values():
         where = context.entry_path(mover, "state") if context.given(mover, "state") else mover.path
+        deep, place = _depth(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
+        instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
         yield warning(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts in collision with {_named(other)}"
+            f"'{mover.name}' starts in collision with {_named(other)}{deep}"
             + (f", and {count - 1} more such pairs of these entries" if count > 1 else ""),
-            fix="move one of them, or make it smaller" if other.path[0] != "world" else "start in free space",
+            fix="move one of them, or make it smaller" + instead
+            if other.path[0] != "world"
+            else "start in free space" + instead,
         )
+
+
+def _depth(a: _Body, b: _Body) -> str:
+    """How deep one is in the other, in words: the least move that would part them, along one of a few directions."""
+    x, y, heading = a.record.state[:3]
+    most = 2 * (a.reach + min(b.reach, 10 * a.reach))
+    if not math.isfinite(most):
+        return ""
+
+    def meets(angle: float, far: float) -> bool:
+        pose = (x + far * math.cos(angle), y + far * math.sin(angle), heading)
+        return core.intersects(a.parts, pose, b.parts, b.record.state[:3])
+
+    least = most
+    towards = math.atan2(y - b.record.state[1], x - b.record.state[0])
+    for k in range(_DIRECTIONS):
+        angle = towards + 2 * math.pi * k / _DIRECTIONS
+        if meets(angle, least):
+            continue
+        low, high = 0.0, least
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if meets(angle, middle) else (low, middle)
+        least = high
+    return f", {least:.2g} m deep" if least < most else ", all of it"
+
+
+def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[float, float] | None:
+    """The nearest place with room for a body as it is turned, among all whose place is fixed."""
+    x, y, heading = mover.record.state[:3]
+    step = max(mover.reach / 4, 0.02)
+    if not math.isfinite(step) or mover.record.shape.name in ("map", "walls"):
+        return None
+    rings = [step * k * (1 + k / 8) for k in range(1, _RINGS + 1)]
+    around = mover.reach + rings[-1]
+    near = [
+        (body.parts, body.record.state[:3])
+        for body in bodies
+        if body is not mover
+        and not body.record.unobstructed
+        and math.hypot(body.record.state[0] - x, body.record.state[1] - y) <= around + body.reach
+    ]
+    terrain = core.Terrain(context.scenario.world.bounds, near)
+    for ring in rings:
+        for k in range(_DIRECTIONS):
+            angle = 2 * math.pi * k / _DIRECTIONS
+            place = (x + ring * math.cos(angle), y + ring * math.sin(angle))
+            if not terrain.collides(mover.parts, (*place, heading)):
+                return place
+    return None
 
 
 def _named(record: ObjectRecord) -> str:

@@ -1,0 +1,51 @@
+"""Robots that want to stand in the same place at the end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from irsim.scenario.checks import Context
+from irsim.survey.movers import Mover
+from irsim.survey.scenes import Scene
+from irsim.survey.tally import Tally
+
+__all__ = ["check"]
+
+_MOST = 1000
+
+
+def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> None:
+    """Last goals so near to each other that only one robot can arrive."""
+    last = [
+        (mover, goals[-1])
+        for mover in movers
+        if (goals := scene.goals[mover.record.id])
+        and mover.record.role == "robot"
+        and not (mover.record.wander or mover.record.loop or mover.record.unobstructed)
+    ]
+    if len(last) < 2 or len(last) > _MOST:
+        return
+    place = np.array([goal[:2] for _, goal in last])
+    size = np.array([mover.radius - mover.record.goal_threshold for mover, _ in last])
+    gap = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1))
+    near = np.triu(gap < size[:, None] + size[None] - 1e-9, 1)
+    told = set()
+    for a, b in np.argwhere(near):
+        first, second = last[a][0], last[b][0]
+        if (first.path, second.path) in told:
+            continue
+        told.add((first.path, second.path))
+        mine = near & (np.array([m.path == second.path for m, _ in last])[None])
+        count = len({int(k) for pair in np.argwhere(mine) for k in pair})
+        x, y = place[b]
+        tally.add(
+            "goals-overlap",
+            second.path,
+            second.record,
+            f"the last goals of {count} robots are nearer to each other than they are wide, those of "
+            f"'{first.record.name}' and '{second.record.name}' at ({x:g}, {y:g}) for two: whoever comes first is in "
+            "the way of the other",
+            "goals as far apart as the robots are wide, one per object: goal: [[x, y], [x, y], ...]",
+            scene.seed,
+            serious=False,
+        )

@@ -1,0 +1,248 @@
+"""Whether robots can get from goal to goal, through gaps as wide as they are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from irsim.scenario.checks import Context
+from irsim.survey.movers import Mover
+from irsim.survey.room import Gap, Point, Room, gap, plugged, room_of
+from irsim.survey.scenes import Scene
+from irsim.survey.tally import Tally
+
+__all__ = ["Leg", "check"]
+
+_TIGHT = 1.25
+"""A gap less than this many times as wide as the robot is narrow."""
+_MOST_GAPS = 4
+"""Gaps that are measured in one scene."""
+_MOST_PLUGS = 2
+"""Gaps that are closed, one after the other, to see whether there is another way."""
+_MOST_QUERIES = 20_000
+_SAMPLES, _FEW = 14, 0.05
+"""Random goals that are tried along each axis; a share that does not matter."""
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The way of a robot from one goal to the next.
+
+    Attributes:
+        mover: Who.
+        start: Middle of its inner disc at the start [m].
+        goal: Goal [m].
+        blocked: Something stands on the straight line.
+    """
+
+    mover: Mover
+    start: Point
+    goal: Point
+    blocked: bool
+
+
+def check(
+    context: Context,
+    scene: Scene,
+    movers: list[Mover],
+    tally: Tally,
+    *,
+    blocking: bool,
+    roomless: set[tuple[int, int]],
+) -> dict[int, list[Leg]]:
+    """The legs of each robot by its id; those that have no way are told of, and left out with all that follow.
+
+    Args:
+        context: The scenario.
+        scene: Where everything stands.
+        movers: Who moves.
+        tally: Takes the findings.
+        blocking: Whether things stop robots.
+        roomless: (robot, goal) pairs that were told of already: ids and indices.
+    """
+    room = room_of(scene, movers) if scene.things and blocking else None
+    legs: dict[int, list[Leg]] = {}
+    gaps = queries = 0
+    wanderers: set[object] = set()
+    for mover in movers:
+        pose = scene.pose[mover.record.id]
+        start = mover.centre(pose)
+        if mover.record.wander:
+            if room is not None and mover.record.path not in wanderers and room.holds(start):
+                wanderers.add(mover.record.path)
+                _wander(room, scene, mover, start, tally)
+            continue
+        if mover.record.role != "robot":
+            continue
+        made = legs.setdefault(mover.record.id, [])
+        for index, goal in enumerate(scene.goals[mover.record.id]):
+            to = (goal[0], goal[1])
+            if room is None or not (room.holds(start) and room.holds(to)):
+                made.append(Leg(mover, start, to, False))
+                start = to
+                continue
+            queries += 1
+            if (
+                queries > _MOST_QUERIES
+                or (mover.record.id, index) in roomless
+                or _in_something(scene, mover, start, index)
+            ):
+                break
+            arrival = _arrival(room, mover, to)
+            if arrival is None:
+                break
+            least = mover.radius - room.half
+            found = None
+            if room.clearance.widest(start, to, mover.reach)[0] >= least and gaps < _MOST_GAPS:
+                measured, found = _tightest(room, scene, mover, start, arrival)
+                gaps += measured
+            if found is not None and found.width + found.slack < 2 * mover.radius:
+                _no_way(context, room, scene, movers, mover, start, index, found, tally)
+                break
+            if room.clearance.widest(start, to, mover.reach)[0] < least:
+                found = gap(room, *_apart(room, mover, start, arrival))
+                _no_way(context, room, scene, movers, mover, start, index, found, tally)
+                break
+            if found is not None:
+                _narrow(mover, found, scene, tally)
+            made.append(Leg(mover, start, to, _line(room, mover, start, to)))
+            start = room.clearance.climb(arrival, mover.radius)
+    return legs
+
+
+def _in_something(scene: Scene, mover: Mover, start: Point, index: int) -> bool:
+    """Whether it starts in an obstacle, which other checks tell."""
+    if index:
+        return False
+    pose = scene.pose[mover.record.id]
+    return scene.terrain.collides(mover.parts, pose)
+
+
+def _arrival(room: Room, mover: Mover, goal: Point) -> Point | None:
+    """The roomiest cell where it counts as arrived, None if there is hardly any room."""
+    (x0, y0), (dx, dy), nx, ny = room.cells
+    reach = mover.reach + room.half
+    i0, i1 = (min(max(int((goal[0] + s * reach - x0) / dx), 0), nx - 1) for s in (-1, 1))
+    j0, j1 = (min(max(int((goal[1] + s * reach - y0) / dy), 0), ny - 1) for s in (-1, 1))
+    near = room.distance[i0 : i1 + 1, j0 : j1 + 1]
+    i, j = np.unravel_index(int(near.argmax()), near.shape)
+    if near[i, j] < mover.radius - room.half:
+        return None
+    return x0 + (i0 + int(i) + 0.5) * dx, y0 + (j0 + int(j) + 0.5) * dy
+
+
+def _apart(room: Room, mover: Mover, start: Point, arrival: Point) -> tuple[Point, Point]:
+    """Both ends, away from what they stand beside."""
+    reach = 2 * mover.radius
+    return room.clearance.climb(start, reach), room.clearance.climb(arrival, reach)
+
+
+def _tightest(room: Room, scene: Scene, mover: Mover, start: Point, arrival: Point) -> tuple[int, Gap | None]:
+    """How many gaps were measured, and the narrowest on the way if it is hardly as wide as the body, or not."""
+    need, start_top, goal_top = 2 * mover.radius, *_apart(room, mover, start, arrival)
+    closed: list[Gap] = []
+    while len(closed) < _MOST_PLUGS:
+        width = room.clearance.widest(start_top, goal_top, 0.0)[0]
+        if closed and width < mover.radius - room.half:
+            return len(closed), max(closed, key=lambda g: g.width)
+        if not math.isfinite(width) or 2 * width >= _TIGHT * need:
+            return len(closed), None
+        key = f"gap {need} {round(width, 9)} {len(closed)}"
+        if key not in scene.owner.kept:
+            scene.owner.kept[key] = gap(room, start_top, goal_top)
+        found: Gap | None = scene.owner.kept[key]
+        if found is None or found.width + found.slack >= need:
+            narrow = found is not None and found.width < _TIGHT * need
+            return len(closed) + 1, found if narrow else None
+        closed.append(found)
+        room = plugged(room, closed)
+    return len(closed), None
+
+
+def _no_way(
+    context: Context,
+    room: Room,
+    scene: Scene,
+    movers: list[Mover],
+    mover: Mover,
+    start: Point,
+    index: int,
+    found: Gap | None,
+    tally: Tally,
+) -> None:
+    name, goals = mover.record.name, scene.goals[mover.record.id]
+    goal, need = goals[index], 2 * mover.radius
+    what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
+    if found is None or found.width <= 0:
+        why = "nothing is open between them, not even for a thinner one"
+        fix = "an opening in what stands between, or another goal"
+    else:
+        x, y = found.place
+        wide = f"a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f})" if found.width < need else "too narrow a gap"
+        why = f"the widest way has {wide}, and it needs {'' if mover.is_disc else 'at least '}{_metres(need)}"
+        fix = f"widen the gap to {_metres(_TIGHT * need)} or more, or make the robot narrower"
+    if context.scenario.world.boundary == "none":
+        wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
+        if wider.clearance.widest(start, (goal[0], goal[1]), mover.reach)[0] >= mover.radius - wider.half:
+            why += ". Only outside of the world, whose edge is open, it could get round"
+    tally.add(
+        "goal-unreachable",
+        mover.path,
+        mover.record,
+        f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
+        fix,
+        scene.seed,
+    )
+
+
+def _narrow(mover: Mover, found: Gap, scene: Scene, tally: Tally) -> None:
+    need, name = 2 * mover.radius, mover.record.name
+    x, y = found.place
+    tally.add(
+        "narrow-passage",
+        mover.path,
+        mover.record,
+        f"the way of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}): "
+        f"{_metres(max(0.0, found.width - need) / 2)} to each side of its {_metres(need)}",
+        f"{_metres(_TIGHT * need)} or more are easier to get through",
+        scene.seed,
+        serious=False,
+    )
+
+
+def _metres(value: float) -> str:
+    return f"{value:.3g} m" if value >= 0.1 else f"{value:.2g} m"
+
+
+def _line(room: Room, mover: Mover, start: Point, goal: Point) -> bool:
+    """Whether something stands on the straight line, short of where it has arrived."""
+    length = math.dist(start, goal)
+    share = max(0.0, 1.0 - mover.reach / length) if length > 0 else 0.0
+    t = np.linspace(0.0, share, 2 + int(length / room.cell))[:, None]
+    points = np.array(start) + t * (np.array(goal) - np.array(start))
+    return bool(room.at(points).min() < mover.radius - room.half)
+
+
+def _wander(room: Room, scene: Scene, mover: Mover, start: Point, tally: Tally) -> None:
+    """Random goals are drawn without a look at what stands there."""
+    if _in_something(scene, mover, start, 0):
+        return
+    low, high = mover.record.range_low, mover.record.range_high
+    x = low[0] + (high[0] - low[0]) * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    y = low[1] + (high[1] - low[1]) * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    points = [(float(a), float(b)) for a in x for b in y if room.holds((float(a), float(b)))]
+    lost = [p for p in points if room.clearance.widest(start, p, mover.reach)[0] < mover.radius - room.half]
+    if len(lost) <= _FEW * len(points):
+        return
+    tally.add(
+        "wander-blocked",
+        mover.path,
+        mover.record,
+        f"about {len(lost) / len(points):.0%} of the random goals of '{mover.record.name}' lie in obstacles or behind "
+        f"them, ({lost[0][0]:.2f}, {lost[0][1]:.2f}) for one: it would never get there",
+        "range_low and range_high that span open space",
+        scene.seed,
+        serious=len(lost) > 0.5 * len(points),
+    )

@@ -1,0 +1,122 @@
+"""Whether the time suffices, and whether a behavior that plans no way can find one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from irsim.episode import HORIZON_FACTOR, MIN_HORIZON
+from irsim.scenario.checks import Context
+from irsim.survey.movers import Mover
+from irsim.survey.reach import Leg
+from irsim.survey.room import Room
+from irsim.survey.scenes import Scene
+from irsim.survey.tally import Tally
+
+__all__ = ["check"]
+
+_EIGHT = math.cos(math.pi / 8)
+"""The shortest way is at least so many times as long as one over eight neighbours."""
+_MOST_WAYS = 3
+"""Ways that are measured in one scene."""
+_SHORT = 0.9
+_DETOUR = 1.4
+_LOCAL = ("rvo", "sfm", "orca")
+
+
+def check(context: Context, scene: Scene, movers: list[Mover], legs: dict[int, list[Leg]], tally: Tally) -> None:
+    """Robots that are not there in time, or stand before a wall."""
+    going = [mover for mover in movers if mover.record.id in legs and not mover.record.wander]
+    straight = {m.record.id: _straight(legs[m.record.id]) for m in going}
+    limit, whose = _horizon(context, going, straight)
+    room = scene.owner.kept.get("room 0.0")
+    measured = 0
+    for mover in sorted(going, key=lambda m: (-_time(m, straight[m.record.id]), m.record.id)):
+        ways = legs[mover.record.id]
+        length = straight[mover.record.id]
+        blocked = [leg for leg in ways if leg.blocked]
+        if blocked and mover.behavior == "dash":
+            _dashes(mover, blocked[0], scene, tally)
+        elif blocked and isinstance(room, Room) and measured < _MOST_WAYS and not scene.rough:
+            measured += 1
+            around = sum(_length(room, leg) if leg.blocked else math.dist(leg.start, leg.goal) for leg in ways)
+            if mover.behavior in _LOCAL and around > _DETOUR * length:
+                _detour(mover, blocked[0], scene, around, length, tally)
+            length = max(length, around)
+        if not mover.behavior or mover.record.loop or len(ways) < len(scene.goals[mover.record.id]):
+            continue
+        _late(mover, length, limit, whose, scene, tally)
+
+
+def _straight(legs: list[Leg]) -> float:
+    """Length of the straight lines, short of where it has arrived [m]."""
+    return sum(max(0.0, math.dist(leg.start, leg.goal) - leg.mover.reach) for leg in legs)
+
+
+def _time(mover: Mover, length: float) -> float:
+    return length / mover.speed if mover.speed > 0 and math.isfinite(mover.speed) else 0.0
+
+
+def _horizon(context: Context, going: list[Mover], straight: dict[int, float]) -> tuple[float, str]:
+    limit = context.scenario.world.time_limit
+    if limit is not None:
+        return limit, f"time_limit is {limit:g} s"
+    usual = max([MIN_HORIZON, *(HORIZON_FACTOR * _time(m, straight[m.record.id]) for m in going)])
+    return usual, f"without a time_limit a run ends after {usual:.3g} s"
+
+
+def _length(room: Room, leg: Leg) -> float:
+    """No way is shorter [m]."""
+    clearance = room.clearance
+    goal = clearance.climb(leg.goal, leg.mover.reach + room.half)
+    way = clearance.way(leg.start, goal, leg.mover.radius - room.half)
+    if not len(way):
+        return 0.0
+    return _EIGHT * float(np.hypot(*np.diff(way, axis=0).T).sum()) - leg.mover.reach
+
+
+def _late(mover: Mover, length: float, limit: float, whose: str, scene: Scene, tally: Tally) -> None:
+    needed = _time(mover, length)
+    if needed <= _SHORT * limit:
+        return
+    late = needed > limit
+    tally.add(
+        "time-too-short",
+        ("world", "time_limit") if whose.startswith("time_limit") else mover.path,
+        mover.record,
+        f"'{mover.record.name}' needs {needed:.3g} s or more for the {length:.3g} m to its goal "
+        f"at {mover.speed:.3g} m/s, and "
+        + (whose if late else f"{whose}: that leaves nothing for turning and giving way"),
+        f"time_limit: {math.ceil(2 * needed):g}, or a faster robot",
+        scene.seed,
+        serious=late,
+    )
+
+
+def _dashes(mover: Mover, leg: Leg, scene: Scene, tally: Tally) -> None:
+    name = mover.record.name
+    tally.add(
+        "dash-into-obstacle",
+        mover.path,
+        mover.record,
+        f"'{name}' dashes straight to ({leg.goal[0]:g}, {leg.goal[1]:g}) and looks at nobody: an obstacle stands on "
+        "that line",
+        "behavior: {name: follow} plans a way round; rvo, sfm and orca avoid single things",
+        scene.seed,
+        serious=False,
+    )
+
+
+def _detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: float, tally: Tally) -> None:
+    name = mover.record.name
+    tally.add(
+        "needs-planning",
+        mover.path,
+        mover.record,
+        f"'{mover.behavior}' avoids what is near and plans no way: on the {around:.3g} m round the obstacles "
+        f"(straight: {length:.3g} m) '{name}' is likely to get stuck",
+        f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
+        scene.seed,
+        serious=False,
+    )

@@ -1,0 +1,377 @@
+"""Findings that need the world: each where it should be, with the right numbers, and none where all is well."""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.diagnostics import Diagnostic
+from irsim.env import Env
+from irsim.scenario.read import read
+from irsim.survey import survey
+
+ROOT = Path(__file__).parents[2]
+SCENARIOS = [*ROOT.glob("templates/*/scenario.yaml"), *ROOT.glob("tests/parity/scenarios/*.yaml")]
+SHOWN = {
+    "arrive-at-start": {"goal-reached"},
+    "collide-initial": {"initial-overlap"},
+    "collide-inside": {"initial-overlap"},
+    "collide-thin": {"jumps-through"},
+    "lidar-full-circle": {"angle-over-full-turn"},
+    "lidar-inside": {"initial-overlap"},
+    "lidar-scan-header": {"angle-over-full-turn"},
+    "limits-zero": {"no-speed", "no-turning"},
+    "make-overlap": {"initial-overlap"},
+    "make-waypoint-at-start": {"goal-reached"},
+    "reset-waypoint-at-start": {"goal-reached"},
+    "waypoints-two-levels": {"goal-levels"},
+    "world-static": {"static-behavior"},
+}
+"""Scenarios that are there to show one of these."""
+
+DISC = {"kinematics": {"name": "diff"}, "shape": {"name": "circle", "radius": 0.3}, "behavior": {"name": "rvo"}}
+ROBOT = {**DISC, "state": [2, 5, 0], "goal": [10, 5]}
+
+
+def found(data: Any) -> list[Diagnostic]:
+    return list(read(data, strict=True, survey=survey).diagnostics)
+
+
+def codes(data: Any) -> list[str]:
+    return [d.code for d in found(data)]
+
+
+def one(data: Any, code: str) -> Diagnostic:
+    matching = [d for d in found(data) if d.code == code]
+    assert len(matching) == 1, found(data)
+    assert matching[0].fix
+    return matching[0]
+
+
+def scenario(robot: dict[str, Any], *obstacles: dict[str, Any], **world: Any) -> dict[str, Any]:
+    data = {"world": {"width": 12, "height": 10, **world}, "robot": [robot], "obstacle": list(obstacles)}
+    return copy.deepcopy(data)
+
+
+def door(width: float, **world: Any) -> dict[str, Any]:
+    """A wall across the world at x = 6 with a door in the middle."""
+    part = (10 - width) / 2
+    shape = {"name": "rectangle", "length": 0.2, "width": part}
+    walls = {"number": 2, "shape": shape, "state": [[6, part / 2, 0], [6, 10 - part / 2, 0]]}
+    return scenario(ROBOT, walls, **world)
+
+
+@pytest.mark.parametrize("path", SCENARIOS, ids=lambda p: p.parent.name if p.name == "scenario.yaml" else p.stem)
+def test_no_false_alarms(path: Path) -> None:
+    alarms = {d.code for d in found(path) if d.severity != "hint"}
+    assert alarms == SHOWN.get(path.stem, set())
+
+
+@pytest.mark.parametrize("width", [0.3, 0.45, 0.55, 0.59])
+def test_a_door_too_narrow_is_measured(width: float) -> None:
+    item = one(door(width, boundary="walls"), "goal-unreachable")
+    assert item.severity == "warning"
+    assert item.path == ("robot", 0, "goal")
+    gap, x, y, need = map(float, re.findall(r"\d+\.?\d*(?= m| at|,|\))", item.message.split("gap of")[1])[:4])
+    assert gap == pytest.approx(width, abs=0.008)
+    assert (x, y) == pytest.approx((6, 5), abs=0.2)
+    assert need == 0.6
+
+
+@pytest.mark.parametrize(("width", "hint"), [(0.62, True), (0.7, True), (0.8, False), (1.5, False)])
+def test_a_door_wide_enough(width: float, hint: bool) -> None:
+    data = door(width)
+    assert codes(data) == (["narrow-passage"] if hint else [])
+    if hint:
+        assert float(re.findall(r"gap of ([\d.]+) m", found(data)[0].message)[0]) == pytest.approx(width, abs=0.008)
+
+
+def test_what_is_unreachable_is_not_reached_and_the_other_is() -> None:
+    """The planner of the engine agrees on both sides of the limit."""
+    for width, reached in ((0.55, False), (0.75, True)):
+        data = door(width, boundary="walls")
+        data["robot"][0]["behavior"] = {"name": "follow"}
+        assert ("goal-unreachable" in codes(data)) is not reached
+        env = Env(read(data).scenario, headless=True, seed=0)
+        for _ in range(400):
+            env.step()
+        assert env.robot.arrive is reached
+        env.end()
+
+
+def test_closed_off() -> None:
+    ring = {"shape": {"name": "linestring", "vertices": [[8, 3], [11.5, 3], [11.5, 7], [8, 7], [8, 3]]}}
+    item = one(scenario(ROBOT, {**ring, "state": [0, 0, 0]}), "goal-unreachable")
+    assert "nothing is open" in item.message
+
+
+def test_only_round_the_outside() -> None:
+    item = one(door(0.0), "goal-unreachable")
+    assert "outside of the world" in item.message
+    assert "outside of the world" not in one(door(0.0, boundary="walls"), "goal-unreachable").message
+
+
+def test_walls_that_stop_nobody() -> None:
+    assert codes(door(0.0, collision_mode="unobstructed")) == []
+    data = door(0.0)
+    data["obstacle"][0]["unobstructed"] = True
+    assert codes(data) == []
+
+
+def test_a_body_that_is_no_disc() -> None:
+    car = {**ROBOT, "shape": {"name": "rectangle", "length": 1.0, "width": 0.5}}
+    for width, code in ((0.4, "goal-unreachable"), (0.55, "narrow-passage")):
+        data = door(width)
+        data["robot"] = [car]
+        assert code in codes(data)
+    data = door(1.0)
+    data["robot"] = [car]
+    assert codes(data) == []
+
+
+def test_a_wider_way_elsewhere_counts() -> None:
+    """A gap that is a little too narrow on a widest way does not hide a longer way."""
+    walls = [
+        {"shape": {"name": "rectangle", "length": 0.2, "width": 4.0}, "state": [6, 2.0, 0]},
+        {"shape": {"name": "rectangle", "length": 0.2, "width": 3.0}, "state": [6, 6.09, 0]},
+        {"shape": {"name": "rectangle", "length": 0.2, "width": 1.5}, "state": [6, 9.25, 0]},
+    ]
+    assert "goal-unreachable" not in codes(scenario(ROBOT, *walls))
+
+
+@pytest.mark.parametrize(
+    ("goal", "obstacle", "words"),
+    [
+        ([10, 5], {"shape": {"name": "circle", "radius": 1}, "state": [10.3, 5, 0]}, "inside of 'obstacle_1'"),
+        ([10, 5], {"shape": {"name": "rectangle", "length": 0.1, "width": 2}, "state": [10.2, 5, 0]}, "nearer than"),
+    ],
+)
+def test_goals_without_room(goal: list[float], obstacle: dict[str, Any], words: str) -> None:
+    data = scenario({**ROBOT, "goal": goal}, obstacle)
+    item = one(data, "goal-blocked")
+    assert words in item.message
+    x, y = map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0])
+    data["robot"][0]["goal"] = [x, y]
+    assert codes(data) == []
+
+
+def test_goals_by_the_wall_of_the_world() -> None:
+    robot = {key: value for key, value in ROBOT.items() if key != "goal"}
+    data = scenario({**robot, "waypoints": [[6, 5], [11.9, 5]]}, boundary="walls")
+    item = one(data, "goal-blocked")
+    assert "waypoint 2" in item.message
+    assert item.path == ("robot", 0, "waypoints")
+    data["robot"][0]["waypoints"][1] = [11.65, 5]
+    assert codes(data) == []
+
+
+def test_the_threshold_counts() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 1, "width": 2}, "state": [10.65, 5, 0]}
+    assert codes(scenario(ROBOT, wall)) == ["goal-blocked"]
+    assert "goal-blocked" not in codes(scenario({**ROBOT, "goal_threshold": 0.2}, wall))
+
+
+def test_overlaps_say_how_deep_and_where_to() -> None:
+    data = {"robot": [{**DISC, "state": [2, 2, 0], "goal": [9, 9]}, {**DISC, "state": [2.4, 2, 0], "goal": [9, 2]}]}
+    item = one(data, "initial-overlap")
+    assert "0.2 m deep" in item.message
+    assert "'robot_0'" in item.message
+    assert "'robot_1'" in item.message
+    place = list(map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0]))
+    assert math.dist(place, [2, 2]) < 0.5
+    data["robot"][0]["state"] = [*place, 0]
+    assert codes(data) == []
+
+
+def test_a_start_in_the_map() -> None:
+    robot = {**DISC, "state": [0.05, 0.05, 0], "goal": [18, 13], "behavior": {"name": "follow"}}
+    data = {"world": {"width": 20, "height": 15, "obstacle_map": "office.png"}, "robot": [robot]}
+    item = one(data, "initial-overlap")
+    place = list(map(float, re.findall(r"\((-?[\d.]+), (-?[\d.]+)\) is free", str(item.fix))[0]))
+    data["robot"][0]["state"] = [*place, 0]
+    assert "initial-overlap" not in codes(data)
+
+
+BIG = {"shape": {"name": "circle", "radius": 0.5}, "distribution": {"name": "random", "min_distance": 1.05}}
+
+
+def crowd(number: int, **keys: Any) -> dict[str, Any]:
+    return {"world": {"width": 8, "height": 8},
+            "robot": [{**DISC, "number": number, "distribution": {"name": "random"}, **keys}]}  # fmt: skip
+
+
+def test_random_placement_is_tried_with_20_seeds() -> None:
+    assert codes(crowd(10)) == []
+    tight = crowd(31, **BIG)
+    item = one(tight, "placement-tight")
+    failing = int(re.findall(r"of 20 seeds that were tried, (\d+) find no room", item.message)[0])
+    truth = 0
+    for seed in range(20):
+        try:
+            Env(read(tight).scenario, headless=True, seed=seed).end()
+        except irsim.ScenarioError:
+            truth += 1
+    assert failing == truth
+    assert 0 < failing < 20
+
+
+def test_random_placement_that_never_works_is_an_error() -> None:
+    block = {"shape": {"name": "rectangle", "length": 7, "width": 7}, "state": [4, 4, 0]}
+    item = one({**crowd(12), "obstacle": [block]}, "placement-crowded")
+    assert item.severity == "error"
+    assert "none of 20 seeds" in item.message
+
+
+def test_the_scenarios_own_seed_counts() -> None:
+    data = crowd(31, **BIG)
+    outcome = set()
+    for seed in range(30):
+        data["world"]["seed"] = seed
+        try:
+            Env(read(data).scenario, headless=True).end()
+            works = True
+        except irsim.ScenarioError:
+            works = False
+        errors = [d for d in found(data) if d.code == "placement-crowded"]
+        assert bool(errors) is not works
+        outcome.add(works)
+        if outcome == {True, False}:
+            break
+
+
+def test_random_obstacles_on_a_goal_are_counted() -> None:
+    data = {
+        "world": {"width": 8, "height": 8},
+        "robot": [{**DISC, "state": [1, 1, 0], "goal": [7, 7]}],
+        "obstacle": [
+            {
+                "number": 14,
+                "distribution": {"name": "random", "range_low": [2, 2, -3], "range_high": [8, 8, 3]},
+                "shape": {"name": "circle", "radius": 0.5},
+            }
+        ],
+    }
+    assert re.match(r"in \d of 5 seeds, seed \d+ for one: 'robot_0' has no room", one(data, "goal-blocked").message)
+
+
+def test_robots_that_share_a_goal() -> None:
+    data = scenario({**DISC, "number": 3, "state": [[1, 1, 0], [1, 3, 0], [1, 5, 0]], "goal": [9, 9]})
+    item = one(data, "goals-overlap")
+    assert "3 robots" in item.message
+    data["robot"][0]["goal"] = [[9, 9], [9, 7], [9, 5]]
+    assert codes(data) == []
+
+
+def test_too_little_time() -> None:
+    item = one(scenario(ROBOT, time_limit=5), "time-too-short")
+    assert item.path == ("world", "time_limit")
+    assert item.severity == "warning"
+    assert one(scenario(ROBOT, time_limit=8.2), "time-too-short").severity == "hint"
+    assert codes(scenario(ROBOT, time_limit=12)) == []
+    loop = {**ROBOT, "behavior": {"name": "rvo", "loop": True}}
+    assert codes(scenario(loop, time_limit=5)) == []
+
+
+def test_the_way_round_takes_longer_than_the_line() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 8.6}, "state": [6, 4.3, 0]}
+    follow = {**ROBOT, "behavior": {"name": "follow"}}
+    assert codes(scenario(follow, wall, time_limit=9)) == ["time-too-short"]
+    assert "time-too-short" not in codes(scenario(follow, wall, time_limit=14))
+    assert codes(scenario(follow, time_limit=9)) == []
+
+
+def test_dashing_into_an_obstacle() -> None:
+    post = {"shape": {"name": "circle", "radius": 0.5}, "state": [6, 5, 0]}
+    dash = {**ROBOT, "behavior": {"name": "dash"}}
+    assert codes(scenario(dash, post)) == ["dash-into-obstacle"]
+    assert codes(scenario(dash, {**post, "state": [6, 7, 0]})) == []
+    assert codes(scenario(ROBOT, post)) == []
+
+
+def test_a_dead_end_for_behaviors_that_plan_nothing() -> None:
+    outline = [[3, 1.2], [8, 1.2], [8, 8.8], [3, 8.8]]
+    trap = {"shape": {"name": "linestring", "vertices": outline}, "state": [0, 0, 0]}
+    assert codes(scenario({**ROBOT, "state": [5, 5, 0]}, trap)) == ["needs-planning"]
+    assert codes(scenario({**ROBOT, "state": [5, 5, 0], "behavior": {"name": "follow"}}, trap)) == []
+
+
+def test_wanderers_whose_goals_lie_in_walls() -> None:
+    block = {"shape": {"name": "rectangle", "length": 6, "width": 6}, "state": [8, 5, 0]}
+    wander = {**DISC, "state": [2, 5, 0], "behavior": {"name": "rvo", "wander": True}}
+    item = one(scenario(wander, block), "wander-blocked")
+    share = int(re.findall(r"about (\d+)%", item.message)[0])
+    assert share == pytest.approx(100 * 6.4 * 6.4 / 120, abs=8)
+    inside = {**wander, "behavior": {"name": "rvo", "wander": True, "range_low": [1, 1], "range_high": [4, 9]}}
+    assert codes(scenario(inside, block)) == []
+
+
+def test_one_finding_for_many_robots() -> None:
+    data = door(0.5, boundary="walls")
+    states = [[1 + 0.9 * (k % 4), 1 + 0.9 * (k // 4), 0] for k in range(20)]
+    data["robot"] = [{**DISC, "number": 20, "state": states, "goal": [[11 - s[0] + 1, s[1]] for s in states]}]
+    assert "likewise 19 more" in one(data, "goal-unreachable").message
+
+
+def test_the_same_findings_every_time() -> None:
+    path = ROOT / "templates/random-polygons/scenario.yaml"
+    assert found(path) == found(path)
+
+
+PLACES = np.random.default_rng(5)
+
+
+def places(number: int, size: float) -> list[list[float]]:
+    return [[float(x), float(y), 0.0] for x, y in PLACES.uniform(1, size - 1, (number, 2))]
+
+
+def serpentine() -> Any:
+    cells = np.zeros((4000, 4000), dtype=np.uint8)
+    for k in range(60):
+        cells[k * 66 : k * 66 + 4, (200 if k % 2 else 0) : (4000 if k % 2 else 3800)] = 100
+    return cells
+
+
+LARGE = {
+    "5000 obstacles, 100 robots": lambda: {
+        "world": {"width": 200, "height": 200},
+        "robot": [{**DISC, "number": 100, "state": places(100, 200), "goal": [p[:2] for p in places(100, 200)]}],
+        "obstacle": [{"number": 5000, "state": places(5000, 200), "shape": {"name": "circle"}}],
+    },
+    "5000 robots at random": lambda: {
+        "world": {"width": 400, "height": 400},
+        "robot": [{**DISC, "number": 5000, "distribution": {"name": "random"}}],
+    },
+    "1000 robots in a crowd": lambda: {
+        "world": {"width": 50, "height": 50},
+        "robot": [{**DISC, "number": 1000, "distribution": {"name": "random", "min_distance": 1.11}}],
+    },
+    "16 million cells": lambda: {
+        "world": {"width": 200, "height": 200, "obstacle_map": serpentine()},
+        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
+    },
+    "16 million random cells": lambda: {
+        "world": {"width": 200, "height": 200,
+                  "obstacle_map": np.random.default_rng(1).integers(0, 53, (4000, 4000), dtype=np.uint8)},
+        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LARGE)
+def test_it_stays_quick(name: str) -> None:
+    """0.3 s more than reading alone; ten times that here, for slow machines with other work."""
+    data = LARGE[name]()
+    before = time.process_time()
+    read(data, strict=True)
+    middle = time.process_time()
+    read(data, strict=True, survey=survey)
+    assert time.process_time() - middle < (middle - before) + 3.0
