@@ -478,6 +478,10 @@ TOOL_CODES: dict[str, Code] = {
         "No recorded run of that id is kept in the workspace. Runs are let go 24 hours after their last use, and the "
         "least recently used ones when all together exceed 500 MB; the message names recent ones.",
     ),
+    "unknown-job": Code(
+        "unknown job",
+        "No job of that id is kept in the workspace. Jobs are let go after 24 hours; the message names recent ones.",
+    ),
     "unreadable-run": Code(
         "run cannot be read", "A file of the recorded run has been changed, removed or cut; record the run again."
     ),

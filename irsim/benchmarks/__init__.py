@@ -6,6 +6,7 @@ taken episode by episode.
 
 from __future__ import annotations
 
+import itertools
 import math
 import shlex
 from collections.abc import Iterable, Sequence
@@ -23,7 +24,7 @@ from irsim.errors import OverLimitError
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.results import BenchmarkResult, EpisodeRow, Finding
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.load import Document, load_path
+from irsim.scenario.load import Document, load_path, load_text
 from irsim.scenario.randomness import random_parts
 from irsim.text import clean
 
@@ -51,7 +52,7 @@ def benchmark(
     Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
 
     Args:
-        files: Scenario files.
+        files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result.
         behaviors: Names (``orca``), names with options in YAML (``{name: orca, timeHorizon: 5}``) for all robots, or
             ``as-written`` for what the scenario says. Differences are to the first.
         seeds: How many (0, 1, 2, …), or which.
@@ -68,7 +69,8 @@ def benchmark(
         OverLimitError: More is asked for than the limits allow.
         BenchmarkError: A behavior or the seeds make no sense.
     """
-    names = [str(name) for name in ([files] if isinstance(files, (str, Path)) else files)]
+    given = [str(name) for name in ([files] if isinstance(files, (str, Path)) else files)]
+    names = _names(given)
     wanted = [behaviors] if isinstance(behaviors, str) else list(behaviors)
     chosen = _seeds(seeds)
     _check(names, wanted, chosen, most_episodes)
@@ -78,10 +80,15 @@ def benchmark(
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances = dict[str, float](), dict[str, list[str]]()
-    for name in names:
-        scenario, warnings[name] = read_scenario(name, strict=strict, limits=limits)
+    for name, source in zip(names, given, strict=True):
+        document = _document(source, limits)
+        scenario, warnings[name] = read_scenario(
+            None if document.path is None else name,
+            text=document.text if document.path is None else None,
+            strict=strict,
+            limits=limits,
+        )
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
-        document = _document(name, limits)
         for behavior in wanted:
             job = Job(
                 text=str(document.text),
@@ -127,9 +134,20 @@ def benchmark(
     )
 
 
-def _document(name: str, limits: Limits) -> Document:
-    source = source_of(name, None, limits)
-    return source if isinstance(source, Document) else load_path(source, limits)
+def _names(given: list[str]) -> list[str]:
+    """What to call the scenarios."""
+    texts = [source for source in given if "\n" in source]
+    if len(texts) < 2:
+        return ["(text)" if "\n" in source else source for source in given]
+    number = itertools.count(1)
+    return [f"(text {next(number)})" if "\n" in source else source for source in given]
+
+
+def _document(source: str, limits: Limits) -> Document:
+    if "\n" in source:
+        return load_text(source, limits=limits)
+    found = source_of(source, None, limits)
+    return found if isinstance(found, Document) else load_path(found, limits)
 
 
 def _seeds(seeds: int | Iterable[int]) -> list[int]:
@@ -197,7 +215,10 @@ def _command(
     strict: bool,
     imports: Sequence[str],
 ) -> str:
-    words: list[Any] = ["irsim", "benchmark", *names]
+    files = [
+        f"scenario{'' if name == '(text)' else name[6:-1]}.yaml" if name.startswith("(text") else name for name in names
+    ]
+    words: list[Any] = ["irsim", "benchmark", *files]
     if behaviors != [AS_WRITTEN]:
         words += ["--behaviors", ",".join(behaviors)]
     words += ["--seeds", len(seeds) if seeds == list(range(len(seeds))) else ",".join(map(str, seeds))]

@@ -171,7 +171,15 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
     return json.dumps({"text": artifact(run, arguments.pop("name"), **arguments)})
 
 
+def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim.benchmarks import benchmark
+
+    result = benchmark(**job["arguments"], strict=True, limits=_limits(job), progress=progress)
+    return result.model_dump_json(exclude={"warnings": {"__all__": {"__all__": {"given"}}}})
+
+
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
+    "benchmark": _benchmark,
     "validate": _validate,
     "run": _run,
     "snapshot": _snapshot,
@@ -192,7 +200,13 @@ def _described(error: Exception) -> dict[str, Any]:
     if isinstance(error, ScenarioError):
         errors = [item for item in error.diagnostics if item.severity == "error"]
         named = [
-            {"code": item.code, "what": item.message, "where": format_path(item.path), "line": item.line}
+            {
+                "code": item.code,
+                "what": item.message,
+                "where": format_path(item.path),
+                "line": item.line,
+                "file": item.file,
+            }
             for item in errors[:_MOST_FINDINGS]
         ]
         return {"code": "invalid-scenario", "errors": len(errors), "first": named}

@@ -7,10 +7,24 @@ from pathlib import Path
 
 from irsim.scenario.limits import Limits
 
-__all__ = ["RUN_SECONDS", "STEPS", "ServerLimits", "scenario_limits"]
+__all__ = [
+    "BEHAVIORS",
+    "EPISODES",
+    "RUN_SECONDS",
+    "SCENARIOS",
+    "SEEDS",
+    "STEPS",
+    "WAIT_SECONDS",
+    "ServerLimits",
+    "scenario_limits",
+]
 
 STEPS = 5_000
 """Steps of one run."""
+SCENARIOS, BEHAVIORS, SEEDS, EPISODES = 20, 5, 100, 2_000
+"""Of a benchmark."""
+WAIT_SECONDS = 50
+"""Longest wait for a job in one call."""
 RUN_SECONDS = 45
 """Wall-clock time of one run; hosts commonly give up on a call after a minute."""
 
@@ -34,6 +48,8 @@ class ServerLimits:
         cells: Cells of a map.
         map_bytes: Size of a map file.
         written: Size of a file that a worker writes, which only caches of libraries are [bytes].
+        jobs: Jobs that run at the same time in a workspace.
+        job_seconds: Wall-clock time of a job, and processor time of each of its processes.
         text: Characters of text in one result, about four to a token.
     """
 
@@ -52,6 +68,8 @@ class ServerLimits:
     cells: int = 16_000_000
     map_bytes: int = 32 * 1024**2
     written: int = 16 * 1024**2
+    jobs: int = 2
+    job_seconds: int = 3600
     text: int = 24_000
 
 

@@ -15,12 +15,21 @@ from mcp.types import CallToolResult, InputRequiredResult
 from irsim import __version__
 from irsim.text import clean
 from irsim_mcp.errors import failure
+from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.resources import add_resources
 from irsim_mcp.run_resources import add_run_resources
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
-from irsim_mcp.tools import inspect_run, lookup, render_snapshot, run_episode, validate_scenario
+from irsim_mcp.tools import (
+    benchmark,
+    get_job,
+    inspect_run,
+    lookup,
+    render_snapshot,
+    run_episode,
+    validate_scenario,
+)
 from irsim_mcp.worker import Workers
 
 __all__ = ["IrsimServer", "build_server"]
@@ -30,10 +39,11 @@ irsim simulates robots that drive in a flat world: walls and obstacles, several 
 is one YAML document with the keys world, robot and obstacle; lengths are m, times s, angles rad, x points right, y up.
 Work in this order: lookup (index, then the nearest template; for a file of the user only what you change) -> edit \
 the YAML -> validate_scenario until valid -> \
-render_snapshot and look -> run_episode -> if it failed, inspect_run, look at that moment, edit, and again. Do not \
-guess keys: lookup explains them, and misspelt ones are errors. Say what cannot be done instead of leaving it out.
+render_snapshot and look -> run_episode -> if it failed, inspect_run, look at that moment, edit, and again. To compare \
+behaviors: benchmark, then get_job while it runs. Do not guess keys: lookup explains them, misspelt ones are errors. \
+Say what cannot be done instead of leaving it out.
 Scenarios are given as text (scenario_yaml) or as a file (scenario_path) inside the workspace {workspace}. The server \
-writes no files but records of runs below .irsim; save YAML yourself if it is to be kept. The same scenario and seed \
+writes no files but records below .irsim; save YAML yourself if it is to be kept. The same scenario and seed \
 give the same result."""
 _HOUR = 3_600_000
 
@@ -62,8 +72,8 @@ def build_server(workspace: Path, limits: ServerLimits | None = None) -> IrsimSe
     """
     limits = limits or ServerLimits()
     folder = Workspace(workspace)
-    services = Services(folder, limits, Workers(folder, limits))
-    modules = (lookup, validate_scenario, render_snapshot, run_episode, inspect_run)
+    services = Services(folder, limits, Workers(folder, limits), Jobs(folder, limits))
+    modules = (lookup, validate_scenario, render_snapshot, run_episode, inspect_run, benchmark, get_job)
     caching: Mapping[Any, CacheHint] = {
         method: CacheHint(ttl_ms=_HOUR, scope="public")
         for method in ("tools/list", "resources/list", "resources/templates/list", "resources/read")

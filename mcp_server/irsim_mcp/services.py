@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from irsim_mcp.errors import failure
+from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.worker import Progress, Workers
@@ -32,6 +33,7 @@ class Services:
     workspace: Workspace
     limits: ServerLimits
     workers: Workers
+    jobs: Jobs
 
     async def scenario_job(
         self,
@@ -93,15 +95,26 @@ class Services:
         if scenario_path:
             return {"path": self.workspace.scenario(scenario_path)}
         assert scenario_yaml
-        size = len(scenario_yaml.encode("utf-8", "replace"))
+        return {"text": self._text(scenario_yaml, "scenario_yaml")}
+
+    def scenario_source(self, given: str, argument: str = "scenarios") -> str:
+        """A scenario given as a file of the workspace or, with a line break, as text.
+
+        Raises:
+            ToolError: The path is refused, or the text too large.
+        """
+        return self._text(given, argument) if "\n" in given else self.workspace.scenario(given, argument)
+
+    def _text(self, text: str, argument: str) -> str:
+        size = len(text.encode("utf-8", "replace"))
         if size > self.limits.yaml_bytes:
             raise failure(
                 "file-too-large",
                 f"{size:,} bytes; a scenario may have {self.limits.yaml_bytes:,}",
-                where="scenario_yaml",
+                where=argument,
                 fix="write groups of objects with 'number' and 'distribution' instead of one by one",
             )
-        return {"text": scenario_yaml}
+        return text
 
 
 def _as_failure(error: dict[str, Any], source: str) -> Exception:

@@ -21,7 +21,7 @@ from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 
-__all__ = ["Progress", "Workers", "missing_limits"]
+__all__ = ["Progress", "Workers", "missing_limits", "process_options"]
 
 Progress = Callable[[int, int], Awaitable[None]]
 """Told (steps done, steps at most)."""
@@ -95,15 +95,8 @@ class Workers:
             "written": self._limits.written,
             "cpu": int(seconds + _STARTING) + 2,
         }
-        process = await anyio.open_process(
-            _command(),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=None,
-            cwd=Path(__file__).parent,
-            env={name: os.environ[name] for name in _KEPT if name in os.environ} | _SET,
-            start_new_session=True,
-        )
+        command, options = process_options()
+        process = await anyio.open_process(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
         reached: tuple[int, int] | None = None
         run: str | None = None
         cancelled = False
@@ -160,6 +153,16 @@ def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None, run
         return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix + kept)
     fix = "use fewer objects or lidar beams; if it happens with a small scenario too, please report it"
     return failure("worker-failed", f"the process that did the work ended with code {code}", fix=fix)
+
+
+def process_options() -> tuple[list[str], dict[str, Any]]:
+    """Command of a worker, and how to start it: with few variables, in a session of its own."""
+    return _command(), {
+        "stderr": None,
+        "cwd": Path(__file__).parent,
+        "env": {name: os.environ[name] for name in _KEPT if name in os.environ} | _SET,
+        "start_new_session": True,
+    }
 
 
 def _command() -> list[str]:

@@ -13,7 +13,7 @@ from tests.mcp.golden.write import FILE, listed
 
 pytestmark = pytest.mark.anyio
 
-NAMES = ["lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run"]
+NAMES = ["lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job"]
 MOST_BYTES = 14_000
 
 
@@ -49,7 +49,7 @@ def test_every_tool_is_complete() -> None:
 def test_data_tools_have_output_schemas_and_the_others_none() -> None:
     tools = {tool["name"]: tool for tool in json.loads(FILE.read_text(encoding="utf-8"))}
     with_schema = [name for name, tool in tools.items() if "outputSchema" in tool]
-    assert with_schema == ["validate_scenario", "run_episode", "inspect_run"]
+    assert with_schema == ["validate_scenario", "run_episode", "inspect_run", "benchmark", "get_job"]
     for name in with_schema:
         schema = tools[name]["outputSchema"]
         assert (schema["type"], schema["additionalProperties"]) == ("object", False)

@@ -1,0 +1,256 @@
+"""Work that takes longer than a call: processes that go on, and what is known of them on disk.
+
+A job is a folder ``<workspace>/.irsim/jobs/<id>`` in the form of those of runs: ``run.json`` says how far it is, a lock
+says that somebody looks after it, ``result.json`` comes last. One without a result that nobody
+looks after any more was interrupted. Processes end with the server, whatever ends that.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import anyio
+
+from irsim.runs.store import (
+    DAY,
+    META,
+    RESULT,
+    Claim,
+    claim,
+    json_of,
+    made_folder,
+    mark_cancelled,
+    plain_file,
+    prune,
+    recent_ids,
+    run_folders,
+    runs_folder,
+    status_of,
+    written,
+)
+from irsim.text import clean
+from irsim_mcp.errors import failure
+from irsim_mcp.limits import ServerLimits, scenario_limits
+from irsim_mcp.sandbox import Workspace
+from irsim_mcp.worker import Progress, process_options
+
+__all__ = ["Jobs"]
+
+_KEPT = "jobs"
+_STEM = "benchmark"
+_CANCEL = "cancel"
+_QUOTA = 200 * 1000 * 1000
+_PERIOD = 0.5
+"""Seconds between looks at what others want and notes of how far it is."""
+_POLL = 0.1
+
+
+class Jobs:
+    """The jobs of one workspace; several servers may share it.
+
+    Args:
+        workspace: The folder they stay in.
+        limits: What they may use.
+    """
+
+    def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
+        self._workspace, self._limits = workspace, limits
+
+    def start(self, task: str, arguments: Mapping[str, Any], total: int) -> str:
+        """Begin a job.
+
+        Args:
+            task: What to do, a name in :mod:`irsim_mcp.job`.
+            arguments: Arguments of it, as JSON has them.
+            total: How many episodes there are.
+
+        Returns:
+            Its id.
+
+        Raises:
+            ToolError: As many are running as there may be.
+        """
+        folder = self._folder()
+        prune(folder, quota=_QUOTA, age=DAY)
+        running = [job.name for job in run_folders(folder) if status_of(job) == "running"]
+        if len(running) >= self._limits.jobs:
+            raise failure(
+                "busy",
+                f"{len(running)} jobs are running, which is as many as there may be: {', '.join(running)}",
+                fix="wait for one with get_job, or cancel it with get_job cancel=true",
+            )
+        job = made_folder(folder, _STEM)
+        held = claim(job)
+        about = {"id": job.name, "created": time.time(), "status": "running", "done": 0, "total": total}
+        _note(job, about)
+        work = {
+            "task": task,
+            "arguments": dict(arguments),
+            "workspace": str(self._workspace.root),
+            "limits": asdict(scenario_limits(self._limits, self._workspace.root)),
+            "resources": {
+                "memory": self._limits.memory,
+                "written": self._limits.written,
+                "cpu": self._limits.job_seconds,
+            },
+        }
+        _Keeper(job, held, about, work, self._limits.job_seconds).start()
+        return job.name
+
+    async def wait(self, job_id: str, seconds: float, progress: Progress | None = None) -> dict[str, Any]:
+        """What is known of a job, once it has ended or the time is over.
+
+        Args:
+            job_id: Which one.
+            seconds: How long to wait for its end.
+            progress: Told how far it is.
+
+        Returns:
+            ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
+            or ``error`` where there is one.
+
+        Raises:
+            ToolError: There is no such job.
+        """
+        job = self._find(job_id)
+        until = time.monotonic() + seconds
+        while True:
+            state = _state(job)
+            if state["status"] != "running" or time.monotonic() >= until:
+                return state
+            if progress is not None:
+                await progress(state["done"], state["total"])
+            await anyio.sleep(min(_POLL, max(0.0, until - time.monotonic())))
+
+    def cancel(self, job_id: str) -> None:
+        """Have a job stopped, whichever server looks after it."""
+        job = self._find(job_id)
+        if status_of(job) == "running":
+            with suppress(OSError):
+                os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
+
+    def _folder(self) -> Path:
+        runs = runs_folder(self._workspace.root, make=True)
+        folder = runs.with_name(_KEPT)
+        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+            raise failure("path-outside-workspace", f"{str(folder)!r} is a link or no folder", fix="remove it")
+        folder.mkdir(exist_ok=True)
+        return folder
+
+    def _find(self, job_id: str) -> Path:
+        folder = self._folder()
+        found = next((job for job in run_folders(folder) if job.name == job_id), None)
+        if found is None:
+            recent = recent_ids(folder)
+            fix = f"recent ones are {', '.join(recent)}" if recent else "start one with benchmark"
+            raise failure("unknown-job", f"there is no job {clean(job_id)!r}", where="job_id", fix=fix)
+        return found
+
+
+def _state(job: Path) -> dict[str, Any]:
+    """What is known of a job."""
+    status: str = status_of(job)
+    about = json_of(job, META)
+    state: dict[str, Any] = {"id": job.name, "status": status, "done": 0, "total": 0}
+    if isinstance(about, dict):
+        state |= {key: int(about.get(key, 0)) for key in ("done", "total")}
+    if status == "finished":
+        answer = json_of(job, RESULT)
+        if isinstance(answer, dict) and "error" in answer:
+            return state | {"status": "failed", "error": answer["error"]}
+        return state | {"result": answer, "done": state["total"]}
+    return state
+
+
+def _note(job: Path, about: Mapping[str, Any]) -> None:
+    text = json.dumps(about)
+    with suppress(OSError):  # the folder may have been removed by somebody
+        written(job / META, lambda file: file.write(text.encode()))
+
+
+class _Keeper(threading.Thread):
+    """Looks after the process of one job until it has ended."""
+
+    def __init__(self, job: Path, held: Claim, about: dict[str, Any], work: dict[str, Any], seconds: float) -> None:
+        super().__init__(daemon=True, name=job.name)
+        self._job, self._held, self._about, self._work, self._seconds = job, held, about, work, seconds
+
+    def run(self) -> None:
+        """Start the process, note how far it is, keep the result."""
+        try:
+            answer = self._answer()
+            if answer is None:
+                mark_cancelled(self._job)
+                return
+            text = answer["text"] if "text" in answer else json.dumps(answer)
+            with suppress(OSError):
+                written(self._job / RESULT, lambda file: file.write(text.encode()))
+        finally:
+            self._held.release()
+
+    def _answer(self) -> dict[str, Any] | None:
+        """What the process said at last; None if somebody wanted it stopped."""
+        command, options = process_options()
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
+        lines: queue.Queue[bytes] = queue.Queue()
+        threading.Thread(target=_read, args=(process, lines), daemon=True).start()
+        until = time.monotonic() + self._seconds
+        try:
+            assert process.stdin is not None
+            with suppress(OSError):
+                process.stdin.write(json.dumps(self._work).encode() + b"\n")
+                process.stdin.flush()
+            while time.monotonic() < until:
+                if plain_file(self._job, _CANCEL) is not None or not self._job.is_dir():
+                    return None
+                with suppress(queue.Empty):
+                    line = lines.get(timeout=_PERIOD)
+                    if not line:
+                        return _problem("worker-failed", "the process that did the work ended without a result")
+                    if line.startswith(b'{"progress"'):
+                        self._about["done"], self._about["total"] = json.loads(line)["progress"]
+                        _note(self._job, self._about)
+                    elif line.startswith(b'{"result": '):
+                        return {"text": line.decode().strip()[len('{"result": ') : -1]}
+                    else:
+                        return dict(json.loads(line))
+            return _problem("out-of-time", f"{self._seconds:g} s of computing were over")
+        finally:
+            _stop(process)
+
+
+def _problem(code: str, what: str) -> dict[str, Any]:
+    return {"error": {"code": code, "what": what, "fix": "ask for fewer seeds, scenarios or steps"}}
+
+
+def _read(process: subprocess.Popen[bytes], lines: queue.Queue[bytes]) -> None:
+    """Pass on what the process says; an empty line at its end."""
+    assert process.stdout is not None
+    with suppress(ValueError, OSError):
+        for line in process.stdout:
+            lines.put(line)
+    lines.put(b"")
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """The process and those that it has started."""
+    with suppress(ProcessLookupError, PermissionError):
+        if os.name == "posix":
+            os.killpg(process.pid, signal.SIGKILL)
+        else:
+            process.kill()
+    process.wait()
+    for pipe in (process.stdin, process.stdout):
+        with suppress(OSError, ValueError):
+            pipe.close()  # type: ignore[union-attr]

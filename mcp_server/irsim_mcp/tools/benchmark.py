@@ -1,0 +1,214 @@
+"""``benchmark``: compare behaviors over scenarios and seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+import anyio
+from mcp.server.mcpserver import Context
+from mcp.types import CallToolResult, TextContent
+from pydantic import BaseModel, ConfigDict, Field
+
+from irsim.text import clean
+from irsim_mcp.errors import failure
+from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
+from irsim_mcp.progress import reporter
+from irsim_mcp.services import Services
+from irsim_mcp.tool import StrictTool, strict
+
+__all__ = ["Benchmark", "answer", "tool"]
+
+_DESCRIPTION = """
+    Compare behaviors fairly: every scenario under every behavior with the same seeds, on all cores. Rows have the
+    shares of success, collision and timeout and the means of metrics as [value, low, high] (95 %); diff is to the first
+    behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job with its job_id, or run_episode
+    with a seed that failed.
+"""
+_SHARES = ("success", "collision", "timeout")
+_METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl")
+_DIFFERENCES = ("success", "time_to_goal")
+_ROWS, _NOTES, _DECIMALS = 50, 10, 3
+
+
+class Benchmark(BaseModel):
+    """How far it is, and the table."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    status: Literal["running", "finished", "cancelled", "interrupted"]
+    summary: str
+    job_id: str
+    done: int
+    total: int
+    rows: list[dict[str, Any]] = []
+    notes: list[str] = []
+    artifact: str | None = None
+    reproduce: str | None = None
+    next: str
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def benchmark(
+        ctx: Context[Any, Any],
+        scenarios: Annotated[
+            list[str], Field(description=f"1-{SCENARIOS} scenario files of the workspace, or YAML texts.")
+        ],
+        behaviors: Annotated[
+            list[str] | None,
+            Field(
+                description=f"1-{BEHAVIORS} for all robots, such as rvo or '{{name: orca, timeHorizon: 5}}'. "
+                "Default: as-written, the scenario's own."
+            ),
+        ] = None,
+        seeds: Annotated[int, Field(description=f"How many, 1-{SEEDS}: 0, 1, 2, …")] = 10,
+        max_steps: Annotated[int | None, Field(ge=1, le=STEPS, description="Default: the time limit.")] = None,
+        wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
+    ) -> Annotated[CallToolResult, Benchmark]:
+        chosen = behaviors or ["as-written"]
+        _check(scenarios, chosen, seeds)
+        files = [services.scenario_source(item) for item in scenarios]
+        job = services.jobs.start(
+            "benchmark",
+            {"files": files, "behaviors": chosen, "seeds": seeds, "steps": max_steps},
+            len(scenarios) * len(chosen) * seeds,
+        )
+        try:
+            state = await services.jobs.wait(job, wait_s, reporter(ctx, "episodes"))
+        except anyio.get_cancelled_exc_class():
+            services.jobs.cancel(job)
+            raise
+        return answer(state)
+
+    return strict(benchmark, title="Compare behaviors", description=_DESCRIPTION, read_only=False, idempotent=True)
+
+
+def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int) -> None:
+    if not scenarios or seeds < 1:
+        what = "there are no scenarios" if not scenarios else f"{seeds} seeds are none"
+        raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
+    total = len(scenarios) * len(behaviors) * seeds
+    within = len(scenarios) <= SCENARIOS and len(behaviors) <= BEHAVIORS and seeds <= SEEDS
+    if not within or total > EPISODES:
+        raise failure(
+            "over-limit",
+            f"{len(scenarios)} scenarios x {len(behaviors)} behaviors x {seeds} seeds = {total:,} episodes; at most "
+            f"{SCENARIOS} x {BEHAVIORS} x {SEEDS}, and {EPISODES:,} in all",
+            fix="ask for fewer seeds, or in several calls",
+        )
+
+
+def answer(state: dict[str, Any]) -> CallToolResult:
+    """What to say of a job.
+
+    Raises:
+        ToolError: It failed.
+    """
+    if "error" in state:
+        raise _as_failure(state["error"])
+    found = Benchmark(
+        status=state["status"],
+        summary=f"{state['status']}: {state['done']} of {state['total']} episodes",
+        job_id=state["id"],
+        done=state["done"],
+        total=state["total"],
+        next="Look at the episodes that failed with run_episode and their seed.",
+    )
+    if state["status"] == "running":
+        found.next = f"get_job job_id={state['id']}"
+    elif state["status"] != "finished":
+        found.next = "Nothing of it is kept; call benchmark again."
+    else:
+        _fill(found, state["result"])
+    text = TextContent(type="text", text=_text(found))
+    return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
+
+
+def _fill(found: Benchmark, result: dict[str, Any]) -> None:
+    extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
+    found.rows = [_row(row, [*_METRICS, *extra]) for row in result["rows"][:_ROWS]]
+    found.done = found.total = len(result["episodes"])
+    found.summary = _summary(result)
+    notes = list(result["notes"])
+    if len(result["rows"]) > _ROWS:
+        notes.append(f"{len(result['rows']) - _ROWS} more rows are in the artifact")
+    for name, warnings in result["warnings"].items():
+        notes += [f"{name}: {w['code']} at {w['path']}: {w['message']}" for w in warnings if w["severity"] == "warning"]
+    found.notes = [clean(note, 300) for note in notes[:_NOTES]]
+    found.artifact = f".irsim/jobs/{found.job_id}/result.json"
+    found.reproduce = clean(result["reproduce"], 1000)
+    lost = [e for e in result["episodes"] if e["outcome"] != "success"]
+    if not lost:
+        found.next = "Every episode succeeded; compare times and paths."
+        return
+    first = lost[0]
+    behavior = ""
+    if first["behavior"] != "as-written":
+        behavior = f", its robots with behavior {clean(first['behavior'], 60)}"
+    found.next = (
+        f"To see why: run_episode {clean(first['scenario'], 100)} seed={first['seed']}{behavior} ({first['outcome']})."
+    )
+
+
+def _summary(result: dict[str, Any]) -> str:
+    """Who succeeded how often, over all scenarios."""
+    last = [row for row in result["rows"] if row["scenario"] == result["rows"][-1]["scenario"]]
+    shares = [f"{clean(r['behavior'], 60)} {r['success']['count']}/{r['success']['n']}" for r in last]
+    return f"{len(result['episodes'])} episodes; success: {', '.join(shares)}"
+
+
+def _row(row: dict[str, Any], metrics: Sequence[str]) -> dict[str, Any]:
+    """One scenario under one behavior; numbers as [value, low, high]."""
+    shown: dict[str, Any] = {
+        "scenario": clean(row["scenario"], 100),
+        "behavior": clean(row["behavior"], 100),
+        "episodes": row["episodes"],
+    }
+    shown |= {key: [_rounded(row[key][part]) for part in ("rate", "low", "high")] for key in _SHARES}
+    shown |= {key: _numbers(row["metrics"][key]) for key in metrics if row["metrics"][key]["n"]}
+    diff = {key: _numbers(row["paired"][key]) for key in _DIFFERENCES if row["paired"] and row["paired"][key]["n"]}
+    return shown | ({"diff": diff} if diff else {})
+
+
+def _numbers(estimate: dict[str, Any]) -> list[float]:
+    """Mean and interval; only the mean where there is no interval."""
+    values = [estimate["mean"], estimate["low"], estimate["high"]]
+    return [_rounded(value) for value in values if value is not None]
+
+
+def _rounded(value: float) -> float:
+    return round(value, _DECIMALS)
+
+
+def _text(found: Benchmark) -> str:
+    """The result in words; it says all that the structure says."""
+    lines = [f"{found.status}: {found.summary}" if found.rows else found.summary]
+    lines[0] += f" (job {found.job_id}, {found.done} of {found.total})"
+    for row in found.rows:
+        told = [f"{key} {_shown(value)}" for key, value in row.items() if isinstance(value, list)]
+        told += [f"difference of {key} {_shown(value)}" for key, value in row.get("diff", {}).items()]
+        lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(told)}")
+    lines += [f"Note: {note}" for note in found.notes]
+    if found.artifact:
+        lines.append(f"All metrics and episodes: {found.artifact}")
+    if found.reproduce:
+        lines.append(f"Again: {found.reproduce}")
+    return "\n".join([*lines, f"Next: {found.next}"])
+
+
+def _shown(numbers: Sequence[float]) -> str:
+    value, *interval = (f"{number:g}" for number in numbers)
+    return f"{value} [{', '.join(interval)}]" if interval else value
+
+
+def _as_failure(error: dict[str, Any]) -> Exception:
+    if error["code"] == "invalid-scenario":
+        first = "; ".join(
+            f"{item.get('file') or '(text)'} {item['where']} {item['code']}: {item['what']}" for item in error["first"]
+        )
+        what = f"{error['errors']} error{'s' * (error['errors'] != 1)}: {first}"
+        fix = "validate_scenario lists every problem with its fix"
+        return failure("invalid-scenario", what, where="scenarios", fix=fix)
+    return failure(error["code"], error["what"], where=error.get("where"), fix=error.get("fix"))

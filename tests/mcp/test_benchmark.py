@@ -1,0 +1,216 @@
+"""``benchmark`` and ``get_job``: the table, jobs that go on, jobs that end."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import anyio
+import pytest
+from mcp import Client
+
+import irsim
+from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, as_process, connected, data_of, error_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+RANDOM = """\
+world: {width: 8, height: 8, time_limit: 12}
+robot:
+  - kinematics: {name: diff}
+    number: 3
+    distribution: {name: random, range_low: [1, 1, -3], range_high: [7, 7, 3]}
+    shape: {name: circle, radius: 0.2}
+    behavior: {name: dash}
+    goal: [4, 4, 0]
+"""
+
+
+@pytest.mark.parametrize("era", ERAS)
+async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    (workspace / "random.yaml").write_text(RANDOM)
+    async with connected(workspace, era) as client:
+        result = await client.call_tool(
+            "benchmark", {"scenarios": ["random.yaml", ROOM], "behaviors": ["dash", "rvo"], "seeds": 4}
+        )
+    found = data_of(result)
+    assert (found["status"], found["done"], found["total"]) == ("finished", 10, 10)
+    monkeypatch.chdir(workspace)
+    same = irsim.benchmark(["random.yaml", ROOM], ["dash", "rvo"], 4, strict=True, limits=None)
+    kept = json.loads((workspace / found["artifact"]).read_text())
+    assert kept["episodes"] == json.loads(same.model_dump_json())["episodes"]
+    assert [(row["scenario"], row["behavior"], row["episodes"]) for row in found["rows"]] == [
+        (row.scenario, row.behavior, row.episodes) for row in same.rows
+    ]
+    first = same.rows[0]
+    assert found["rows"][0]["success"] == [
+        round(x, 3) for x in (first.success.rate, first.success.low, first.success.high)
+    ]
+    assert "diff" in found["rows"][1]
+    assert any("nothing is random" in note for note in found["notes"])
+    assert found["reproduce"].startswith("irsim benchmark random.yaml scenario.yaml --behaviors dash,rvo")
+    for row in found["rows"]:
+        assert f"{row['success'][0]:g} [" in text_of(result)
+    assert len(json.dumps(found)) < 6000
+    assert (workspace / ".irsim" / ".gitignore").read_text() == "*\n"
+
+
+async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [RANDOM], "seeds": 60, "wait_s": 0}))
+        assert begun["status"] == "running"
+        assert begun["next"] == f"get_job job_id={begun['job_id']}"
+        found = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "wait_s": 50}))
+        assert (found["status"], found["done"]) == ("finished", 60)
+        again = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"]}))
+        assert again == found
+
+
+async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 2}))
+        assert begun["status"] == "running"
+        assert descendants(os.getpid())
+        ended = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "cancel": True}))
+        assert ended["status"] == "cancelled"
+        assert "call benchmark again" in ended["next"]
+        await gone(os.getpid())
+
+
+async def test_two_jobs_at_a_time(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        jobs = [
+            data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 2, "wait_s": 0}))["job_id"]
+            for _ in range(2)
+        ]
+        told = error_of(await client.call_tool("benchmark", {"scenarios": [LONG], "wait_s": 0}))
+        assert told.startswith("busy: 2 jobs are running")
+        assert all(job in told for job in jobs)
+        for job in jobs:
+            await client.call_tool("get_job", {"job_id": job, "cancel": True})
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM], "wait_s": 50}))
+        assert begun["status"] == "finished"
+
+
+async def test_limits(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        for arguments, product in (
+            ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 behaviors x 101 seeds = 101 episodes"),
+            ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 behaviors x 1 seeds = 21 episodes"),
+            ({"scenarios": [ROOM], "behaviors": list("abcdef")}, "1 scenarios x 6 behaviors x 10 seeds = 60 episodes"),
+            ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
+        ):
+            told = error_of(await client.call_tool("benchmark", arguments))
+            assert told.startswith("over-limit: ")
+            assert product in told
+        for arguments, start in (
+            ({"scenarios": []}, "bad-argument: there are no scenarios"),
+            ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: 0 seeds"),
+            ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
+            ({"scenarios": ["none.yaml"]}, "file-not-found"),
+            ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
+            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "bad-argument: there is no behavior"),
+            ({"scenarios": [ROOM.replace("goal", "gaol")]}, "invalid-scenario: 1 error: (text) robot[0].gaol"),
+            ({"scenarios": [ROOM], "wait_s": 51}, "bad-argument: 51 is not accepted"),
+            ({"scenarios": [ROOM], "seed": 3}, "unknown-argument: there is no argument 'seed'"),
+        ):
+            assert error_of(await client.call_tool("benchmark", arguments)).startswith(start)
+
+
+async def test_jobs_that_are_not_there(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        assert error_of(await client.call_tool("get_job", {"job_id": "benchmark-123456"})).startswith("unknown-job")
+        done = data_of(await client.call_tool("benchmark", {"scenarios": [CRASH]}))
+        told = error_of(await client.call_tool("get_job", {"job_id": "../../etc"}))
+        assert f"recent ones are {done['job_id']}" in told
+
+
+async def test_links_are_not_followed(workspace: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (workspace / ".irsim").mkdir()
+    (workspace / ".irsim" / "jobs").symlink_to(tmp_path / "elsewhere")
+    async with connected(workspace) as client:
+        told = error_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
+    assert told.startswith("path-outside-workspace")
+    assert not list((tmp_path / "elsewhere").iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize("how", ["end of input", "kill -9"])
+async def test_a_server_that_ends_leaves_no_process_and_an_interrupted_job(workspace: Path, how: str) -> None:
+    command = as_process(workspace)
+    server = subprocess.Popen([command.command, *command.args], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    try:
+        call = {"name": "benchmark", "arguments": {"scenarios": [LONG], "seeds": 4, "wait_s": 0}}
+        hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "t", "version": "0"}}
+        for message in (
+            {"id": 1, "method": "initialize", "params": hello},
+            {"method": "notifications/initialized"},
+            {"id": 2, "method": "tools/call", "params": call},
+        ):
+            server.stdin.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+        server.stdin.flush()
+        answers = [json.loads(server.stdout.readline()) for _ in range(2)]
+        job = answers[1]["result"]["structuredContent"]["job_id"]
+        until = time.monotonic() + 10
+        while not descendants(server.pid) and time.monotonic() < until:
+            await anyio.sleep(0.1)
+        await anyio.sleep(2.0)
+        children = descendants(server.pid)
+        assert children
+        if how == "kill -9":
+            server.send_signal(signal.SIGKILL)
+        else:
+            server.stdin.close()
+        server.wait(10)
+        until = time.monotonic() + 5
+        while any(alive(child) for child in children) and time.monotonic() < until:
+            await anyio.sleep(0.1)
+        assert not [child for child in children if alive(child)]
+    finally:
+        server.kill()
+        server.wait()
+        server.stdout.close()
+        if not server.stdin.closed:
+            server.stdin.close()
+    async with Client(as_process(workspace)) as client:
+        assert data_of(await client.call_tool("get_job", {"job_id": job}))["status"] == "interrupted"
+
+
+def descendants(pid: int) -> list[int]:
+    """Processes below one that are at work."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("needs /proc")
+    parents = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if fields[0] != "Z":
+                parents[int(entry.name)] = int(fields[1])
+    found, level = [], [pid]
+    while level:
+        level = [child for child, parent in parents.items() if parent in level]
+        found += level
+    return found
+
+
+def alive(pid: int) -> bool:
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+async def gone(pid: int) -> None:
+    until = time.monotonic() + 5
+    while descendants(pid) and time.monotonic() < until:
+        await anyio.sleep(0.1)
+    assert not descendants(pid)
