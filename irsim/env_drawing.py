@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,6 +41,8 @@ class EnvDrawing(EnvAccess):
     def _start_drawing(self) -> None:
         self._plot: EnvPlot | None = None
         self._title: str | None = None
+        if not self.headless and "matplotlib.pyplot" in sys.modules:
+            self._env_plot.list_in_pyplot()
 
     @property
     def status(self) -> str:
@@ -191,7 +194,7 @@ class EnvDrawing(EnvAccess):
         if self.save_ani:
             self._env_plot.save_animation(**{**self.ani_kwargs, **kwargs})
         if self._plot is not None:
-            if self.display:
+            if self.display and self._plot.made:
                 self._plot.pause(ending_time)
             self._plot.close()
             self._plot = None

@@ -38,4 +38,4 @@ class EnvMaps(EnvAccess):
 
     def _canvas(self) -> Any:
         """The axes, if something has been drawn."""
-        return None if self._plot is None else self._plot.ax
+        return None if self._plot is None or not self._plot.made else self._plot.ax

@@ -62,7 +62,8 @@ class SceneFigure3D:
         if scene.extent != self._extent:
             self._look_at(scene.extent)
         for artist in self._artists:
-            artist.remove()
+            if artist.axes is not None:  # else a script has cleared the axes
+                artist.remove()
         self._artists = [self._mark(mark) for mark in scene.marks]
         self._artists += [self._beams(beams) for beams in scene.beams if len(beams.ends)]
         self._artists += [self._label(label) for label in scene.labels]

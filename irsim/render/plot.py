@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import finalize, ref
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,15 +15,17 @@ from PIL import Image
 
 from irsim.diagnostics import nearest
 from irsim.render.builder import MODES, SceneBuilder
-from irsim.render.figure import SceneFigure, fitting_size
+from irsim.render.figure import SceneFigure, fitting_size, inches
 from irsim.render.files import picture_path, replacing
 from irsim.render.layers import rgba
+from irsim.render.live import LiveCanvas, LiveFigure
 from irsim.render.overlay import Overlay
 from irsim.render.palette import Palette
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels, from_image, to_image
 from irsim.render.plot_steps import PlotSteps
 from irsim.render.png import png_bytes
+from irsim.render.pyplot_entry import PyplotEntry, activate, active
 from irsim.render.recording import Pictured, Recording
 from irsim.render.scene import Scene
 from irsim.render.style import STYLE_KEYS
@@ -56,7 +60,8 @@ _QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
 class EnvPlot(PlotSteps):
     """Draws one environment.
 
-    Pictures show the state at the moment they are made, whenever that is; ``update`` only notes how to draw it.
+    Pictures show the state at the moment they are made, whenever that is and whoever makes them; ``update`` only notes
+    how to draw it. Artists are brought up to date when the figure is drawn, saved or asked for.
 
     Args:
         env: What to draw.
@@ -101,6 +106,11 @@ class EnvPlot(PlotSteps):
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
         self._saved_size: tuple[int, int] | None = None
+        self._entry: PyplotEntry | None = None
+        self._frame = 0
+        self._looking = False
+        self._shown_at: tuple[Any, ...] | None = None
+        self._drawn_at: tuple[Any, ...] | None = None
         self._begin()
 
     def _begin(self) -> None:
@@ -115,12 +125,17 @@ class EnvPlot(PlotSteps):
     @property
     def fig(self) -> Figure:
         """The Matplotlib figure, made when first asked for."""
-        return self._made().figure
+        return self._present().figure
 
     @property
     def ax(self) -> Axes:
         """Its axes, in world coordinates [m]."""
-        return self._made().ax
+        return self._present().ax
+
+    @property
+    def made(self) -> bool:
+        """Whether there is a figure."""
+        return self._figure is not None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -143,23 +158,81 @@ class EnvPlot(PlotSteps):
 
     def _made(self) -> SceneFigure:
         if self._figure is None:
+            entry = self.list_in_pyplot()
             if self._display:
                 from irsim.render.window import open_window
 
-                name = self.env.simulation.scenario.name
+                name, current = self.env.simulation.scenario.name, active()
                 self._window = open_window(self._size, self._dpi, full=self._full, title=name)
-            self._figure = self._new_figure(None if self._window is None else self._window.figure)
+                if self._window is not None:
+                    entry.give_way(self._window.figure.canvas)
+                    if current is not None and current is not entry:
+                        activate(current)
+            figure = self._window.figure if self._window is not None else self._without_window()
+            if isinstance(figure, LiveFigure):
+                figure.shown = ref(self)
+            self._figure = self._new_figure(figure)
+            if self._window is None:
+                entry.adopt(figure.canvas)
             self._show(self._figure)
             if self._attach is not None:
                 self._attach(self._figure.ax)
         return self._figure
 
+    def _without_window(self) -> Figure:
+        figure = LiveFigure(figsize=inches(self._size, self._dpi), dpi=self._dpi)
+        LiveCanvas(figure)
+        return figure
+
+    def list_in_pyplot(self) -> PyplotEntry:
+        """Let ``plt.gcf()`` find the figure, to be made when asked for; see :mod:`irsim.render.pyplot_entry`."""
+        if self._entry is None:
+            plot = ref(self)
+            self._entry = PyplotEntry(lambda: _canvas_of(plot()))
+            finalize(self, self._entry.leave)
+        return self._entry
+
+    # the present -----------------------------------------------------------------------------------------------------
+    def _moment(self) -> tuple[Any, ...]:
+        """What tells one picture from the next, cheaply."""
+        simulation = self.env.simulation
+        return int(simulation.count[0]), simulation.revision, self._frame, self.env.status, self.title
+
+    def _present(self) -> SceneFigure:
+        """The figure, its artists as of now."""
+        figure = self._made()
+        if not self._looking and self._shown_at != self._moment():
+            self._show(figure)
+        return figure
+
+    def before_drawing(self) -> None:
+        """Bring the artists up to date; called by the figure when somebody draws or saves it."""
+        if self._figure is not None and not self._looking:
+            self._show(self._figure)
+            self._figure.compositor.forget()
+            self._drawn_at = self._shown_at
+
+    def is_outdated(self) -> bool:
+        """Whether the pixels of the canvas show another moment than this one."""
+        return self._figure is not None and not self._looking and self._drawn_at != self._moment()
+
+    @contextmanager
+    def _as_shown(self) -> Iterator[None]:
+        """Draw and read the artists as they are."""
+        before, self._looking = self._looking, True
+        try:
+            yield
+        finally:
+            self._looking = before
+
     def _show(self, figure: SceneFigure) -> None:
-        figure.show(self.scene(), self._title())
-        if self.env.simulation.measurements:
-            objects = views(self.env.simulation)
-            shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
-            self._user_sensors.show(figure.ax, shown)
+        with self._as_shown():
+            figure.show(self.scene(), self._title())
+            if self.env.simulation.measurements:
+                objects = views(self.env.simulation)
+                shown = [view for view in objects if self._builder.style(view, {}).show_sensor]
+                self._user_sensors.show(figure.ax, shown)
+        self._shown_at = self._moment()
 
     def _has_picture(self, name: str) -> bool:
         """Whether an image is drawn in place of bodies."""
@@ -211,6 +284,7 @@ class EnvPlot(PlotSteps):
             raise ValueError(f"unknown render mode {mode!r}: choose one of {', '.join(MODES)}")
         self._note_unknown(overrides)
         self._mode, self._overrides = mode, overrides
+        self._frame += 1
         self._hidden.clear()
         self._overlay.next_frame()
 
@@ -227,7 +301,8 @@ class EnvPlot(PlotSteps):
             return
         figure = self._synced()
         if self._window is not None and self._window.open:
-            figure.draw()
+            with self._as_shown():
+                figure.draw()
             self._window.refresh(interval)
 
     def show(self) -> None:
@@ -244,10 +319,12 @@ class EnvPlot(PlotSteps):
         options = {**self.saved_figure_kwargs, **options}
         figure = self._synced()
         tight = options.get("bbox_inches") == "tight"
-        if _is_quick(options, figure.figure.dpi):
-            return figure.pixels(tight=tight, pad_inches=options.get("pad_inches", _PAD_INCHES))
-        data = io.BytesIO()
-        figure.figure.savefig(data, **{**options, "format": "png"})
+        with self._as_shown():
+            if _is_quick(options, figure.figure.dpi):
+                self._drawn_at = self._shown_at
+                return figure.pixels(tight=tight, pad_inches=options.get("pad_inches", _PAD_INCHES))
+            data = io.BytesIO()
+            figure.figure.savefig(data, **{**options, "format": "png"})
         with Image.open(data) as image:
             return from_image(image), None
 
@@ -294,7 +371,8 @@ class EnvPlot(PlotSteps):
                 temporary.write_bytes(png_bytes(pixels, figure.figure.dpi))
                 self._saved_size = pixels.shape[1], pixels.shape[0]
             else:
-                figure.figure.savefig(temporary, format=path.suffix[1:], **self.saved_figure_kwargs)
+                with self._as_shown():
+                    figure.figure.savefig(temporary, format=path.suffix[1:], **self.saved_figure_kwargs)
         if save_gif and count != self._recording.last_count:
             self.add_frame()
         return path
@@ -308,10 +386,12 @@ class EnvPlot(PlotSteps):
         _check_save_options(options)
         self.saved_figure_kwargs.update(options)
         kwargs, crop = self.saved_figure_kwargs, self._recording.crop
-        if crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self.fig.dpi):
+        if crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self._made().figure.dpi):
             figure = self._synced()
-            figure.draw()
-            pixels = figure.compositor.pixels(crop)
+            with self._as_shown():
+                figure.draw()
+                pixels = figure.compositor.pixels(crop)
+            self._drawn_at = self._shown_at
         else:
             pixels, self._recording.crop = self._pixels({})
         self._recording.add(pixels, self._colors)
@@ -363,6 +443,9 @@ class EnvPlot(PlotSteps):
             self._window = None
         self._overlay.forget()
         self._user_sensors.forget()
+        if self._entry is not None:
+            self._entry.leave()
+            self._entry = None
         if self._figure is not None:
             self._figure.compositor.forget()
         self._figure = None
@@ -375,25 +458,30 @@ class EnvPlot(PlotSteps):
 
     def draw_trajectory(self, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
         """A path; see :meth:`Overlay.trajectory`."""
-        self._overlay.trajectory(self.ax, traj, traj_type, **kwargs)
+        self._overlay.trajectory(self._made().ax, traj, traj_type, **kwargs)
 
     def draw_points(self, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
         """Dots; see :meth:`Overlay.points`."""
         if points is not None:
-            self._overlay.points(self.ax, points, s, c, refresh, **kwargs)
+            self._overlay.points(self._made().ax, points, s, c, refresh, **kwargs)
 
     def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-") -> None:
         """A closed outline; see :meth:`Overlay.box`."""
-        self._overlay.box(self.ax, vertex, refresh, color)
+        self._overlay.box(self._made().ax, vertex, refresh, color)
 
     def draw_quiver(self, point: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
         """One arrow (x, y, u, v)."""
         if point is not None:
-            self._overlay.quivers(self.ax, [point], refresh, color, **kwargs)
+            self._overlay.quivers(self._made().ax, [point], refresh, color, **kwargs)
 
     def draw_quivers(self, points: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
         """Arrows (x, y, u, v)."""
-        self._overlay.quivers(self.ax, points, refresh, color, **kwargs)
+        self._overlay.quivers(self._made().ax, points, refresh, color, **kwargs)
+
+
+def _canvas_of(plot: EnvPlot | None) -> Any:
+    """The canvas of a figure that pyplot asks for; an empty one if its environment has just gone."""
+    return LiveFigure().canvas if plot is None else plot.fig.canvas
 
 
 def _saved_figure(options: Any) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from irsim.render.figure import inches
+from irsim.render.live import LiveFigure
 
 __all__ = ["Window", "has_screen", "open_window"]
 
@@ -76,7 +77,7 @@ def open_window(size: tuple[float, float], dpi: float, *, full: bool, title: str
     from matplotlib import pyplot
 
     try:
-        figure = pyplot.figure(num=None, figsize=inches(size, dpi), dpi=dpi)
+        figure = pyplot.figure(num=None, figsize=inches(size, dpi), dpi=dpi, FigureClass=LiveFigure)
     except Exception:  # toolkits raise errors of their own when they find no screen
         return None
     manager = figure.canvas.manager
