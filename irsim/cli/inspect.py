@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["inspect"]
 
 _LISTED = 20
+_LONGEST = 200  # characters of a name in comma-separated values
 
 
 def inspect(
@@ -103,7 +104,7 @@ def _list_runs() -> None:
             run.status if result is None else result.outcome,
             str(run.last_step if result is None else result.steps),
             str(run.meta.get("seed")),
-            clean(run.meta.get("created"), 16).replace("T", " "),
+            clean(run.meta.get("created"))[:16].replace("T", " "),
             clean(run.meta.get("scenario") or "(text)"),
         )
     out = console()
@@ -115,9 +116,11 @@ def _list_runs() -> None:
 def _print_csv(table: RunTable) -> None:
     import csv
 
+    from irsim.text import clean
+
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(table.columns)
-    writer.writerows(table.rows)
+    writer.writerows([clean(cell, _LONGEST) if isinstance(cell, str) else cell for cell in row] for row in table.rows)
 
 
 def _show(table: RunTable, out: object) -> None:

@@ -130,6 +130,7 @@ def _csv(run: Run, from_step: int, to_step: int | None, every: int, robot: str |
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     lines: list[list[Any]] = [list(table.columns), *table.rows]
+    lines = [[clean(cell, 200) if isinstance(cell, str) else cell for cell in line] for line in lines]
     for row in lines:
         before = out.tell()
         writer.writerow(row)

@@ -279,7 +279,7 @@ def _speeds_of_robots(asked: _Question) -> _Found:
         rows.append(
             [trace.names[index], _number(way), _number(mean), _number(float(speeds.max())), *stand, bool(arrived.any())]
         )
-    columns = ["robot", "path_length", "mean_speed", "max_speed", "longest_stand", "stands_from_step", "arrived"]
+    columns = ["robot", "path_length", "mean_speed", "max_speed", "stood", "stood_from_step", "arrived"]
     return _paged(asked, columns, rows)
 
 

@@ -103,9 +103,13 @@ class Recorder:
             "trace_until": None,
             **_versions(),
         }
-        self._write("scenario.yaml", _text_of(simulation))
-        written(self.folder / "resolved.json", lambda file: file.write(plain_scenario(simulation)))
-        self._write_meta()
+        try:
+            self._write("scenario.yaml", _text_of(simulation))
+            written(self.folder / "resolved.json", lambda file: file.write(plain_scenario(simulation)))
+            self._write_meta()
+        except BaseException:
+            self._stop()
+            raise
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""
@@ -131,9 +135,12 @@ class Recorder:
 
     def close(self, status: str = "interrupted") -> None:
         """End without a result, unless there is one: what happened so far is kept."""
-        if not self._done:
+        if self._done:
+            return
+        try:
             self._flush()
             self._write_meta(status=status)
+        finally:
             self._stop()
 
     def _stop(self) -> None:

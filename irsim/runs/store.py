@@ -10,7 +10,7 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -88,7 +88,8 @@ def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> P
         if part.is_symlink() or (part.exists() and not part.is_dir()):
             raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
     if make:
-        folder.mkdir(parents=True, exist_ok=True)
+        with _refusals(folder):
+            folder.mkdir(parents=True, exist_ok=True)
         ignore = top / ".gitignore"
         if not ignore.exists():
             with suppress(FileExistsError):
@@ -101,7 +102,7 @@ def made_folder(runs: Path, stem: str) -> Path:
     slug = re.sub(r"[^a-z0-9]+", "-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
     while True:
         folder = runs / f"{slug}-{secrets.token_hex(3)}"
-        with suppress(FileExistsError):
+        with _refusals(folder), suppress(FileExistsError):
             folder.mkdir()
             return folder
 
@@ -193,16 +194,31 @@ def json_of(folder: Path, name: str) -> Any:
 
 
 def written(target: Path, write: Callable[[IO[bytes]], object]) -> None:
-    """Write a file of a run by way of a temporary one, so that nobody ever sees half of it."""
-    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
+    """Write a file of a run by way of a temporary one, so that nobody ever sees half of it.
+
+    Raises:
+        RunError: The system refuses.
+    """
+    with _refusals(target):
+        descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
+        try:
+            with os.fdopen(descriptor, "wb") as file:
+                write(file)
+            os.replace(temporary, target)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(temporary)
+            raise
+
+
+@contextmanager
+def _refusals(target: Path) -> Iterator[None]:
+    """What the system refuses, in our words."""
     try:
-        with os.fdopen(descriptor, "wb") as file:
-            write(file)
-        os.replace(temporary, target)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(temporary)
-        raise
+        yield
+    except OSError as error:
+        what = f"'{target}' cannot be written: {error.strerror or error}"
+        raise RunError("file-access", what, "check permissions and the space left") from None
 
 
 @dataclass(frozen=True)
@@ -221,7 +237,8 @@ class Claim:
 
 def claim(folder: Path) -> Claim:
     """Say that this process writes a run."""
-    descriptor = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)
+    with _refusals(folder / LOCK):
+        descriptor = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)
     _locked(descriptor, wait=True)
     return Claim(folder, descriptor)
 

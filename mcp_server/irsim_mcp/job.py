@@ -104,9 +104,16 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 
 def _run(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import run
+    from irsim.runs import RunError
 
-    arguments = {**job["arguments"], "record": True, "recorded": progress.recorded}
-    result = run(**arguments, strict=True, limits=_limits(job), progress=progress)
+    arguments = {**job["arguments"], "strict": True, "limits": _limits(job), "progress": progress}
+    try:
+        result = run(**arguments, record=True, recorded=progress.recorded)
+    except RunError as error:
+        if error.code != "file-access":
+            raise
+        print(f"irsim-mcp: no record of this run: {error.message}", file=sys.stderr)
+        result = run(**arguments)
     return result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})
 
 

@@ -157,3 +157,13 @@ async def test_links_out_of_the_workspace_are_not_followed(workspace: Path, tmp_
         assert error.startswith("path-outside-workspace: ")
         assert error_of(await client.call_tool("inspect_run", {"run_id": "x"})).startswith("path-outside-workspace: ")
     assert list(outside.iterdir()) == []
+
+
+async def test_what_cannot_be_recorded_runs_all_the_same(workspace: Path) -> None:
+    async with connected(workspace, written=1000) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": CRASH, "seed": 3})
+    data = data_of(result)
+    assert data["outcome"] == "collision"
+    assert "run_id" not in data
+    assert "seed=3" in data["next"]
+    assert "Record: none" in text_of(result)

@@ -137,7 +137,7 @@ def test_a_long_stand_is_found(workspace: Path) -> None:
     run = open_run(str(irsim.run(text=text, seed=0, record=True).run_id))
     table = inspect_run(run, view="speeds", robot="left")
     cells = dict(zip(table.columns, table.rows[0], strict=True))
-    assert (cells["longest_stand"], cells["stands_from_step"]) == (6.0, 1)
+    assert (cells["stood"], cells["stood_from_step"]) == (6.0, 1)
 
 
 @pytest.mark.parametrize(

@@ -112,3 +112,13 @@ def test_an_unknown_run_names_recent_ones(room: Path) -> None:
     assert sum(name in str(caught.value) for name in ids) == 5
     with pytest.raises(RunError):
         open_run("../../room")
+
+
+def test_a_full_disk_is_told(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*args: object, **kwargs: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("irsim.runs.store.os.replace", full)
+    with pytest.raises(RunError, match=r"file-access: .*No space left"):
+        irsim.run(room, seed=0, record=True)
+    assert not list(room.parent.rglob(".new-*"))

@@ -66,7 +66,7 @@ class Episode(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    run_id: str
+    run_id: str | None = None
     outcome: Literal["success", "collision", "timeout"]
     reason: str | None = None
     summary: str
@@ -81,7 +81,7 @@ class Episode(BaseModel):
     events: list[Event]
     event_count: int
     warnings: list[str]
-    artifacts: dict[str, str]
+    artifacts: dict[str, str] | None = None
     reproduce: str
     next: str
 
@@ -146,7 +146,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         events=[_event(event) for event in _chosen(found, detailed)[:most]],
         event_count=found["event_count"],
         warnings=[clean(line, 300) for line in told],
-        artifacts={name: uri(run_id, name) for name in _ARTIFACTS},
+        artifacts=None if run_id is None else {name: uri(run_id, name) for name in _ARTIFACTS},
         reproduce=clean(found["reproduce"], 300),
         next=_advice(found),
     )
@@ -186,10 +186,10 @@ def _event(event: dict[str, Any]) -> Event:
 
 
 def _advice(found: dict[str, Any]) -> str:
-    run = found["run_id"]
+    run = f"seed={found['seed']}" if found["run_id"] is None else f"run_id={found['run_id']}"
     if found["outcome"] == "success":
         more = "; try other seeds" if found["random"] else ""
-        return f"See the paths with render_snapshot run_id={run} step=-1{more}."
+        return f"See the paths with render_snapshot {run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
         return "As it should be if a program gives the actions; to try the layout, run a copy with behavior dash."
     hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
@@ -197,16 +197,16 @@ def _advice(found: dict[str, Any]) -> str:
         look, view = f"step={hits[0]}", "collisions"
     else:
         look, view = "step=-1", "speeds"
-    return (
-        f"Look with render_snapshot run_id={run} {look} and inspect_run view={view}, change the scenario, validate and "
-        "run again."
-    )
+    more = "" if found["run_id"] is None else f" and inspect_run view={view}"
+    return f"Look with render_snapshot {run} {look}{more}, change the scenario, validate and run again."
 
 
 def _text(episode: Episode) -> str:
     """The result in words; it says all that the structure says."""
     limit = f"{episode.time_limit:g} s ({episode.time_limit_from})"
-    lines = [f"{episode.outcome}: {episode.summary}", f"Run: {episode.run_id}"]
+    lines = [f"{episode.outcome}: {episode.summary}"]
+    if episode.run_id is not None:
+        lines.append(f"Run: {episode.run_id}")
     if episode.reason is not None:
         lines.append(f"Reason: {episode.reason}")
     chance = f"random: {', '.join(episode.random)}" if episode.random else "nothing is random"
@@ -220,7 +220,9 @@ def _text(episode: Episode) -> str:
         place = f"({event.x:g}, {event.y:g})"
         lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{whom} at {place}")
     lines += [f"Warning: {warning}" for warning in episode.warnings]
-    lines.append("Record: " + ", ".join(episode.artifacts.values()))
+    lines.append(
+        "Record: " + ", ".join((episode.artifacts or {"": "none, the workspace cannot be written to"}).values())
+    )
     return "\n".join([*lines, f"Again: {episode.reproduce}", f"Next: {episode.next}"])
 
 
