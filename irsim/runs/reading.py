@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -122,10 +123,16 @@ class Run:
 
     def files(self) -> list[str]:
         """Names of its files."""
-        return sorted(path.name for path in self.folder.iterdir() if plain_file(self.folder, path.name))
+        return sorted(name for name in self._names() if plain_file(self.folder, name))
+
+    def _names(self) -> list[str]:
+        try:
+            return os.listdir(self.folder)
+        except OSError:
+            raise RunError("unknown-run", f"run {self.id} has been let go") from None
 
     def _pieces(self, kind: str) -> list[str]:
-        found = [match for path in self.folder.iterdir() if (match := _PIECE.fullmatch(path.name))]
+        found = [match for name in self._names() if (match := _PIECE.fullmatch(name))]
         return [m.group() for m in sorted(found, key=lambda m: int(m.group(2))) if m.group(1) == kind]
 
     def _piece(self, name: str) -> Trace:

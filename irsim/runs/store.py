@@ -167,10 +167,12 @@ def text_of(folder: Path, name: str) -> str | None:
     path = plain_file(folder, name)
     if path is None:
         return None
-    if path.stat().st_size > _MOST_TEXT:
-        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is larger than irsim writes such files")
     try:
+        if path.stat().st_size > _MOST_TEXT:
+            raise RunError("unreadable-run", f"'{name}' of run {folder.name} is larger than irsim writes such files")
         return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return None
     except UnicodeDecodeError:
         raise RunError("unreadable-run", f"'{name}' of run {folder.name} is not text") from None
 

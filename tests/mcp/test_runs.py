@@ -65,6 +65,25 @@ async def test_pages(workspace: Path) -> None:
     assert [row[0] for row in first["rows"] + second["rows"]] == list(range(10))
 
 
+async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> None:
+    fields = ["x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"]
+    many = CRASH.replace("- name: rover", f"- name: {'r' * 60}")
+    async with connected(workspace, text=5000) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": many, "seed": 3})
+        ask = {"run_id": data_of(result)["run_id"], "every": 1, "limit": 200, "fields": fields}
+        steps: list[int] = []
+        while True:
+            result = await client.call_tool("inspect_run", ask)
+            data = data_of(result)
+            assert len(text_of(result)) <= 5000
+            assert len(json.dumps(data)) <= 5000
+            steps += [row[0] for row in data["rows"]]
+            if "next_cursor" not in data:
+                break
+            ask["cursor"] = data["next_cursor"]
+    assert steps == list(range(open_run(str(ask["run_id"]), workspace).last_step + 1))
+
+
 async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
     async with connected(workspace) as client:
         assert "record one first" in error_of(await client.call_tool("inspect_run", {"run_id": "x"}))

@@ -20,7 +20,7 @@ from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.store import META, claim, find_run, made_folder, mark_cancelled, prune, runs_folder, status_of
 
 ENDLESS = """\
-world: {width: 100, height: 100}
+world: {width: 100, height: 100, collision_mode: unobstructed}
 robot:
   - number: 40
     kinematics: {name: diff}
@@ -231,3 +231,11 @@ def first_run(workspace: Path) -> Any:
             return runs[0]
         time.sleep(0.005)
     raise AssertionError("no run has begun")
+
+
+def test_a_run_that_is_let_go_meanwhile_is_unknown(workspace: Path, room: Path) -> None:
+    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    assert prune(runs_folder(workspace), age=-1) == [run.id]
+    with pytest.raises(RunError, match="let go"):
+        run.trace()
+    assert run.status == "interrupted"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 from typing import Annotated, Any, Literal
 
 from mcp.types import CallToolResult, TextContent
@@ -20,6 +22,8 @@ _DESCRIPTION = """
     run_id step.
 """
 _LONGEST_CELL = 60
+_OTHER_TEXT = 2000
+"""Characters of a result besides its rows."""
 
 
 Cell = Annotated[float | int | str | bool | None, WithJsonSchema({"type": ["number", "string", "boolean", "null"]})]
@@ -71,11 +75,20 @@ def tool(services: Services) -> StrictTool:
             limit=limit,
             cursor=cursor,
         )
-        table = _table(found, view)
+        table = _table(_fitting(found, cursor, services.limits.text), view)
         text = TextContent(type="text", text=_text(table))
         return CallToolResult(content=[text], structured_content=table.model_dump(exclude_none=True))
 
     return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
+
+
+def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, Any]:
+    """With the first of the rows, as many as fit into so many characters; the others are another page."""
+    sizes = itertools.accumulate(len(json.dumps(row)) + 2 for row in found["rows"])
+    kept = sum(size <= room - _OTHER_TEXT for size in sizes)
+    if kept == len(found["rows"]):
+        return found
+    return {**found, "rows": found["rows"][:kept], "next_cursor": str(int(cursor or 0) + kept)}
 
 
 def _table(found: dict[str, Any], view: str) -> Table:
