@@ -26,7 +26,9 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SECTION = README.partition("## For agents\n")[2].partition("\n## ")[0]
 SERVER = json.loads((ROOT / "server.json").read_text(encoding="utf-8"))
-TOOLS = {"lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run"}
+TOOLS = {
+    "lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job",
+}  # fmt: skip
 CLONE, SCRIPTS = "/path/to/irsim", "/path/to/irsim/.venv/bin"
 
 
