@@ -106,9 +106,8 @@ async def test_command_line_and_server_say_the_same(workspace: Path, monkeypatch
     same = {"outcome", "reason", "summary", "seed", "steps", "sim_time", "time_limit", "time_limit_from", "robots"}
     same |= {"events", "event_count", "reproduce"}
     assert {key: run[key] for key in same} == {key: rounded(said[key]) for key in same}
-    assert {key: report[key] for key in ("valid", "summary", "counts")} == {
-        key: checked[key] for key in ("valid", "summary", "counts")
-    }
+    assert {key: report[key] for key in ("valid", "counts")} == {key: checked[key] for key in ("valid", "counts")}
+    assert report["summary"].startswith(checked["summary"])  # and how many hints there are
 
 
 @pytest.mark.parametrize("era", ERAS)
