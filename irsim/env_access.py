@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from irsim.contacts import Contact, contacts_of
 from irsim.info import ObjectInfo, ObstacleInfo
+from irsim.object_list import ObjectList
 from irsim.parameters import WorldView
 from irsim.scenario.objects import ResolvedScenario
 from irsim.simulation import Simulation
@@ -38,9 +39,9 @@ class EnvAccess:
         return self._simulation
 
     @property
-    def objects(self) -> list[ObjectView]:
-        """All objects: robots, then obstacles, then those added later."""
-        return list(self._objects)
+    def objects(self) -> ObjectList:
+        """All objects: robots, then obstacles, then those added later; appending and removing changes the world."""
+        return ObjectList(self, self._objects)  # type: ignore[arg-type]  # an Env has all of these
 
     @property
     def robot_list(self) -> list[ObjectView]:

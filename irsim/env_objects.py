@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -112,7 +113,7 @@ class EnvObjects(EnvDrawing):
 
     def _restore_objects(self) -> None:
         """The objects of the file again, in its next scene."""
-        restore(self._simulation, self.scenario, self._originals)
+        restore(self._simulation, replace(self.scenario, world=self._simulation.scenario.world), self._originals)
         self._objects[:] = self._originals
         self._exchanged = False
         self._count_ids()

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from irsim.python_behaviors import forget_behavior
 from irsim.python_drives import attach_python_drives
 from irsim.python_parts import attach_python
 from irsim.simulation import Simulation
@@ -18,7 +19,7 @@ from irsim.views import ObjectView, set_views, views
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 
-__all__ = ["admit", "alone", "dismiss", "restore"]
+__all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore"]
 
 
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
@@ -49,6 +50,32 @@ def dismiss(simulation: Simulation, leaving: Iterable[ObjectView]) -> None:
         own.exchange(own.scenario, [(simulation, view.row)])
         _keep(view, own)
     _exchange(simulation, staying, _with_leaders(simulation.scenario.objects, [view.record for view in staying]))
+
+
+def amend(view: ObjectView, record: ObjectRecord) -> None:
+    """Give an object another record, of the same id; it and all others go on where they are.
+
+    Raises:
+        AttributeError: It is one of a batch, whose worlds share their records.
+    """
+    simulation = view._simulation
+    if simulation.copies != 1:
+        raise AttributeError(f"{view.name!r} is an object of a batch: set it in the scenario, or for all with `make`")
+    if record == view.record:
+        return
+    if record.behavior is not view.record.behavior:
+        forget_behavior(simulation, view)
+    shown = views(simulation)
+    _exchange(simulation, shown, [record if other is view else other.record for other in shown])
+
+
+def amend_world(simulation: Simulation, **changed: Any) -> None:
+    """Go on with other values in the section ``world`` of the scenario."""
+    world = simulation.scenario.world.model_copy(update=changed)
+    shown = views(simulation)
+    origins = [(simulation, view.row) for view in shown]
+    simulation.exchange(replace(simulation.scenario, world=world), origins)
+    _settle(simulation, shown)
 
 
 def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Sequence[ObjectView]) -> None:

@@ -77,12 +77,12 @@ class ObjectAvoidance:
     def rvo_state(self) -> list[float]:
         """[x, y, vx, vy, radius + 0.1, wanted vx, wanted vy, theta], world frame."""
         x, y, theta = self._simulation.pose[self.row].tolist()
-        return [x, y, *self._velocity(), self.radius_extend, *self.desired_omni_vel[:, 0].tolist(), theta]
+        return [x, y, *self._world_velocity(), self.radius_extend, *self.desired_omni_vel[:, 0].tolist(), theta]
 
     @property
     def rvo_neighbor_state(self) -> list[float]:
         """[x, y, vx, vy, radius + 0.1] of the centre of its area, world frame."""
-        return [*self.centroid[:, 0].tolist(), *self._velocity(), self.radius_extend]
+        return [*self.centroid[:, 0].tolist(), *self._world_velocity(), self.radius_extend]
 
     @property
     def rvo_neighbors(self) -> list[list[float]]:
@@ -117,6 +117,6 @@ class ObjectAvoidance:
             control = (control[0], min(max(control[1], -self.record.vel_max[1]), self.record.vel_max[1]), 0.0)
         return column(control[: self.vel_dim])
 
-    def _velocity(self) -> list[float]:
+    def _world_velocity(self) -> list[float]:
         velocity: list[float] = self.velocity_xy[:, 0].tolist()
         return velocity

@@ -128,8 +128,8 @@ class ObjectFactory:
         made = views(Simulation(scenario, [0], history=True))[-1:]
         for view in made:
             env = last_used()
-            view.id = 0 if env is None else next(env.env_param.id_iter)
-            view.name = f"obstacle_{view.id}"
+            number = 0 if env is None else next(env.env_param.id_iter)
+            view.__dict__.update(id=number, name=f"obstacle_{number}")
         return made
 
     def _extent(self) -> dict[str, Any]:

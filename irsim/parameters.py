@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import platform
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from irsim.body import column
 from irsim.current import last_used
 from irsim.map_view import grid_values
+from irsim.settings import refuse
 from irsim.world.build import COLLISION_MODES
 from irsim.world.fog import FogMap, fog_resolution
 
@@ -26,25 +28,105 @@ if TYPE_CHECKING:
 __all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
 
 _OCCUPIED = 50
+_CONTROL_MODES = ("auto", "keyboard")
+_OF_CONTACT = ("gravity", "friction", "restitution", "drive_tau")
+_OF_SCENARIO = ("name", "width", "height", "offset", "plot_parse", "depth")
+_IN_SCENARIO = "set it in the section `world` of the scenario"
+
+
+def checked_step_mode(mode: str) -> str:
+    """``internal`` or ``external``, of any case.
+
+    Raises:
+        ValueError: Neither.
+    """
+    chosen = str(mode).strip().lower()
+    if chosen not in ("internal", "external"):
+        raise ValueError(f"unknown step_mode {mode!r}: choose internal or external")
+    return chosen
+
+
+def set_step_time(simulation: Simulation, seconds: float) -> None:
+    """Another period of a step.
+
+    Raises:
+        ValueError: Not positive.
+        AttributeError: Steps have been executed: the clock counts them.
+    """
+    value = float(seconds)
+    if value == simulation.scenario.world.step_time:
+        return
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"the period of a step is a positive number of seconds, not {seconds!r}")
+    if simulation.count.any():
+        refuse("the world", "step_time", "the clock counts steps of one length; `reset()` first, or " + _IN_SCENARIO)
+    from irsim.exchange import amend_world
+
+    amend_world(simulation, step_time=value)
 
 
 class WorldParam:
-    """Time and modes of one environment; ``control_mode`` and ``collision_mode`` may be changed at run time."""
+    """Time and modes of one environment.
+
+    ``control_mode``, ``collision_mode``, ``step_mode`` and ``count`` may be changed at run time, ``step_time`` before
+    the first step of an episode; the rest is what the scenario says.
+    """
+
+    gravity: float
+    friction: float
+    restitution: float
+    drive_tau: float
 
     def __init__(self, simulation: Simulation, step_mode: str) -> None:
-        self._simulation = simulation
         world = simulation.scenario.world
-        self.step_mode = step_mode
-        self.control_mode: str = world.control_mode
-        self.step_time: float = world.step_time
+        self._simulation = simulation
+        self._step_mode = checked_step_mode(step_mode)
+        self._control_mode: str = world.control_mode
         self._collision_mode: str = world.collision_mode
-        self.gravity, self.friction = world.gravity, world.friction
-        self.restitution, self.drive_tau = world.restitution, world.drive_tau
+        self.__dict__.update({name: getattr(world, name) for name in _OF_CONTACT})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in (*_OF_CONTACT, "time"):
+            refuse("the world", name, _IN_SCENARIO)
+        object.__setattr__(self, name, value)
+
+    @property
+    def step_mode(self) -> str:
+        """``internal`` (irsim moves the objects) or ``external`` (the caller does)."""
+        return self._step_mode
+
+    @step_mode.setter
+    def step_mode(self, mode: str) -> None:
+        self._step_mode = checked_step_mode(mode)
+
+    @property
+    def control_mode(self) -> str:
+        """``auto`` or ``keyboard``."""
+        return self._control_mode
+
+    @control_mode.setter
+    def control_mode(self, mode: str) -> None:
+        if mode not in _CONTROL_MODES:
+            raise ValueError(f"unknown control mode {mode!r}: choose {' or '.join(_CONTROL_MODES)}")
+        self._control_mode = mode
+
+    @property
+    def step_time(self) -> float:
+        """Period of a step [s]."""
+        return float(self._simulation.scenario.world.step_time)
+
+    @step_time.setter
+    def step_time(self, seconds: float) -> None:
+        set_step_time(self._simulation, seconds)
 
     @property
     def count(self) -> int:
-        """Executed steps."""
+        """Executed steps; the clock is this times ``step_time``."""
         return int(self._simulation.count[0])
+
+    @count.setter
+    def count(self, steps: int) -> None:
+        self._simulation.count[0] = int(steps)
 
     @property
     def time(self) -> float:
@@ -65,12 +147,22 @@ class WorldParam:
 
 
 class EnvParam:
-    """What belongs to the environment as a whole."""
+    """What belongs to the environment as a whole.
 
-    def __init__(self, objects: list[ObjectView], logger: Logger) -> None:
-        self.objects, self.logger = objects, logger
+    Args:
+        objects: Gives its objects.
+        logger: Its logger.
+    """
+
+    def __init__(self, objects: Callable[[], list[ObjectView]], logger: Logger) -> None:
+        self._objects, self.logger = objects, logger
         self.platform_name = platform.system()
-        self.id_iter: Iterator[int] = count(len(objects))
+        self.id_iter: Iterator[int] = count(len(objects()))
+
+    @property
+    def objects(self) -> list[ObjectView]:
+        """``env.objects``."""
+        return self._objects()
 
 
 class PathParam:
@@ -84,23 +176,65 @@ class PathParam:
 
 
 class WorldView:
-    """The world of one environment: extent, time, sampling."""
+    """The world of one environment: extent, time, sampling.
+
+    ``count`` and ``sample_time`` may be set, ``step_time`` before the first step; the rest is what the scenario says.
+    """
+
+    name: str
+    width: float
+    height: float
+    offset: list[float]
+    plot_parse: Any
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
         world = simulation.scenario.world
-        self.name = simulation.scenario.name
-        self.width, self.height = world.width, world.height
-        self.offset: list[float] = [float(v) for v in world.offset]
-        self.step_time: float = world.step_time
-        self.sample_time: float = world.sample_time if world.sample_time is not None else world.step_time
-        self.steps_per_sample = max(1, int(round(self.sample_time / self.step_time, 9)))
-        self.plot_parse = world.plot
+        self._simulation = simulation
+        self.__dict__.update(
+            name=simulation.scenario.name,
+            width=world.width,
+            height=world.height,
+            offset=[float(v) for v in world.offset],
+            plot_parse=world.plot,
+        )
+        self._sample_time: float | None = world.sample_time
         self._logger: Logger | None = None
         self._fog: FogMap | None = None
         if world.fog_map:
             resolution = fog_resolution(simulation.scenario)
             self._fog = FogMap(world.width, world.height, resolution, self.offset)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        kind = getattr(type(self), name, None)
+        if name in _OF_SCENARIO or (isinstance(kind, property) and kind.fset is None):
+            refuse("the world", name, _IN_SCENARIO)
+        object.__setattr__(self, name, value)
+
+    @property
+    def step_time(self) -> float:
+        """Period of a step [s]."""
+        return float(self._simulation.scenario.world.step_time)
+
+    @step_time.setter
+    def step_time(self, seconds: float) -> None:
+        set_step_time(self._simulation, seconds)
+
+    @property
+    def sample_time(self) -> float:
+        """Period of the drawn frames [s]; that of the steps unless it is given."""
+        return self.step_time if self._sample_time is None else self._sample_time
+
+    @sample_time.setter
+    def sample_time(self, seconds: float) -> None:
+        value = float(seconds)
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"the period of the frames is a positive number of seconds, not {seconds!r}")
+        self._sample_time = value
+
+    @property
+    def steps_per_sample(self) -> int:
+        """Steps from one drawn frame to the next."""
+        return max(1, int(round(self.sample_time / self.step_time, 9)))
 
     @property
     def x_range(self) -> list[float]:
@@ -114,8 +248,12 @@ class WorldView:
 
     @property
     def count(self) -> int:
-        """Executed steps."""
+        """Executed steps; the clock is this times ``step_time``."""
         return int(self._simulation.count[0])
+
+    @count.setter
+    def count(self, steps: int) -> None:
+        self._simulation.count[0] = int(steps)
 
     @property
     def time(self) -> float:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["PythonBehaviors", "attach_python_behaviors"]
+__all__ = ["PythonBehaviors", "attach_python_behaviors", "forget_behavior"]
 
 
 class PythonBehaviors:
@@ -81,6 +81,10 @@ class PythonBehaviors:
                 if maker is not None and (anew or key not in self._instances):
                     chosen = [objects[index] for index in group]
                     self._construct(key, maker, chosen, _written(leader.record.group_behavior))
+
+    def forget(self, view: ObjectView) -> None:
+        """Drop what was constructed for an object."""
+        self._instances.pop((view.world, view.id, "behavior"), None)
 
     def _construct(self, key: tuple[int, int, str], maker: Any, given: Any, options: dict[str, Any]) -> None:
         try:
@@ -206,3 +210,10 @@ def attach_python_behaviors(simulation: Simulation, *, anew: bool = False) -> No
         simulation.decisions.append(part)
         simulation.scene_drawn.append(lambda worlds: part.prepare(worlds, anew=True))
     part.prepare(range(simulation.copies), anew=anew)
+
+
+def forget_behavior(simulation: Simulation, view: ObjectView) -> None:
+    """An object gets another behavior: where that is a class, it is constructed anew when user code is attached."""
+    for part in simulation.decisions:
+        if isinstance(part, PythonBehaviors):
+            part.forget(view)

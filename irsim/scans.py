@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.body import column
+from irsim.settings import refuse, sensor_options
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -24,8 +26,33 @@ _HIGHLIGHT = "#56B4E9"
 """Colour of beams picked out by ``set_laser_color``."""
 
 
+_FIXED = frozenset(
+    {
+        "parent",
+        "obj_id",
+        "sensor_type",
+        "angle_list",
+        "angle_min",
+        "angle_max",
+        "angle_inc",
+        "time_inc",
+        "range_data",
+        "valid",
+        "hits",
+        "velocity",
+        "lidar_origin",
+        "cast_angles",
+        "state",
+        "radial_velocity",
+    }
+)
+_HINT = "it follows from `number`, `angle_range` and the other options, and from the scan"
+
+
 class Lidar2D:
     """A 2-D lidar of one object.
+
+    The options of the scenario may be set at run time: ``range_max``, ``number``, ``noise``, ….
 
     Args:
         parent: The object that carries it.
@@ -42,26 +69,69 @@ class Lidar2D:
         colors: {beam: (colour, alpha)} of beams drawn differently, see :meth:`set_laser_color`.
     """
 
+    parent: ObjectView
+    obj_id: int
+    sensor_type: str
+    number: int
+    range_min: float
+    range_max: float
+    angle_range: float
+    scan_time: float
+    noise: bool
+    std: float
+    angle_std: float
+    offset: Floats
+    has_velocity: bool
+    angle_list: Floats
+    angle_min: float
+    angle_max: float
+    angle_inc: float
+    time_inc: float
+    _settings: ClassVar[tuple[str, ...]] = (
+        "number",
+        "range_min",
+        "range_max",
+        "angle_range",
+        "scan_time",
+        "noise",
+        "std",
+        "angle_std",
+        "offset",
+        "has_velocity",
+    )
+
     def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
-        self.parent = parent
-        self.obj_id = parent.id
         self.options = options
-        self.sensor_type = str(options.name)
-        self.range_min = float(options.range_min)
-        self.range_max = float(options.range_max)
-        self.angle_range = float(options.angle_range)
-        self.scan_time = float(options.scan_time)
-        self.noise, self.std, self.angle_std = options.noise, options.std, options.angle_std
-        self.offset = column(options.offset)
+        self.__dict__.update(parent=parent, obj_id=parent.id, sensor_type=str(options.name))
         self.alpha, self.color = options.drawn_alpha, options.drawn_color
-        self.attach(simulation, index)
-        self.has_velocity = bool(options.has_velocity) and len(self._velocities) == 2
-        self.angle_list: Floats = simulation.state.beam_angles[self._beams].copy()
-        self.angle_min, self.angle_max = float(self.angle_list[0]), float(self.angle_list[-1])
-        self.angle_inc = self.angle_range / (self.number - 1) if self.number > 1 else 0.0
-        self.time_inc = 0.0
         self.colors: dict[int, tuple[str, float]] = {}
         self._drawn: Any = None
+        self.attach(simulation, index)
+
+    def attach(self, simulation: Simulation, index: int) -> None:
+        """Read the ``index``-th sensor of this simulation from now on."""
+        self._simulation, self._index = simulation, index
+        _, first, number = simulation.world.scans()[index]
+        first += self.parent.world * simulation.world.beams_per_world
+        self._beams = slice(first, first + number)
+        self._ranges = simulation.ranges[self._beams]
+        self._hits = simulation.hits[self._beams]
+        self._valid = simulation.valid[self._beams]
+        first, rows = simulation.world.velocity_slices()[index]
+        first += self.parent.world * simulation.world.velocities_per_world
+        self._velocities = simulation.state.velocities[first : first + rows * number].reshape(rows, number)
+        self._describe(number)
+
+    def _describe(self, number: int) -> None:
+        """Show the options, and the beams they mean."""
+        options, own = self.options, self.__dict__
+        angles: Floats = self._simulation.state.beam_angles[self._beams].copy()
+        own.update({name: getattr(options, name) for name in self._settings}, number=number, angle_list=angles)
+        own["offset"] = column(options.offset)
+        own["has_velocity"] = bool(options.has_velocity) and len(self._velocities) == 2
+        own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
+        own["angle_inc"] = self.angle_range / (number - 1) if number > 1 else 0.0
+        own["time_inc"] = 0.0
         self._fixed = {
             "angle_min": self.angle_min,
             "angle_max": self.angle_max,
@@ -74,18 +144,24 @@ class Lidar2D:
             "intensities": None,
         }
 
-    def attach(self, simulation: Simulation, index: int) -> None:
-        """Read the ``index``-th sensor of this simulation from now on."""
-        self._simulation, self._index = simulation, index
-        _, first, self.number = simulation.world.scans()[index]
-        first += self.parent.world * simulation.world.beams_per_world
-        self._beams = slice(first, first + self.number)
-        self._ranges = simulation.ranges[self._beams]
-        self._hits = simulation.hits[self._beams]
-        self._valid = simulation.valid[self._beams]
-        first, rows = simulation.world.velocity_slices()[index]
-        first += self.parent.world * simulation.world.velocities_per_world
-        self._velocities = simulation.state.velocities[first : first + rows * self.number].reshape(rows, self.number)
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self._settings:
+            self._change(name, value)
+        elif name in _FIXED:
+            refuse(f"the {self.sensor_type} of {self.parent.name!r}", name, _HINT)
+        else:
+            object.__setattr__(self, name, value)
+
+    def _change(self, name: str, value: Any) -> None:
+        """Another value of an option, for the next scan and all after it; the present scan is taken anew."""
+        parent, before = self.parent, self.options
+        self.options = sensor_options(before, f"the {self.sensor_type} of {parent.name!r}", **{name: value})
+        sensors = [self.options if options is before else options for options in parent.record.sensors]
+        try:
+            parent.amend(replace(parent.record, sensors=sensors))
+        except Exception:
+            self.options = before
+            raise
 
     @property
     def range_data(self) -> Floats:
@@ -231,10 +307,12 @@ class FMCWLidar2D(Lidar2D):
         drawing: Drawing options by name; may be changed.
     """
 
+    motion_compensate: bool
+    velocity_noise_std: float
+    _settings: ClassVar[tuple[str, ...]] = (*Lidar2D._settings, "motion_compensate", "velocity_noise_std")
+
     def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
         super().__init__(simulation, parent, options, index)
-        self.motion_compensate = bool(options.motion_compensate)
-        self.velocity_noise_std = float(options.velocity_noise_std)
         self.drawing: dict[str, Any] = options.drawing()
 
     def __getattr__(self, name: str) -> Any:
@@ -248,7 +326,7 @@ class FMCWLidar2D(Lidar2D):
         if name in drawing:
             drawing[name] = value
         else:
-            object.__setattr__(self, name, value)
+            super().__setattr__(name, value)
 
     @property
     def radial_velocity(self) -> Floats:

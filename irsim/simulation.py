@@ -119,6 +119,7 @@ class Simulation:
         self.robots = np.array([record.role == "robot" for record in records], dtype=bool)
         self.ids = np.array([*(record.id for record in records), -1], dtype=np.int32)
         self.names.update((record.id, record.name) for record in records)
+        self.passable -= {record.id for record in records}
         self.passable |= {record.id for record in records if record.unobstructed}
 
     def exchange(self, scenario: ResolvedScenario, origins: Sequence[tuple[Simulation, int]]) -> None:

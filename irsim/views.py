@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from irsim.object_drawing import ObjectDrawing
 from irsim.object_status import ObjectStatus
 from irsim.scans import Lidar2D
 from irsim.sensing import attach_sensors, sensors_of
+from irsim.settings import HINTS, SETTINGS, BehaviorKeys, FixedList, behavior_keys, change, refuse
 
 if TYPE_CHECKING:
     from irsim.kinematics._handler import KinematicsHandler
@@ -46,35 +47,75 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         surroundings: The objects of the environment an object was made for, as long as it is not added.
     """
 
+    record: ObjectRecord
+    id: int
+    name: str
+    role: Literal["robot", "obstacle"]
+    group: int
+    group_name: str
+    color: Any
+    description: str | None
+    static: bool
+    unobstructed: bool
+    goal_threshold: float
+    arrive_mode: Literal["position", "state"]
+    fov: float | None
+    fov_radius: float | None
+    fov_occlusion: bool
+    wander: bool
+    loop: bool
+    tags: tuple[str, ...]
+    state_dim: int
+    vel_dim: int
+    state_shape: tuple[int, int]
+    vel_shape: tuple[int, int]
+    wheelbase: float | None
+    sensors: list[Any]
+    lidar: Lidar2D | None
+
     def __init__(self, simulation: Simulation, index: int, world: int = 0) -> None:
         record = simulation.scenario.objects[index]
-        self.record: ObjectRecord = record
-        self.id = record.id
-        self.name, self.role, self.group, self.group_name = record.name, record.role, record.group, record.group_name
-        self.color, self.description = record.color, record.description
-        self.static, self.unobstructed = record.static, record.unobstructed
-        self.goal_threshold, self.arrive_mode = record.goal_threshold, record.arrive_mode
-        self.fov, self.fov_radius, self.fov_occlusion = record.fov, record.fov_radius, record.fov_occlusion
-        self.wander, self.loop = record.wander, record.loop
-        self.state_dim, self.vel_dim = record.state_dim, record.vel_dim
-        self.state_shape, self.vel_shape = (record.state_dim, 1), (record.vel_dim, 1)
-        self.wheelbase, self.tags = record.wheelbase, record.tags
+        self.describe(record)
         self.surroundings: Sequence[ObjectView] | None = None
         self.text: str | None = None
         self.goal_text: str | None = None
         self._plain = record.state_dim == 3
-        self.sensors: list[Any] = []
+        own = self.__dict__
+        own["sensors"] = []
         self.attach(simulation, index, world)
         self.contact = Contact2D(self, _contact_options(record.sensors))
-        self.sensors = sensors_of(simulation, self)
-        self.lidar: Lidar2D | None = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
+        own["sensors"] = FixedList(sensors_of(simulation, self), f"`sensors` of {self.name!r}", HINTS["sensors"])
+        own["lidar"] = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
+
+    def describe(self, record: ObjectRecord) -> None:
+        """Show this record from now on; what scripts may set of it goes through :mod:`irsim.settings`."""
+        self.record = record
+        own = self.__dict__
+        for name in _SHOWN:
+            own[name] = getattr(record, name)
+        own["state_shape"], own["vel_shape"] = (record.state_dim, 1), (record.vel_dim, 1)
+        own["wheelbase"] = getattr(record.shape, "wheelbase", None)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in SETTINGS:
+            change(self, name, value)
+        elif name in _FIXED:
+            refuse(repr(self.name), name, HINTS.get(name, "it can only be read"))
+        else:
+            object.__setattr__(self, name, value)
+
+    def amend(self, record: ObjectRecord) -> None:
+        """Go on with another record; see :func:`irsim.exchange.amend`."""
+        from irsim.exchange import amend
+
+        amend(self, record)
 
     def renumber(self, number: int) -> None:
         """Another id, for an object that is alone; an automatic name follows."""
         record = self.record
         name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
         scenario = replace(self._simulation.scenario, objects=[replace(record, id=number, name=name)])
-        self.id, self.name = number, name
+        self.__dict__.update(id=number, name=name)
         self._simulation.exchange(scenario, [(self._simulation, 0)])
         set_views(self._simulation, [self])
 
@@ -83,7 +124,7 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         self._simulation, self.index, self.world = simulation, index, world
         self.row = world * simulation.objects + index
         self._pose = simulation.pose[self.row]
-        self._state = simulation.pose[self.row, :, None]
+        self._pose_column = simulation.pose[self.row, :, None]
         if self.sensors:
             attach_sensors(simulation, self)
         self._take_part()
@@ -121,9 +162,8 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         from irsim.lib.behavior.behavior import Behavior
 
         if "_behavior" not in self.__dict__:
-            options = self.record.behavior
-            keys = {} if options is None else options.model_dump(exclude_unset=True)
-            self.__dict__["_behavior"] = Behavior(self.info, keys)
+            made = self.__dict__["_behavior"] = Behavior(self.info, self.beh_config)
+            made.follow(self.beh_config)
         return self.__dict__["_behavior"]
 
     # state -----------------------------------------------------------------------------------------------------------
@@ -131,12 +171,39 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
     def state(self) -> Floats:
         """(3 or more, 1) x, y [m], heading [rad], then extra rows (steering angle of Ackermann drives)."""
         if self._plain:
-            state = self._state.copy()
+            state = self._pose_column.copy()
         else:
             extra = self._simulation.extra[self.row, : self.state_dim - 3]
             state = np.concatenate([self._pose, extra])[:, None]
         state.setflags(write=False)
         return state
+
+    @property
+    def _state(self) -> Floats:
+        """The state; setting it is ``set_state``."""
+        return self.state
+
+    @_state.setter
+    def _state(self, state: Any) -> None:
+        self.set_state(state)
+
+    @property
+    def _velocity(self) -> Floats:
+        """The control; setting it is ``set_velocity``."""
+        return self.velocity
+
+    @_velocity.setter
+    def _velocity(self, velocity: Any) -> None:
+        self.set_velocity(velocity)
+
+    @property
+    def _goal(self) -> list[Floats]:
+        """The goals; setting them is ``set_goal``."""
+        return self.goals
+
+    @_goal.setter
+    def _goal(self, goal: Any) -> None:
+        self.set_goal(goal)
 
     @property
     def init_state(self) -> Floats:
@@ -190,7 +257,8 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
     @property
     def trajectory(self) -> list[Floats]:
         """States after each executed step, (state_dim, 1) each, without the initial one."""
-        return [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
+        states = [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
+        return FixedList(states, f"`trajectory` of {self.name!r}", HINTS["trajectory"])
 
     def set_state(self, state: Any = None, init: bool = False) -> None:
         """Put the object somewhere else.
@@ -272,11 +340,30 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
 
     @property
     def stop_flag(self) -> bool:
-        """Whether the collision mode holds the object."""
+        """Whether the collision mode holds the object; may be set, and is evaluated anew in each step, as are these."""
         return bool(self._simulation.stopped[self.row])
 
-    arrive_flag = arrive
-    collision_flag = collision
+    @stop_flag.setter
+    def stop_flag(self, value: bool) -> None:
+        self._simulation.stopped[self.row] = bool(value)
+
+    @property
+    def arrive_flag(self) -> bool:
+        """The same as ``arrive``; may be set."""
+        return self.arrive
+
+    @arrive_flag.setter
+    def arrive_flag(self, value: bool) -> None:
+        self._simulation.arrived[self.row] = bool(value)
+
+    @property
+    def collision_flag(self) -> bool:
+        """The same as ``collision``; may be set."""
+        return self.collision
+
+    @collision_flag.setter
+    def collision_flag(self, value: bool) -> None:
+        self._simulation.collided[self.row] = bool(value)
 
     @property
     def collision_obj(self) -> list[ObjectView]:
@@ -339,10 +426,16 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         return f"G-{self.abbr}"
 
     @property
-    def beh_config(self) -> dict[str, Any]:
-        """The behavior's keys as written, or those of the group behavior."""
-        options = self.record.behavior or self.record.group_behavior
-        return {} if options is None else options.model_dump(exclude_unset=True)
+    def beh_config(self) -> BehaviorKeys:
+        """The behavior's keys as written, or those of the group behavior; what is set of its own holds at once."""
+        if "_keys" not in self.__dict__:
+            self.__dict__["_keys"] = behavior_keys(self)
+        keys: BehaviorKeys = self.__dict__["_keys"]
+        return keys
+
+    @beh_config.setter
+    def beh_config(self, keys: Mapping[str, Any] | None) -> None:
+        self.beh_config.assign(keys)
 
     @property
     def info(self) -> ObjectInfo:
@@ -428,9 +521,19 @@ def _view_class(record: ObjectRecord) -> type[ObjectView]:
 def set_views(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
     """Let these views show the rows of a simulation of one world, in this order."""
     for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
-        view.record = record
+        view.describe(record)
         view.attach(simulation, index)
     simulation.__dict__["_views"] = {0: list(shown)}
+
+
+def _may_not_be_set(name: str) -> bool:
+    kind = getattr(ObjectView, name, None)
+    return not hasattr(ObjectView, name) or (isinstance(kind, property) and kind.fset is None)
+
+
+_SHOWN = ("id", "name", "state_dim", "vel_dim", *(name for name in SETTINGS if not hasattr(ObjectView, name)))
+"""Fields of the record that are attributes of the object."""
+_FIXED = frozenset(name for name in {*HINTS, *dir(ObjectView)} - SETTINGS.keys() if _may_not_be_set(name))
 
 
 def _contact_options(sensors: Sequence[Any]) -> Any:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+import math
+from typing import Any, ClassVar, Literal
 
 from pydantic import ConfigDict
 
@@ -10,7 +11,7 @@ from irsim._options import Options
 from irsim.units import Bool
 from irsim.vectors import Pose
 
-__all__ = ["BehaviorOptions", "CustomOptions"]
+__all__ = ["BehaviorOptions", "CustomOptions", "behavior_fields"]
 
 
 class BehaviorOptions(Options):
@@ -37,3 +38,22 @@ class CustomOptions(BehaviorOptions):
     """A behavior registered by user code: its own keys reach the registered function as they are."""
 
     model_config = ConfigDict(extra="allow")
+
+
+def behavior_fields(options: Any, bounds: tuple[float, float, float, float]) -> dict[str, Any]:
+    """What an object takes over from the options of its behavior, or of none.
+
+    Args:
+        options: The options, or None.
+        bounds: x0, y0, x1, y1 of the world [m]: where wanderers go by default.
+    """
+    x0, y0, x1, y1 = bounds
+    low = getattr(options, "range_low", None) or [x0, y0]
+    high = getattr(options, "range_high", None) or [x1, y1]
+    return {
+        "wander": getattr(options, "wander", False),
+        "loop": getattr(options, "loop", False),
+        "range_low": [*low, -math.pi][:3],
+        "range_high": [*high, math.pi][:3],
+        "target_roles": getattr(options, "target_roles", "all"),
+    }

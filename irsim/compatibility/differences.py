@@ -113,6 +113,13 @@ DIFFERENCES: dict[str, Difference] = {
         "rounding",
         "things should not stay inside each other",
     ),
+    "D21": Difference(
+        "attributes can be written, but some writes are only kept (`lidar.number`, `info`), or half of them "
+        "(`step_time`: the clock goes on as before)",
+        "a write takes effect at once, or it is an error that names what to call; `world_param.step_time` may be set "
+        "before the first step, `collision_mode` and others at any time",
+        "nobody should learn from wrong results that a line did nothing",
+    ),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and is driven by its group behavior",
         "the same, with a warning; the map is in no group",
@@ -212,6 +219,8 @@ NAME_DIFFERENCES: dict[str, str] = {
     "EnvBase.set_random_seed": "D10",
     "EnvBase.get_robot_state": "D14",
     "EnvBase.get_map": "D15",
+    "EnvBase.objects": "D21",
+    "ObjectBase.beh_config": "D21",
     "ObjectBase.state": "D14",
     "ObjectBase.velocity": "D14",
     "ObjectBase.goal": "D14",

@@ -6,4 +6,4 @@ from irsim.parameters import EnvParam
 
 __all__ = ["EnvParam"]
 
-follow(__name__, "env_param", EnvParam([], Logger()))
+follow(__name__, "env_param", EnvParam(list, Logger()))

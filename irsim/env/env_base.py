@@ -20,7 +20,7 @@ from irsim.log import LEVELS, Logger
 from irsim.observers.events import Event, read_events
 from irsim.observers.outcome import Outcome, outcome_of
 from irsim.observers.trace import Rollout, record_rollout
-from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView
+from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView, checked_step_mode
 from irsim.python_parts import attach_python
 from irsim.render.palette import Palette
 from irsim.scenario.objects import ResolvedScenario
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from irsim.object_factory import EnvConfig, ObjectFactory
     from irsim.runs.recorder import Recorder
+    from irsim.views import ObjectView
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -128,22 +129,22 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
             scenario, warnings = open_scenario(world_name, strict=self._strict)
             for warning in warnings:
                 self.logger.warning(_one_line(warning))
-        mode = _step_mode(self._wanted_mode if self._wanted_mode is not None else scenario.world.step_mode)
+        mode = checked_step_mode(self._wanted_mode if self._wanted_mode is not None else scenario.world.step_mode)
         chosen = self._wanted_seed if self._wanted_seed is not None else scenario.world.seed
         seed = fresh_seed() if chosen is None else check_seed(chosen)
         simulation = Simulation(scenario, [seed], history=True)
         simulation.report = self.logger.error_once
         simulation.owner = ref(self)
         attach_python(simulation)
-        self.scenario, self.step_mode, self.seed, self._simulation = scenario, mode, seed, simulation
+        self.scenario, self._seed, self._simulation = scenario, seed, simulation
         self._originals = views(simulation)
         self._objects = list(self._originals)
         self._exchanged = False
         self._world = self._view_of_world(simulation)
         self.world_param = WorldParam(simulation, mode)
-        self.env_param = EnvParam(self._objects, self.logger)
+        here = ref(self)
+        self.env_param = EnvParam(lambda: _objects_of(here()), self.logger)
         self._count_ids()
-        self._external = mode == "external"
         self._events_seen = self._events_told = 0
         self._label: str | None = scenario.world.status
 
@@ -179,7 +180,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         if (self.pause_flag or self.quit_flag or self.debug_flag or self._ended) and self._held():
             return
         simulation = self._simulation
-        if self._external:
+        if self.world_param.step_mode == "external":
             if action is not None:
                 raise ValueError("step_mode 'external' takes no actions: move the objects with set_state")
             simulation.step_external()
@@ -220,7 +221,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
             steps: Periods at most.
             until_done: End as soon as every robot has arrived or stopped.
         """
-        if self._external:
+        if self.world_param.step_mode == "external":
             raise ValueError("rollout needs step_mode 'internal'")
         if self._ended:
             raise RuntimeError("the environment has ended: make a new one to go on")
@@ -239,7 +240,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         Returns:
             Periods executed.
         """
-        if self._external or self._ended:
+        if self.world_param.step_mode == "external" or self._ended:
             raise RuntimeError("advance needs an environment in step_mode 'internal' that has not ended")
         done = (recorder or self._simulation).advance(steps, until_done=until_done)
         self._after_step()
@@ -359,7 +360,21 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         """
         return outcome_of(self._simulation)
 
+    @property
+    def step_mode(self) -> str:
+        """``internal`` (irsim moves the objects) or ``external`` (the caller does); may be set."""
+        return self.world_param.step_mode
+
+    @step_mode.setter
+    def step_mode(self, mode: str) -> None:
+        self.world_param.step_mode = mode
+
     # seeds -----------------------------------------------------------------------------------------------------------
+    @property
+    def seed(self) -> int:
+        """The seed of the present scenes; another one by ``set_random_seed``."""
+        return self._seed
+
     def set_random_seed(self, seed: int | None = None, reload: bool = False) -> None:
         """Change the seed; the next ``reset`` starts again from its first scene.
 
@@ -367,7 +382,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
             seed: 0 to 2**64 - 1; None draws a fresh one.
             reload: Also read the scenario again and begin it with this seed.
         """
-        self.seed = fresh_seed() if seed is None else check_seed(seed)
+        self._seed = fresh_seed() if seed is None else check_seed(seed)
         self._simulation.reseed([self.seed])
         self._wanted_seed = self.seed
         if reload:
@@ -404,11 +419,8 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
 EnvBase = Env
 
 
-def _step_mode(mode: str) -> str:
-    chosen = str(mode).strip().lower()
-    if chosen not in ("internal", "external"):
-        raise ValueError(f"unknown step_mode {mode!r}: choose internal or external")
-    return chosen
+def _objects_of(env: Env | None) -> list[ObjectView]:
+    return [] if env is None else env.objects
 
 
 def _one_line(finding: Diagnostic) -> str:

@@ -19,10 +19,11 @@ _DEPTH = 10.0
 class World3D(WorldView):
     """The world with an extent along z."""
 
+    depth: float
+
     def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
-        self.depth = float(simulation.scenario.world.depth or _DEPTH)
-        self.offset = [*self.offset[:2], 0.0]
+        self.__dict__.update(depth=float(simulation.scenario.world.depth or _DEPTH), offset=[*self.offset[:2], 0.0])
 
     @property
     def z_range(self) -> list[float]:

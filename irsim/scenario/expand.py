@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
+from irsim.behaviors._options import behavior_fields
 from irsim.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
 from irsim.diagnostics import Path
 from irsim.kinematics._options import KinematicsOptions
@@ -188,7 +189,6 @@ class _Maker:
         random = self._is_random()
         state = placed[0] if placed is not None else self.world.center if random else value["state"]
         options = value["behavior"] if value["behavior"] is not None else value["group_behavior"]
-        low, high = self._wander_box(options)
         mass = value["mass"]
         angles = value["angle_range"] or [-math.pi, math.pi]
         fov, fov_radius = _view(entry, value["sensors"] or [])
@@ -217,11 +217,7 @@ class _Maker:
             unobstructed=entry.unobstructed,
             behavior=value["behavior"],
             group_behavior=value["group_behavior"],
-            wander=getattr(options, "wander", False),
-            loop=getattr(options, "loop", False),
-            range_low=low,
-            range_high=high,
-            target_roles=getattr(options, "target_roles", "all"),
+            **behavior_fields(options, self.world.bounds),
             sensors=list(value["sensors"] or []),
             plot=value["plot"],
             color=self._color(i, value, kinematics),
@@ -252,12 +248,6 @@ class _Maker:
         if goal is None:
             return [placed[1] if placed is not None else list(DEFAULT_GOAL)]
         return [list(point) for point in goal] if isinstance(goal[0], list) else [list(goal)]
-
-    def _wander_box(self, options: Any) -> tuple[list[float], list[float]]:
-        x0, y0, x1, y1 = self.world.bounds
-        low = getattr(options, "range_low", None) or [x0, y0]
-        high = getattr(options, "range_high", None) or [x1, y1]
-        return [*low, -math.pi][:3], [*high, math.pi][:3]
 
     def _color(self, i: int, value: dict[str, Any], kinematics: KinematicsOptions | None) -> Any:
         color = value["color"]

@@ -172,7 +172,7 @@ def test_names_are_unique_and_nothing_is_added_twice(make: Callable[..., Env]) -
         env.add_object("robot")  # type: ignore[arg-type]
     env.validate_unique_names()
     other = make()
-    other.objects[0].name = "another"
+    env.delete_object("robot_0")
     with pytest.raises(ValueError, match="in a world already"):
         env.add_object(other.objects[0])
 

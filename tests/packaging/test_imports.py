@@ -47,6 +47,7 @@ LAYERS = (
     object_base
     object_drawing
     object_factory
+    object_list
     object_status
     observers
     parameters
@@ -57,6 +58,7 @@ LAYERS = (
     scans
     sensing
     sensor_factory
+    settings
     views
     """,
     """

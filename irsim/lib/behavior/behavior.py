@@ -23,9 +23,26 @@ class Behavior:
 
     def __init__(self, object_info: Any = None, behavior_dict: Mapping[str, Any] | None = None) -> None:
         self.object_info = object_info
-        self.behavior_dict = dict(behavior_dict or {})
+        self._keys: dict[str, Any] = dict(behavior_dict or {})
         self._made: Callable[..., Any] | None = None
         self._construct()
+
+    @property
+    def behavior_dict(self) -> dict[str, Any]:
+        """Its keys. Those of the ``obj_behavior`` of an object are its ``beh_config``: what is set holds at once."""
+        return self._keys
+
+    @behavior_dict.setter
+    def behavior_dict(self, keys: Mapping[str, Any] | None) -> None:
+        assign = getattr(self._keys, "assign", None)
+        if assign is not None:
+            assign(keys)
+        else:
+            self._keys = dict(keys or {})
+
+    def follow(self, keys: dict[str, Any]) -> None:
+        """Have these very keys, which somebody may change."""
+        self._keys = keys
 
     def _construct(self) -> None:
         name = self.behavior_dict.get("name")
