@@ -454,6 +454,9 @@ TOOL_CODES: dict[str, Code] = {
     "bad-parameter": Code(
         "parameter not accepted", "The value is of the wrong type or out of range; the message says what is accepted."
     ),
+    "unknown-skill": Code(
+        "unknown skill", "This package has no skill for agents of that name; irsim skills list shows them."
+    ),
     "unknown-topic": Code(
         "unknown topic", "Neither the language nor its components, templates and codes have that name."
     ),

@@ -9,6 +9,7 @@ import typer
 from irsim.cli import benchmark, demo, describe, inspect, new, render, run, schema, templates, validate
 from irsim.cli.guard import guarded
 from irsim.cli.map import map_app
+from irsim.cli.skills import skills_app
 
 __all__ = ["app"]
 
@@ -54,3 +55,4 @@ for _verb in (
 ):
     app.command()(guarded(_verb))
 app.add_typer(map_app)
+app.add_typer(skills_app)

@@ -26,10 +26,8 @@ ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SECTION = README.partition("## For agents\n")[2].partition("\n## ")[0]
 SERVER = json.loads((ROOT / "server.json").read_text(encoding="utf-8"))
-TOOLS = {
-    "lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job",
-}  # fmt: skip
-CLONE, SCRIPTS = "/path/to/irsim", "/path/to/irsim/.venv/bin"
+TOOLS = {"lookup", "validate_scenario", "render_snapshot", "run_episode", "inspect_run", "benchmark", "get_job"}
+SCRIPTS = "/path/to/irsim/.venv/bin"
 
 
 def blocks(language: str) -> list[str]:
@@ -81,13 +79,18 @@ def test_the_tools_are_named_and_the_published_form_is_called_future() -> None:
     assert SECTION.count("uvx") == 1
 
 
-def test_the_skill_is_copied_where_agents_look(tmp_path: Path) -> None:
-    [command] = [line for block in blocks("bash") for line in block.splitlines()]
-    words = command.replace(CLONE, shlex.quote(str(ROOT)))
-    subprocess.run(["bash", "-ec", words], cwd=tmp_path, check=True, timeout=60)
-    assert (tmp_path / ".agents" / "skills" / "irsim-scenario" / "SKILL.md").is_file()
-    for folder in (".claude/skills", ".agents/skills", ".cursor/skills"):
-        assert f"`{folder}`" in SECTION
+def test_the_skills_are_installed_where_hosts_look(tmp_path: Path) -> None:
+    lines = [line for block in blocks("bash") for line in block.splitlines()]
+    assert len(lines) == 4
+    for line in lines:
+        command, _, place = line.partition("  #")
+        subprocess.run([sys.executable, "-m", *shlex.split(command)], cwd=tmp_path, check=True, timeout=60)
+        assert (tmp_path / place.split(",")[0].strip() / "irsim-scenario" / "SKILL.md").is_file()
+
+
+def test_every_skill_is_named() -> None:
+    for page in (ROOT / "skills").glob("*/SKILL.md"):
+        assert f"({page.relative_to(ROOT).as_posix()})" in SECTION
 
 
 def test_the_registry_can_see_that_the_package_is_ours() -> None:

@@ -74,6 +74,7 @@ LAYERS = (
     modeline
     results
     runs
+    skills
     snapshot
     survey
     templates

@@ -117,7 +117,7 @@ def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> No
     table = BODY.partition("## Tools")[2].partition("## The loop")[0]
     rows = [cells[1] for row in table.splitlines() if row.startswith("| ") and (cells := row.strip("|").split("|"))]
     calls = [spans(cell) for cell in rows[1:] if "`" in cell]
-    assert {names[0] for names in calls if names[0] in tools} == set(tools)
+    assert {name for names in calls for name in names if name in tools} == set(tools)
     assert {"scenario_path", "scenario_yaml"} <= tools["validate_scenario"] & set(spans(table))
     assert "response_format" in tools["validate_scenario"]
     assert {"seed"} <= tools["run_episode"]
