@@ -198,7 +198,7 @@ CODES: dict[str, Code] = {
     ),
     "speed-in-centimetres": Code(
         "speed looks like centimetres",
-        "Speeds are in metres per second; 50 m/s are 180 km/h. Example: vel_max: [80, 1] for 80 cm/s; write "
+        "Speeds are in metres per second; 45 m/s are 162 km/h. Example: vel_max: [80, 1] for 80 cm/s; write "
         "vel_max: [0.8, 1].",
     ),
     "looks-like-centimetres": Code(

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 
 from irsim import templates
+from irsim.code_examples import EXAMPLES
 from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.compatibility import DIFFERENCES
 from irsim.lookup.answer import Answer, Key, TopicError
@@ -358,7 +359,13 @@ def _difference(name: str) -> Answer:
 
 def _code(name: str) -> Answer:
     code = _all_codes()[name]
-    return Answer(topic=name, kind="code", title=f"{name}: {code.title}", text=code.explanation, see=["codes"])
+    example = None
+    if name in EXAMPLES:
+        wrong, right = EXAMPLES[name]
+        example = "\n".join([f"# not  {line}" for line in wrong.splitlines()] + right.splitlines())
+    return Answer(
+        topic=name, kind="code", title=f"{name}: {code.title}", text=code.explanation, example=example, see=["codes"]
+    )
 
 
 def _all_codes() -> dict[str, Code]:

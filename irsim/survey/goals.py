@@ -18,13 +18,13 @@ _SLACK = 1e-3
 
 
 def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> set[tuple[int, int]]:
-    """Goals and waypoints of robots that stand in obstacles, in the map, or too near to them: ids and indices."""
+    """Goals and waypoints in obstacles, in the map, or too near to them: ids and indices."""
     found: set[tuple[int, int]] = set()
     if not scene.things:
         return found
     known: dict[tuple[float, float, float, float], bool] = {}
     for mover in movers:
-        if mover.record.role != "robot" or mover.record.wander:
+        if mover.record.wander:
             continue
         goals = scene.goals[mover.record.id]
         for index, goal in enumerate(goals):
@@ -45,6 +45,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 + _why(context, scene, mover, goal),
                 f"a goal with {mover.around:.3g} m of free space around it{instead}",
                 scene.seed,
+                serious=mover.record.role == "robot",
             )
             break
     return found

@@ -20,7 +20,7 @@ _MOST = 2000
 
 @dataclass(frozen=True)
 class Mover:
-    """A robot, or another object that wanders.
+    """A robot, or an obstacle with a behavior of its own.
 
     Attributes:
         record: It.
@@ -70,7 +70,7 @@ def movers_of(context: Context) -> list[Mover]:
     for record in context.written:
         if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
             continue
-        if record.role != "robot" and not record.wander:
+        if record.role != "robot" and record.behavior is None:
             continue
         if record.behavior is None and record.group_behavior is None and not _has_goal(context, record):
             continue  # a program drives it, and nobody said where

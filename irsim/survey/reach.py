@@ -18,7 +18,7 @@ __all__ = ["Leg", "check"]
 _TIGHT = 1.25
 """A gap less than this many times as wide as the robot is narrow."""
 _MOST_GAPS = 4
-"""Gaps that are measured in one scene."""
+"""Gaps that are measured among the same things."""
 _MOST_PLUGS = 2
 """Gaps that are closed, one after the other, to see whether there is another way."""
 _MOST_QUERIES = 20_000
@@ -64,7 +64,7 @@ def check(
     """
     room = room_of(scene, movers) if scene.things and blocking else None
     legs: dict[int, list[Leg]] = {}
-    gaps = queries = 0
+    kept, queries = scene.owner.kept, 0
     wanderers: set[object] = set()
     for mover in movers:
         pose = scene.pose[mover.record.id]
@@ -95,14 +95,18 @@ def check(
                 break
             least = mover.radius - room.half
             found = None
-            if room.clearance.widest(start, to, mover.reach)[0] >= least and gaps < _MOST_GAPS:
+            if room.clearance.widest(start, to, mover.reach)[0] >= least and kept.get("gaps", 0) < _MOST_GAPS:
                 measured, found = _tightest(room, scene, mover, start, arrival)
-                gaps += measured
+                kept["gaps"] = kept.get("gaps", 0) + measured
             if found is not None and found.width + found.slack < 2 * mover.radius:
                 _no_way(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if room.clearance.widest(start, to, mover.reach)[0] < least:
-                found = gap(room, *_apart(room, mover, start, arrival))
+                ends = _apart(room, mover, start, arrival)
+                key = f"gap {ends}"
+                if key not in kept:
+                    kept[key] = gap(room, *ends)
+                found = kept[key]
                 _no_way(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None:

@@ -73,7 +73,7 @@ class Room:
 def cells_over(box: Box, size: float, most: int) -> core.Cells:
     """Cells of about a size over a rectangle, larger ones if there would be too many."""
     width, height = box[2] - box[0], box[3] - box[1]
-    size = max(size, math.sqrt(width * height / most))
+    size = max(size, math.sqrt(width * height / most), width / most, height / most)
     nx, ny = max(1, math.ceil(width / size)), max(1, math.ceil(height / size))
     return (box[0], box[1]), (width / nx, height / ny), nx, ny
 

@@ -21,7 +21,7 @@ _EIGHT = math.cos(math.pi / 8)
 _MOST_WAYS = 3
 """Ways that are measured in one scene."""
 _SHORT = 0.9
-_DETOUR = 1.4
+_DETOUR = 1.25
 _LOCAL = ("rvo", "sfm", "orca")
 
 

@@ -14,8 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = (
     """
-    _conflict _names _options angles codes colors diagnostics errors files log registry resources selection units
-    vectors
+    _conflict _names _options angles code_examples codes colors diagnostics errors files log registry resources
+    selection units vectors
     """,
     "_core compatibility msg streams text",
     "kinematics shapes behaviors sensors distributions maps planners",

@@ -173,6 +173,14 @@ def test_goals_by_the_wall_of_the_world() -> None:
     assert codes(data) == []
 
 
+def test_goals_of_pedestrians_are_hinted_at() -> None:
+    post = {"shape": {"name": "circle", "radius": 1}, "state": [6, 8, 0]}
+    walker = {**DISC, "state": [6, 3, 0], "goal": [6, 8]}
+    item = one(scenario(ROBOT, walker, post), "goal-blocked")
+    assert item.severity == "hint"
+    assert item.path == ("obstacle", 0, "goal")
+
+
 def test_the_threshold_counts() -> None:
     wall = {"shape": {"name": "rectangle", "length": 1, "width": 2}, "state": [10.65, 5, 0]}
     assert codes(scenario(ROBOT, wall)) == ["goal-blocked"]

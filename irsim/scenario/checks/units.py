@@ -17,8 +17,8 @@ from irsim.scenario.wording import flow
 _TURN = 6.3
 _FASTEST_TURN = 20.0
 """Three turns a second [rad/s]: hardly a robot is meant to be faster."""
-_FASTEST = 50.0
-"""180 km/h [m/s]."""
+_FASTEST = 45.0
+"""162 km/h [m/s]."""
 _LONGEST_STEP = 1.0
 _WIDEST = 20.0
 """The longest lorries [m]."""
@@ -74,10 +74,10 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     world = context.scenario.world
     reach = reach_of(record.shape)
-    if 2 * reach < min(world.width, world.height, 2 * _WIDEST):
+    if 2 * reach < min(world.width, world.height, _WIDEST):
         return
     width = 2 * inner_disc(parts_of(record.shape))[2]
-    if 2 * reach > 2 * _WIDEST or width >= min(world.width, world.height):
+    if 2 * reach > _WIDEST or width >= min(world.width, world.height):
         why = (
             f"does not fit into the world ({world.width:g} m × {world.height:g} m)"
             if width >= min(world.width, world.height)
