@@ -5,6 +5,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kRounding = 1.0 + 1e-12;
+
 /// The nearest so far.
 struct Nearest {
   double distance = kInfinity;
@@ -30,10 +32,12 @@ void clearances(const World& world, const Shapes& shapes, const Fixed& fixed, co
     (world.is_static[i] ? standing : movers).push_back(i);
     if (world.is_static[i]) stands[static_cast<int>(company[i])] = true;
   }
+  std::vector<Vec2> centres(movers.size());  // of the bounding circles of the movers
   std::vector<Nearest> before(robots.size() * kCompanies);
   for (std::size_t t = 0; t < rows; ++t) {
     const Pose* pose = poses + t * world.objects;
     for (const int i : world.moving) moving.place(shapes, i, pose[i], unit(pose[i].theta));
+    for (std::size_t m = 0; m < movers.size(); ++m) centres[m] = moving.centres[shapes.placed[movers[m]].object];
     for (std::size_t r = 0; r < robots.size(); ++r) {
       const int self = robots[r];
       const Footprint own = body(self);
@@ -44,15 +48,15 @@ void clearances(const World& world, const Shapes& shapes, const Fixed& fixed, co
         if (last[k].partner >= 0) found[k].consider(distance(own, body(last[k].partner)), last[k].partner);
       }
       const auto look = [&](int other) {
-        Nearest& nearest = found[static_cast<int>(company[other])];
-        if (other == self || other == last[static_cast<int>(company[other])].partner) return;
-        const Footprint them = body(other);
-        // a map's circle says little, and what overlaps may be deeper than the circles tell
-        const double apart = norm(them.centre - own.centre) - them.radius - own.radius;
-        if (apart > nearest.distance && apart > 0.0) return;
-        nearest.consider(distance(own, them), other);
+        const int kind = static_cast<int>(company[other]);
+        if (other != self && other != last[kind].partner) found[kind].consider(distance(own, body(other)), other);
       };
-      for (const int other : movers) look(other);
+      for (std::size_t m = 0; m < movers.size(); ++m) {
+        // circles that are farther apart than the nearest so far; what overlaps may be deeper than they tell
+        const double touching = own.radius + shapes.radius[movers[m]];
+        const double reach = touching + std::max(found[static_cast<int>(company[movers[m]])].distance, 0.0);
+        if (!(squared(centres[m] - own.centre) > reach * reach * kRounding)) look(movers[m]);
+      }
       double reach = 0.0;
       for (int k = 0; k < kCompanies; ++k) {
         if (stands[k]) reach = std::max(reach, found[k].distance);
