@@ -27,6 +27,7 @@ from irsim.runs.store import (
     META,
     RESULT,
     Claim,
+    RunError,
     claim,
     json_of,
     made_folder,
@@ -141,11 +142,16 @@ class Jobs:
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
 
     def _folder(self) -> Path:
-        runs = runs_folder(self._workspace.root, make=True)
-        folder = runs.with_name(_KEPT)
-        if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-            raise failure("path-outside-workspace", f"{str(folder)!r} is a link or no folder", fix="remove it")
-        folder.mkdir(exist_ok=True)
+        try:
+            folder = runs_folder(self._workspace.root, make=True).with_name(_KEPT)
+            if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
+                raise failure("path-outside-workspace", f"{str(folder)!r} is a link or no folder", fix="remove it")
+            folder.mkdir(exist_ok=True)
+        except RunError as error:
+            raise failure(error.code, error.message, fix=error.fix) from None
+        except OSError as error:
+            what = f"'.irsim' in the workspace cannot be written: {error.strerror or error}"
+            raise failure("file-access", what, fix="make the workspace writable, or use run_episode") from None
         return folder
 
     def _find(self, job_id: str) -> Path:

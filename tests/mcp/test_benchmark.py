@@ -130,10 +130,11 @@ async def test_jobs_that_are_not_there(workspace: Path) -> None:
         assert f"recent ones are {done['job_id']}" in told
 
 
-async def test_links_are_not_followed(workspace: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("link", [".irsim", ".irsim/jobs"])
+async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str) -> None:
     (tmp_path / "elsewhere").mkdir()
-    (workspace / ".irsim").mkdir()
-    (workspace / ".irsim" / "jobs").symlink_to(tmp_path / "elsewhere")
+    (workspace / link).parent.mkdir(exist_ok=True)
+    (workspace / link).symlink_to(tmp_path / "elsewhere")
     async with connected(workspace) as client:
         told = error_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
     assert told.startswith("path-outside-workspace")
