@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.errors import IrsimError, NotSimulatedError, PlacementError, ScenarioError, ScenarioNotFoundError
     from irsim.lib import register_behavior
+    from irsim.replay.export import replay
 
     __version__: str
 
@@ -36,6 +37,7 @@ _HOMES = {
     "make": "irsim.env",
     "register_behavior": "irsim.lib",
     "render": "irsim.api",
+    "replay": "irsim.replay.export",
     "run": "irsim.api",
     "validate": "irsim.api",
 }
@@ -56,6 +58,7 @@ __all__ = [
     "make",
     "register_behavior",
     "render",
+    "replay",
     "run",
     "validate",
 ]

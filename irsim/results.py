@@ -1,4 +1,4 @@
-"""Typed results of ``irsim.validate``, ``irsim.run`` and ``irsim.render``: what the CLI prints and ``--json`` dumps."""
+"""Typed results of ``irsim.validate``, ``irsim.run``, ``irsim.render``, …: what the CLI prints and ``--json`` dumps."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ __all__ = [
     "HorizonSource",
     "Proportion",
     "RenderResult",
+    "ReplayResult",
     "RobotPose",
     "RobotResult",
     "RunResult",
@@ -286,6 +287,25 @@ class RenderResult(Result):
     """What is odd about the scenario."""
     reproduce: str
     """Command that gives the same again."""
+
+
+class ReplayResult(Result):
+    """The page that ``irsim replay`` wrote."""
+
+    run_id: str
+    """The run it shows."""
+    file: str
+    """The page."""
+    bytes: int
+    """Its size."""
+    objects: int
+    """Robots and obstacles in it."""
+    last_step: int
+    """Last step in it."""
+    every: int
+    """Every how many-th step it shows; 1: all."""
+    scans: Literal["none", "recorded", "computed"]
+    """Whether scans are as recorded, or computed in the page from the shapes it draws."""
 
 
 class RunTable(Result):

@@ -72,6 +72,7 @@ LAYERS = (
     lookup
     map_files
     modeline
+    replay
     results
     runs
     skills

@@ -1,0 +1,48 @@
+"""``irsim replay``: a recorded run as a page for the browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["replay"]
+
+
+def replay(
+    run: Annotated[str, typer.Argument(help="Id or folder of a run, or 'last'.")] = "last",
+    html: Annotated[bool, typer.Option("--html", help="Write one HTML file; so far there is no other form.")] = True,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", metavar="OUT", help="File to write; default: RUN.html here.", show_default=False),
+    ] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
+    json_output: Json = False,
+) -> None:
+    """Write a recorded run as one HTML page: play it, scrub, follow a robot, jump to events.
+
+    The page needs no network and nothing beside it. `irsim run FILE --record` records a run.
+    """
+    from rich.text import Text
+
+    from irsim.cli.output import console, print_json, progress
+    from irsim.replay.export import replay as write
+
+    with progress("packing"):
+        result = write(run, out)
+    if show:
+        import webbrowser
+
+        webbrowser.open(Path(result.file).resolve().as_uri())
+    if json_output:
+        print_json(result)
+        return
+    thinned = f", every {result.every}th step" if result.every > 1 else ""
+    size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
+    console().print(
+        Text.assemble("wrote ", (result.file, "bold"), f" ({size}, steps 0 to {result.last_step}{thinned})"),
+        soft_wrap=True,
+    )

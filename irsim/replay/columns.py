@@ -1,0 +1,85 @@
+"""Numbers made small: series of integers whose differences compress well, and how a page reads them back."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Columns", "changes", "quantised"]
+
+Integers = NDArray[np.int32]
+_MOST = 2**31 - 1
+_LEVEL = 9
+
+
+class Columns:
+    """Named arrays of 32-bit integers and one head of plain data, as one block of bytes.
+
+    Decompressed (zlib), a block is: length of the head (4 bytes, little endian); the head as JSON, whose ``columns``
+    lists name, shape and order of each array; the arrays. An array is differenced ``order`` times along its last
+    axis (in wrapping arithmetic, before the first value are zeros), its numbers folded so that small ones of either
+    sign have few bits, and their lowest bytes written first, then all the second ones, and so on.
+    """
+
+    def __init__(self) -> None:
+        self._list: list[dict[str, Any]] = []
+        self._bytes: list[bytes] = []
+
+    def add(self, name: str, values: Any, order: int = 0) -> None:
+        """Add an array.
+
+        Args:
+            name: What it is called in the page.
+            values: Integers that fit into 32 bits, of any shape.
+            order: How often neighbours along the last axis are subtracted.
+        """
+        array = np.asarray(values, dtype=np.int32)
+        self._list.append({"name": name, "shape": list(array.shape), "order": order})
+        self._bytes.append(folded(array, order))
+
+    def block(self, head: dict[str, Any]) -> bytes:
+        """Everything, compressed."""
+        text = json.dumps({**head, "columns": self._list}, separators=(",", ":"), allow_nan=False).encode()
+        return zlib.compress(len(text).to_bytes(4, "little") + text + b"".join(self._bytes), _LEVEL)
+
+
+def folded(array: Integers, order: int) -> bytes:
+    """Bytes of one array."""
+    values = array.astype(np.int32)
+    for _ in range(order):
+        before = np.zeros((*values.shape[:-1], 1), dtype=np.int32)
+        values = np.diff(values, axis=-1, prepend=before)
+    numbers = ((values << 1) ^ (values >> 31)).astype("<i4")
+    return numbers.reshape(-1, 1).view(np.uint8).T.tobytes()
+
+
+def quantised(values: Any, quantum: float) -> Integers:
+    """Whole multiples of ``quantum``; what is not finite counts as 0, what does not fit as the most that does."""
+    scaled = np.nan_to_num(np.asarray(values, dtype=np.float64) / quantum, nan=0.0, posinf=_MOST, neginf=-_MOST)
+    return np.clip(np.rint(scaled), -_MOST, _MOST).astype(np.int32)
+
+
+def changes(series: Sequence[NDArray[Any]]) -> tuple[Integers, Integers]:
+    """Where anything changes, per object, the first row included.
+
+    Args:
+        series: Arrays (T, N); NaN equals NaN.
+
+    Returns:
+        Rows and objects, sorted by object, then by row.
+    """
+    changed = np.zeros(series[0].shape, dtype=bool)
+    changed[0] = True
+    for values in series:
+        now, before = values[1:], values[:-1]
+        same = now == before
+        if values.dtype.kind == "f":
+            same |= np.isnan(now) & np.isnan(before)
+        changed[1:] |= ~same
+    objects, rows = np.nonzero(changed.T)
+    return rows.astype(np.int32), objects.astype(np.int32)

@@ -1,0 +1,316 @@
+// One frame: paper, what stands, trails, goals, the scan, what moves, names, the chosen robot.
+
+import { inMetres, toPixels, toWorld } from "./camera.js";
+import { cellImage } from "./cells.js";
+import { opposite, rgbOf, seen } from "./colors.js";
+import { makeLayer, showLayer } from "./layer.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, poseAt } from "./run.js";
+import { scanAt } from "./scan.js";
+
+const DENSE = 2.5; // pixels between points of a trail
+const STEPS = [1, 2, 5];
+
+export function makeDrawing() {
+  return { ground: makeLayer(), trails: makeLayer(), image: null, scan: null };
+}
+
+export function drawFrame(context, drawing, run, shown, camera, colors, ratio) {
+  const { at } = shown, row = Math.floor(at);
+  const { width, height } = context.canvas;
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.fillStyle = colors.outside;
+  context.fillRect(0, 0, width, height);
+  const key = `${colors.paper}${run.head.run_id}`;
+  showLayer(drawing.ground, context, camera, ratio, key, 0, 1, (target, own) => {
+    drawGround(target, drawing, run, own, colors, ratio);
+  });
+  if (shown.trails) {
+    showLayer(drawing.trails, context, camera, ratio, key, row, 0.5, (target, own, from, to) => {
+      drawTrails(target, run, own, colors, ratio, from, to);
+    });
+  }
+  if (shown.robot >= 0) drawWay(context, run, shown, camera, colors, ratio);
+  if (shown.goals) drawGoals(context, run, shown, camera, colors, ratio);
+  if (shown.lidar && shown.robot >= 0) drawScans(context, drawing, run, shown, camera, colors, ratio);
+  for (const object of run.movers) drawBody(context, run, object, at, shown, camera, colors, ratio);
+  if (shown.names) drawNames(context, run, at, camera, colors, ratio);
+  drawScale(context, camera, colors, ratio);
+}
+
+function drawGround(context, drawing, run, camera, colors, ratio) {
+  const [left, right, bottom, top] = run.head.world;
+  inMetres(context, camera, ratio);
+  context.fillStyle = colors.paper;
+  context.fillRect(left, bottom, right - left, top - bottom);
+  drawGrid(context, run.head.world, camera, colors);
+  if (run.cells) {
+    const { left: x, right: to, bottom: low, top: high } = run.cells, tone = colors.wall;
+    if (drawing.image?.tone !== tone) drawing.image = { tone, canvas: cellImage(run.cells, rgbOf(tone)) };
+    context.imageSmoothingEnabled = camera.scale * ratio * run.cells.dx < 1.5;
+    context.save();
+    context.translate(x, high);
+    context.scale(1, -1);
+    context.drawImage(drawing.image.canvas, 0, 0, to - x, high - low);
+    context.restore();
+  }
+  context.strokeStyle = colors.line;
+  context.lineWidth = 1.5 / camera.scale;
+  context.strokeRect(left, bottom, right - left, top - bottom);
+  for (const object of run.objects) {
+    if (object.track < 0 && object.role !== "robot" && object.shape >= 0) {
+      paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, seen(colors, object.color), 1);
+    }
+  }
+}
+
+/** Metres between two lines that are at least so many pixels apart. */
+function spacing(camera, pixels) {
+  const least = pixels / camera.scale, ten = 10 ** Math.floor(Math.log10(least));
+  return ten * (STEPS.find((step) => step * ten >= least) ?? 10);
+}
+
+function drawGrid(context, [left, right, bottom, top], camera, colors) {
+  const gap = spacing(camera, 44);
+  context.beginPath();
+  for (let x = Math.ceil(left / gap) * gap; x < right; x += gap) {
+    context.moveTo(x, bottom);
+    context.lineTo(x, top);
+  }
+  for (let y = Math.ceil(bottom / gap) * gap; y < top; y += gap) {
+    context.moveTo(left, y);
+    context.lineTo(right, y);
+  }
+  context.strokeStyle = colors.grid;
+  context.lineWidth = 1 / camera.scale;
+  context.stroke();
+}
+
+function paintShape(context, run, object, pose, camera, ratio, color, alpha, edge = color, width = 1) {
+  const shape = run.head.shapes[object.shape], path = run.paths[object.shape];
+  place(context, camera, ratio, pose);
+  if (!shape.line) {
+    context.globalAlpha = alpha * object.alpha;
+    context.fillStyle = color;
+    context.fill(path, "evenodd");
+  }
+  context.globalAlpha = Math.max(alpha, 0.5);
+  context.strokeStyle = edge;
+  context.lineWidth = (shape.line ? Math.max(width, 2) : width) / camera.scale;
+  context.lineJoin = "round";
+  context.stroke(path);
+  context.globalAlpha = 1;
+}
+
+function place(context, camera, ratio, pose) {
+  inMetres(context, camera, ratio);
+  context.translate(pose.x, pose.y);
+  context.rotate(pose.heading);
+}
+
+function drawTrails(context, run, camera, colors, ratio, from, to) {
+  inMetres(context, camera, ratio);
+  context.lineWidth = 1.6 / camera.scale;
+  context.lineJoin = "round";
+  context.lineCap = "round";
+  for (const object of run.objects) {
+    if (object.track < 0) continue;
+    context.beginPath();
+    trace(context, run, object.track, Math.max(0, from), to, DENSE / camera.scale);
+    context.strokeStyle = seen(colors, object.color);
+    context.stroke();
+  }
+}
+
+/** A line through the rows of a track, without points that are closer together than can be seen. */
+function trace(context, run, track, from, to, dense) {
+  const base = track * run.rows, limit = dense * dense;
+  let px = run.x[base + from], py = run.y[base + from];
+  context.moveTo(px, py);
+  for (let row = from + 1; row <= to; row++) {
+    const x = run.x[base + row], y = run.y[base + row], dx = x - px, dy = y - py;
+    if (row < to && dx * dx + dy * dy < limit) continue;
+    context.lineTo(x, y);
+    px = x;
+    py = y;
+  }
+}
+
+/** The chosen robot's way: behind it in full, ahead of it dotted. */
+function drawWay(context, run, shown, camera, colors, ratio) {
+  const object = run.objects[shown.robot], row = Math.floor(shown.at);
+  if (object.track < 0 || !shown.trails) return;
+  inMetres(context, camera, ratio);
+  context.strokeStyle = seen(colors, object.color);
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  context.lineWidth = 2.6 / camera.scale;
+  context.beginPath();
+  trace(context, run, object.track, 0, row, 1 / camera.scale);
+  const pose = poseAt(run, shown.robot, shown.at);
+  context.lineTo(pose.x, pose.y);
+  context.stroke();
+  context.setLineDash([0.1 / camera.scale, 5 / camera.scale]);
+  context.lineWidth = 2 / camera.scale;
+  context.beginPath();
+  trace(context, run, object.track, row, run.rows - 1, 1 / camera.scale);
+  context.stroke();
+  context.setLineDash([]);
+}
+
+function drawGoals(context, run, shown, camera, colors, ratio) {
+  for (const object of run.objects) {
+    if (!object.goal || object.shape < 0) continue;
+    const goal = goalAt(run, object.index, shown.at);
+    if (!goal) continue;
+    const chosen = object.index === shown.robot, color = seen(colors, object.color), px = 1 / camera.scale;
+    place(context, camera, ratio, goal);
+    context.globalAlpha = chosen ? 0.25 : 0.1;
+    context.fillStyle = color;
+    context.fill(run.paths[object.shape], "evenodd");
+    context.globalAlpha = chosen ? 1 : 0.6;
+    context.setLineDash([4 * px, 3 * px]);
+    context.strokeStyle = color;
+    context.lineWidth = (chosen ? 2 : 1) * px;
+    context.stroke(run.paths[object.shape]);
+    context.setLineDash([]);
+    const arm = Math.min(6 * px, 0.5 * object.radius);
+    context.beginPath();
+    context.moveTo(-arm, -arm);
+    context.lineTo(arm, arm);
+    context.moveTo(-arm, arm);
+    context.lineTo(arm, -arm);
+    context.stroke();
+    if (chosen) {
+      const pose = poseAt(run, object.index, shown.at);
+      inMetres(context, camera, ratio);
+      context.beginPath();
+      context.moveTo(pose.x, pose.y);
+      context.lineTo(goal.x, goal.y);
+      context.setLineDash([2 * px, 6 * px]);
+      context.lineWidth = px;
+      context.stroke();
+      context.setLineDash([]);
+    }
+    context.globalAlpha = 1;
+  }
+}
+
+function drawScans(context, drawing, run, shown, camera, colors, ratio) {
+  const key = `${run.head.run_id} ${shown.robot} ${shown.at}`;
+  if (drawing.scan?.key !== key) {
+    drawing.scan = { key, all: (run.lidars.get(shown.robot) ?? []).map((lidar) => scanAt(run, lidar, shown.at)) };
+  }
+  inMetres(context, camera, ratio);
+  const px = 1 / camera.scale;
+  for (const { x, y, ends, hit } of drawing.scan.all) {
+    const beams = hit.length, dot = Math.min(2.2 * px, 0.06 + px);
+    context.fillStyle = context.strokeStyle = colors.lidar;
+    context.beginPath();
+    for (let i = 0; i < beams; i++) {
+      context.moveTo(x, y);
+      context.lineTo(ends[2 * i], ends[2 * i + 1]);
+    }
+    context.globalAlpha = Math.min(0.4, Math.max(0.08, 24 / beams));
+    context.lineWidth = px;
+    context.stroke();
+    context.globalAlpha = 1;
+    context.beginPath();
+    for (let i = 0; i < beams; i++) {
+      if (hit[i]) context.rect(ends[2 * i] - dot, ends[2 * i + 1] - dot, 2 * dot, 2 * dot);
+    }
+    context.fill();
+  }
+}
+
+function drawBody(context, run, object, at, shown, camera, colors, ratio) {
+  if (object.shape < 0) return;
+  const pose = poseAt(run, object.index, at), flags = flagsAt(run, object.index, at), px = 1 / camera.scale;
+  const color = seen(colors, object.color), hit = flags & COLLIDED, rests = flags & ARRIVED && !hit;
+  const chosen = object.index === shown.robot;
+  if (chosen) {
+    inMetres(context, camera, ratio);
+    context.beginPath();
+    context.arc(pose.x, pose.y, object.radius + 5 * px, 0, 2 * Math.PI);
+    context.strokeStyle = colors.accent;
+    context.lineWidth = 2 * px;
+    context.stroke();
+  }
+  const edge = hit ? colors.danger : chosen ? colors.ink : colors.paper;
+  paintShape(context, run, object, pose, camera, ratio, color, rests ? 0.4 : 1, rests ? color : edge, hit ? 3.5 : 1);
+  if (!object.arrow && object.role !== "robot") return;
+  const way = object.drive === "omni" ? courseAt(run, object.index, at, pose.heading) : pose.heading;
+  place(context, camera, ratio, { x: pose.x, y: pose.y, heading: way });
+  const size = Math.min(object.radius * 0.62, Math.max(object.radius * 0.4, 5 * px));
+  context.beginPath();
+  context.moveTo(size, 0);
+  context.lineTo(-0.55 * size, 0.6 * size);
+  context.lineTo(-0.2 * size, 0);
+  context.lineTo(-0.55 * size, -0.6 * size);
+  context.closePath();
+  context.globalAlpha = 0.9;
+  context.fillStyle = opposite(color);
+  context.fill();
+  context.globalAlpha = 1;
+}
+
+function drawNames(context, run, at, camera, colors, ratio) {
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.font = "12px system-ui, sans-serif";
+  context.textBaseline = "bottom";
+  context.lineWidth = 3;
+  context.lineJoin = "round";
+  context.strokeStyle = colors.paper;
+  context.fillStyle = colors.ink;
+  for (const object of run.objects) {
+    if (object.track < 0 && object.role !== "robot") continue;
+    const pose = poseAt(run, object.index, at), [x, y] = toPixels(camera, pose.x, pose.y);
+    if (x < 0 || y < 0 || x > camera.width || y > camera.height) continue;
+    const away = 0.75 * object.radius * camera.scale + 2;
+    context.strokeText(object.name, x + away, y - away);
+    context.fillText(object.name, x + away, y - away);
+  }
+}
+
+function drawScale(context, camera, colors, ratio) {
+  const metres = spacing(camera, 60), length = metres * camera.scale, x = 14, y = camera.height - 14;
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.strokeStyle = context.fillStyle = colors.muted;
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.moveTo(x, y - 5);
+  context.lineTo(x, y);
+  context.lineTo(x + length, y);
+  context.lineTo(x + length, y - 5);
+  context.stroke();
+  context.font = "12px system-ui, sans-serif";
+  context.textBaseline = "bottom";
+  context.fillText(`${+metres.toPrecision(3)} m`, x + 5, y - 2);
+}
+
+/** Index of what is under a pixel, robots first, or -1. */
+export function objectAt(context, run, at, camera, px, py) {
+  const point = toWorld(camera, px, py), slack = 8 / camera.scale;
+  let best = -1, nearest = Infinity;
+  for (const object of run.objects) {
+    if (object.shape < 0) continue;
+    const pose = poseAt(run, object.index, at), dx = point.x - pose.x, dy = point.y - pose.y;
+    const away = Math.hypot(dx, dy);
+    const moves = object.track >= 0 || object.role === "robot";
+    if (away > run.reach[object.shape] + slack) continue;
+    if (!(moves && away < slack) && !inside(context, run, object, pose, dx, dy, slack)) continue;
+    const rank = away + (moves ? 0 : 1e6) + (object.role === "robot" ? 0 : 1e3);
+    if (rank < nearest) {
+      nearest = rank;
+      best = object.index;
+    }
+  }
+  return best;
+}
+
+function inside(context, run, object, pose, dx, dy, slack) {
+  const c = Math.cos(pose.heading), s = Math.sin(pose.heading), x = c * dx + s * dy, y = c * dy - s * dx;
+  const path = run.paths[object.shape];
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.lineWidth = slack;
+  return (!run.head.shapes[object.shape].line && context.isPointInPath(path, x, y, "evenodd")) || context.isPointInStroke(path, x, y);
+}

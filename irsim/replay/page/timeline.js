@@ -1,0 +1,63 @@
+// Events as marks over the scrubber: click one to go there.
+
+import { $ } from "./dom.js";
+import { eventWords, seconds } from "./words.js";
+
+const INSET = 8, NEAR = 7; // pixels: half a thumb of the scrubber, and how close a click must be
+
+const placeOf = (run, row, width) => INSET + ((width - 2 * INSET) * row) / Math.max(1, run.rows - 1);
+
+export function drawMarks(run, colors, ratio) {
+  const canvas = $("marks"), width = canvas.clientWidth, height = canvas.clientHeight;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  const context = canvas.getContext("2d");
+  context.scale(ratio, ratio);
+  const order = { waypoint: 0, arrival: 1, collision: 2 };
+  for (const event of [...run.events].sort((a, b) => order[a.kind] - order[b.kind])) {
+    const x = placeOf(run, event.row, width), y = height / 2 + 1;
+    context.beginPath();
+    if (event.kind === "collision") {
+      context.fillStyle = colors.danger;
+      context.moveTo(x, y - 6);
+      context.lineTo(x + 5, y);
+      context.lineTo(x, y + 6);
+      context.lineTo(x - 5, y);
+    } else {
+      context.fillStyle = event.kind === "arrival" ? colors.good : colors.muted;
+      context.arc(x, y, event.kind === "arrival" ? 4 : 2, 0, 2 * Math.PI);
+    }
+    context.fill();
+    context.strokeStyle = colors.card;
+    context.lineWidth = 1;
+    context.stroke();
+  }
+}
+
+/** The event under a pixel of the strip, or null. */
+function eventNear(run, x, width) {
+  let best = null, nearest = NEAR;
+  for (const event of run.events) {
+    const away = Math.abs(placeOf(run, event.row, width) - x) - (event.kind === "collision" ? 0.5 : 0);
+    if (away < nearest) {
+      nearest = away;
+      best = event;
+    }
+  }
+  return best;
+}
+
+export function listenToMarks(player, goToEvent, seek) {
+  const canvas = $("marks");
+  canvas.addEventListener("click", ({ offsetX }) => {
+    const { run } = player;
+    if (!run) return;
+    const event = eventNear(run, offsetX, canvas.clientWidth);
+    if (event) goToEvent(event);
+    else seek(Math.round(((offsetX - INSET) / (canvas.clientWidth - 2 * INSET)) * (run.rows - 1)));
+  });
+  canvas.addEventListener("pointermove", ({ offsetX }) => {
+    const event = player.run && eventNear(player.run, offsetX, canvas.clientWidth);
+    canvas.title = event ? `${seconds(event.time)}: ${eventWords(player.run, event)}` : "";
+  });
+}

@@ -1,0 +1,30 @@
+// What the page says about objects and events.
+
+import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
+
+const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint" };
+
+export const metres = (value) => `${value.toFixed(2)} m`;
+export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 1)} s`;
+
+export function eventWords(run, { kind, object, partner }) {
+  const name = run.objects[object].name, whom = partner >= 0 ? ` ${run.objects[partner].name}` : "";
+  return kind === "collision" ? `${name} hits${whom || " something"}` : `${name} ${KINDS[kind] ?? kind}${whom}`;
+}
+
+/** Name and value pairs of an object at a moment. */
+export function valuesOf(run, index, at) {
+  const object = run.objects[index], pose = poseAt(run, index, at), goal = goalAt(run, index, at);
+  const turn = Math.atan2(Math.sin(pose.heading), Math.cos(pose.heading));
+  const pairs = [
+    ["position", `${pose.x.toFixed(2)}, ${pose.y.toFixed(2)} m`],
+    ["heading", `${turn.toFixed(2)} rad (${Math.round((turn * 180) / Math.PI)}°)`],
+  ];
+  if (object.track >= 0 || object.role === "robot") pairs.push(["speed", `${speedAt(run, index, at).toFixed(2)} m/s`]);
+  if (goal) pairs.push(["to goal", metres(Math.hypot(goal.x - pose.x, goal.y - pose.y))]);
+  const flags = flagsAt(run, index, at);
+  const state = [[COLLIDED, "in collision"], [ARRIVED, "arrived"], [STOPPED, "stopped"]];
+  const told = state.filter(([bit]) => flags & bit).map(([, word]) => word).join(", ");
+  if (object.role === "robot" || told) pairs.push(["state", told || "under way"]);
+  return pairs;
+}

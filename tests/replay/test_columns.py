@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from irsim.replay.columns import Columns, changes, quantised
+from tests.replay.reading import unpacked
+
+SHAPES = arrays.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=9)
+
+
+@given(
+    st.lists(st.tuples(arrays.arrays(np.int32, SHAPES), st.integers(0, 2)), max_size=4),
+    st.dictionaries(st.text(max_size=5), st.text(max_size=9), max_size=3),
+)
+def test_a_block_is_read_back(given_columns: list[tuple[np.ndarray, int]], given_head: dict[str, str]) -> None:
+    given_head.pop("columns", None)
+    columns = Columns()
+    for number, (values, order) in enumerate(given_columns):
+        columns.add(f"c{number}", values, order)
+    head, found = unpacked(columns.block(given_head))
+    head.pop("columns")
+    assert head == given_head
+    for number, (values, _) in enumerate(given_columns):
+        np.testing.assert_array_equal(found[f"c{number}"], values)
+
+
+def test_smooth_series_are_small() -> None:
+    t = np.arange(1000) * 0.1
+    columns = Columns()
+    columns.add("x", quantised(np.stack([5 + 3 * np.sin(t / 9 + k) for k in range(100)]), 2**-12), 2)
+    assert len(columns.block({})) < 100_000  # a byte for each number
+
+
+def test_what_is_not_finite_is_quantised_all_the_same() -> None:
+    found = quantised([np.nan, np.inf, -np.inf, 0.26, 1e300], 0.125)
+    assert found.tolist() == [0, 2**31 - 1, 1 - 2**31, 2, 2**31 - 1]
+
+
+def test_changes() -> None:
+    series = np.array([[1.0, np.nan], [1.0, np.nan], [2.0, np.nan], [2.0, 3.0]])
+    rows, objects = changes([series, np.zeros((4, 2))])
+    assert list(zip(objects.tolist(), rows.tolist(), strict=True)) == [(0, 0), (0, 2), (1, 0), (1, 3)]
+
+
+def test_numbers_that_do_not_fit_are_refused() -> None:
+    with pytest.raises(OverflowError):
+        Columns().add("x", [2**31])

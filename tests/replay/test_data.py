@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import irsim.replay.data as packing
+from irsim.runs import Run, RunError, open_run
+from irsim.templates import names
+from tests.replay.conftest import HOSTILE, recorded, scene
+from tests.replay.reading import unpacked
+
+
+def poses_of(head: dict, columns: dict) -> np.ndarray:
+    """(T, N, 3) as the page has them."""
+    quantum, turn = head["quanta"]
+    still = [item["pose"] for item in head["objects"]]
+    poses = np.repeat(np.array(still, dtype=float)[None], len(columns["step"]), axis=0)
+    for row, item in enumerate(head["objects"]):
+        if "track" in item:
+            scales = ("x", quantum), ("y", quantum), ("heading", turn)
+            poses[:, row] = np.stack([columns[name][item["track"]] * by for name, by in scales], axis=1)
+    return poses
+
+
+def test_poses_are_those_of_the_run(run: Run) -> None:
+    trace = run.trace()
+    head, columns = unpacked(packing.pack_run(run).data)
+    assert columns["step"].tolist() == trace.step.tolist()
+    off = poses_of(head, columns) - trace.pose
+    assert np.abs(off[:, :, :2]).max() <= head["quanta"][0] / 2 + 1e-4
+    turned = np.abs(np.angle(np.exp(1j * off[:, :, 2])))
+    assert turned.max() <= head["quanta"][1]
+    assert head["quanta"][0] <= 1e-3
+
+
+def test_objects_events_and_flags(run: Run) -> None:
+    head, columns = unpacked(packing.pack_run(run).data)
+    named = {item["name"]: item for item in head["objects"]}
+    assert [item["role"] for item in head["objects"]] == ["robot"] * 3 + ["obstacle"] * 3
+    kinds = {name: next(iter(head["shapes"][item["shape"]])) for name, item in named.items()}
+    assert kinds == {
+        "rover": "circle", "lorry": "rings", "slider": "rings", "crate": "circle", "wall": "line", "block": "rings",
+    }  # fmt: skip
+    assert not named["wall"]["seen"]
+    assert "track" not in named["crate"]
+    told = [(event[1], event[2], event[3]) for event in head["events"]]
+    assert [(e.kind, run.names.index(e.object)) for e in run.events] == [event[:2] for event in told]
+    assert ("collision", 1, 3) in told
+    last = dict(zip(columns["flag_object"].tolist(), columns["flags"].tolist(), strict=True))
+    assert last[0] & 1
+    assert last[1] & 2
+    assert head["outcome"] == "collision"
+
+
+def test_goals(run: Run) -> None:
+    head, columns = unpacked(packing.pack_run(run).data)
+    first = columns["goal_row"] == 0
+    assert columns["goal_object"][first].tolist() == [0, 1, 2]
+    assert columns["goal_set"][first].all()
+    np.testing.assert_allclose(columns["goal_x"][first] * head["quanta"][0], [5, 11, 11], atol=1e-3)
+
+
+def test_scans_are_those_recorded(run: Run) -> None:
+    head, columns = unpacked(packing.pack_run(run).data)
+    assert head["scans"] == "recorded"
+    [lidar] = head["lidars"]
+    known = run.trace().ranges["rover/0"]
+    shown = columns[lidar["scan"]].T * lidar["quantum"]
+    hit = np.isfinite(known) & (known < lidar["range_max"])
+    assert hit.any()
+    assert np.abs(shown - known)[hit].max() <= lidar["quantum"]
+    assert (shown[~np.isfinite(known)] > lidar["range_max"]).all()
+
+
+def test_scans_that_take_too_much_are_left_to_the_page(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for limit in ("_MOST_RANGES", "_MOST_SCAN_BYTES"):
+        with monkeypatch.context() as patch:
+            patch.setattr(packing, limit, 100)
+            head, columns = unpacked(packing.pack_run(run).data)
+        assert head["scans"] == "computed"
+        assert not any(name.startswith("scan") for name in columns)
+
+
+def test_long_runs_are_thinned(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packing, "_MOST_POSES", 100)
+    head, columns = unpacked(packing.pack_run(run).data)
+    steps = columns["step"].tolist()
+    assert head["every"] > 1
+    assert steps[:2] == [0, head["every"]]
+    assert steps[-1] == head["last_step"] == run.last_step
+
+
+def test_names_are_cleaned(workspace: Path) -> None:
+    head = packing.pack_run(recorded(scene(HOSTILE.replace('"', "") + "\\u202e\\x07"), steps=3)).head
+    assert all(item["name"].isprintable() and len(item["name"]) <= 80 for item in head["objects"])
+
+
+def test_a_run_whose_scenario_starts_elsewhere_now_is_refused(run: Run) -> None:
+    path = run.folder / "scenario.yaml"
+    path.write_text(path.read_text().replace("state: [1, 1, 0]", "state: [2, 1, 0]"))
+    with pytest.raises(RunError, match="run it again"):
+        packing.pack_run(open_run(run.id))
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_template(workspace: Path, name: str) -> None:
+    from irsim.templates import load
+
+    run = recorded(load(name).text, steps=5)
+    head, columns = unpacked(packing.pack_run(run).data)
+    np.testing.assert_allclose(poses_of(head, columns)[:, :, :2], run.trace().pose[:, :, :2], atol=2e-3)
+    if head["grid"] is not None:
+        assert int(columns["cells"].sum()) == int(np.prod(head["grid"]["cells"]))

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.cli.app import app
+from irsim.files import TargetError
+from irsim.replay.page import bundle, page
+from irsim.runs import Run, RunError
+from tests.replay.conftest import HOSTILE, recorded, scene
+from tests.replay.reading import data_in, unpacked
+
+SOURCES = Path(irsim.__file__).parent / "replay" / "page"
+
+
+def test_modules_share_no_names() -> None:
+    defined = re.findall(r"^(?:async )?(?:function|const|let|class) (\w+)", bundle(), re.MULTILINE)
+    for group in re.findall(r"^const (\w+ = [^;\n]*(?:, \w+ = [^;\n]*)+);", bundle(), re.MULTILINE):
+        defined += re.findall(r", (\w+) = ", group)
+    assert [name for name, count in Counter(defined).items() if count > 1] == []
+
+
+def test_every_module_is_in_the_page() -> None:
+    text = bundle()
+    assert not re.search(r"^(import|export)\b", text, re.MULTILINE)
+    for path in SOURCES.glob("*.js"):
+        assert path.read_text().splitlines()[0] in text, path.name
+
+
+def test_the_empty_page() -> None:
+    text = page()
+    assert data_in(text) == b""
+    assert len(text) < 200_000
+    assert "default-src 'none'" in text
+    assert "{{" not in text.replace("${{", "")
+
+
+def test_nothing_in_the_page_names_another_place() -> None:
+    assert re.findall(r"(?:https?:)?//[a-z0-9-]+\.[a-z]", page()) == []
+    assert (
+        re.findall(r"\b(?:fetch|XMLHttpRequest|WebSocket|eval|innerHTML|outerHTML|insertAdjacentHTML)\b", page()) == []
+    )
+
+
+def test_replay_writes_a_page(run: Run, workspace: Path) -> None:
+    result = irsim.replay(run.id)
+    text = Path(f"{run.id}.html").read_text()
+    assert result.file == f"{run.id}.html"
+    assert result.bytes == len(text.encode())
+    assert (result.objects, result.last_step, result.every) == (6, run.last_step, 1)
+    assert unpacked(data_in(text))[0]["run_id"] == run.id
+    assert irsim.replay(run.folder, workspace / "other.html").run_id == run.id
+    assert irsim.replay(run, "other.html").run_id == run.id
+
+
+def test_names_stay_out_of_the_html(workspace: Path) -> None:
+    (workspace / "x.yaml").write_text(scene(HOSTILE))
+    irsim.run("x.yaml", steps=3, record=True)
+    irsim.replay("last", "page.html")
+    assert "hacked" not in Path("page.html").read_text()
+    assert "&lt;script&gt;" in page(title="<script>")
+
+
+def test_refusals(run: Run, workspace: Path) -> None:
+    with pytest.raises(TargetError, match="unknown-format"):
+        irsim.replay("last", "page.png")
+    with pytest.raises(RunError, match="file-access"):
+        irsim.replay("last", "nowhere/page.html")
+    with pytest.raises(RunError, match="unknown-run"):
+        irsim.replay("room-000000")
+
+
+def test_the_command(run: Run, workspace: Path) -> None:
+    done = CliRunner().invoke(app, ["replay", run.id, "--html", "-o", "page.html", "--json"])
+    assert done.exit_code == 0, done.output
+    assert json.loads(done.stdout) == irsim.replay(run.id, "page.html").model_dump()
+    shown = CliRunner().invoke(app, ["replay"])
+    assert shown.stdout.startswith(f"wrote {run.id}.html (")
+
+
+def test_a_run_that_was_cut_short_is_shown(workspace: Path) -> None:
+    run = recorded(scene())
+    (run.folder / "result.json").unlink()
+    head = unpacked(data_in(Path(irsim.replay(run.id).file).read_text()))[0]
+    assert head["outcome"] is None
+    assert head["summary"] == "This run is interrupted."
