@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -9,8 +10,10 @@ import numpy as np
 
 from irsim.views import ObjectView
 
-__all__ = ["assign_actions"]
+__all__ = ["assign_actions", "beyond_limits"]
 
+_SLACK = 1e-9
+"""What rounding may add to a limit."""
 Assignments = list[tuple[ObjectView, list[float]]]
 
 
@@ -48,6 +51,18 @@ def _control(view: ObjectView, action: Any) -> list[float]:
     if not np.isfinite(values).all():
         raise ValueError(f"the action for {view.name!r} is not finite: {values.tolist()}")
     return list(map(float, values))
+
+
+def beyond_limits(view: ObjectView, control: Sequence[float]) -> bool:
+    """Whether limits of speed or acceleration will cut a control."""
+    record = view.record
+    limits = zip(control, record.vel_min, record.vel_max, strict=True)
+    if any(not low - _SLACK <= value <= high + _SLACK for value, low, high in limits):
+        return True
+    if all(rate == math.inf for rate in record.acce):
+        return False
+    lowest, highest = view.get_vel_range()
+    return bool((np.array(control) < lowest[:, 0] - _SLACK).any() or (np.array(control) > highest[:, 0] + _SLACK).any())
 
 
 def assign_actions(

@@ -12,6 +12,8 @@ from irsim.parameters import WorldView
 from irsim.scenario.expand import resolve
 from irsim.scenario.model import Scenario, WorldModel
 from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.opening import or_raise
+from irsim.scenario.read import read
 from irsim.scenario.single import read_object
 from irsim.simulation import Simulation
 from irsim.views import ObjectView, set_views
@@ -91,12 +93,52 @@ class World(WorldView):
 
     Args:
         name: Its name.
-        **keys: Keys of the ``world`` section.
+        height: Extent along y [m].
+        width: Extent along x [m].
+        step_time: Period of a step [s].
+        sample_time: Period of the drawn frames [s]; None: that of the steps.
+        offset: [x, y] of the lower left corner [m]; None: the origin.
+        step_mode, control_mode, collision_mode: As in a scenario.
+        gravity, friction, restitution, drive_tau: For ``collision_mode: contact``.
+        obstacle_map: An array (nx, ny) of occupancies, a picture file, or the mapping of a generator.
+        mdownsample: Keep every so many rows and columns of it.
+        fog_map, fog_map_resolution: Cells that robots have seen, and their size [m].
+        plot: Keys of the figure.
+        status: Word for titles.
+        world_param_instance: Accepted as it was before; a world has parameters of its own.
+        **keys: Other keys of the ``world`` section.
+
+    Raises:
+        ScenarioError: A key or value cannot be used.
     """
 
-    def __init__(self, name: str = "world", **keys: Any) -> None:
-        keys.pop("world_param_instance", None)
-        super().__init__(Simulation(_empty(name=name, **keys), [0]))
+    def __init__(
+        self,
+        name: str | None = "world",
+        height: float = 10,
+        width: float = 10,
+        step_time: float = 0.1,
+        sample_time: float | None = None,
+        offset: Sequence[float] | None = None,
+        step_mode: str = "internal",
+        control_mode: str = "auto",
+        collision_mode: str = "stop",
+        gravity: float = 9.81,
+        friction: float = 0.5,
+        restitution: float = 0.0,
+        drive_tau: float = 0.0,
+        obstacle_map: Any = None,
+        mdownsample: int = 1,
+        fog_map: bool = False,
+        fog_map_resolution: float | None = None,
+        plot: dict[str, Any] | None = None,
+        status: str | None = None,
+        world_param_instance: Any = None,
+        **keys: Any,
+    ) -> None:
+        given = {key: value for key, value in locals().items() if key in WorldModel.model_fields and value is not None}
+        scenario, _ = or_raise(read({"world": {**given, **keys}}, strict=True, name="World"))
+        super().__init__(Simulation(scenario, [0]))
 
 
 class ObjectGroup(Sequence[ObjectView]):

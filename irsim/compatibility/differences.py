@@ -255,7 +255,18 @@ _SEARCH_STEPS = {
     ),
 }
 
+_INSIDE = "a part of 2.12's inside that no script needs"
+_INTERNAL = (
+    "irsim.lib.path_planners.grid_planner_base",
+    "irsim.util.decorator",
+    "irsim.util.message",
+    "irsim.world.map.perlin_map_generator.generate_perlin_noise",
+    "irsim.world.object_plot",
+)
+
 ABSENT: dict[str, str] = {
+    **dict.fromkeys(_INTERNAL, _INSIDE),
+    "irsim.lib.algorithm.contact": "contacts are found in the engine: `irsim.lib.contact_step`, `env.contacts`",
     "irsim.env.env_logger:EnvLogger.CONSOLE_FORMAT": "lines are written without loguru, in this same format",
     **dict.fromkeys(
         (f"irsim.world.sensors:Contact2D.{name}" for name in ("add", "add_force", "clear", "reset", "tick")),

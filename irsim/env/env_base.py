@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import ref
 
-from irsim.actions import assign_actions
+from irsim.actions import assign_actions, beyond_limits
 from irsim.current import use
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.env_custom import EnvCustom
@@ -145,6 +145,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         here = ref(self)
         self.env_param = EnvParam(lambda: _objects_of(here()), self.logger)
         self._count_ids()
+        self._told_of_limits: set[int] = set()
         self._events_seen = self._events_told = 0
         self._label: str | None = scenario.world.status
 
@@ -174,7 +175,6 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
 
         Raises:
             ValueError: Unknown target, wrong number of numbers, or an action in external mode.
-            RuntimeError: The environment has ended.
         """
         use(self)
         if (self.pause_flag or self.quit_flag or self.debug_flag or self._ended) and self._held():
@@ -188,10 +188,24 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
             if action is not None:
                 for view, control in assign_actions(self._objects, action, action_id, self.logger.warning_once):
                     simulation.impose(view.row, control)
+                    if view.id not in self._told_of_limits:
+                        self._tell_of_limits(view, control)
             if self.world_param.control_mode == "keyboard":
                 self._drive_by_keyboard()
             simulation.step()
         self._after_step()
+
+    def _tell_of_limits(self, view: ObjectView, control: list[float]) -> None:
+        """Say, once per object, that its limits cut an action."""
+        if view.static or not beyond_limits(view, control):
+            return
+        self._told_of_limits.add(view.id)
+        low, high = (", ".join(f"{v:.6g}" for v in limit[:, 0]) for limit in view.get_vel_range())
+        given = ", ".join(f"{v:.6g}" for v in control)
+        self.logger.warning(
+            f"{view.name}: action [{given}] is cut to the limits of its drive, now [{low}] to [{high}] "
+            "(vel_min, vel_max, acce; said once per object)"
+        )
 
     def _after_step(self) -> None:
         self._label = None
@@ -200,8 +214,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
 
     def _held(self) -> bool:
         """What stands in the way of a step; True when the step is left out."""
-        if self._ended:
-            raise RuntimeError("the environment has ended: make a new one to go on")
+        self._ended = False
         if self.quit_flag:
             self.quit()
         if self.pause_flag:
@@ -223,8 +236,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         """
         if self.world_param.step_mode == "external":
             raise ValueError("rollout needs step_mode 'internal'")
-        if self._ended:
-            raise RuntimeError("the environment has ended: make a new one to go on")
+        self._ended = False
         result = record_rollout(self._simulation, steps, until_done=until_done)
         self._after_step()
         return result
@@ -240,8 +252,9 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         Returns:
             Periods executed.
         """
-        if self.world_param.step_mode == "external" or self._ended:
-            raise RuntimeError("advance needs an environment in step_mode 'internal' that has not ended")
+        if self.world_param.step_mode == "external":
+            raise RuntimeError("advance needs an environment in step_mode 'internal'")
+        self._ended = False
         done = (recorder or self._simulation).advance(steps, until_done=until_done)
         self._after_step()
         return done
@@ -267,8 +280,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         Raises:
             PlacementError: The next scene has no room for a random object.
         """
-        if self._ended:
-            raise RuntimeError("the environment has ended: make a new one to go on")
+        self._ended = False
         use(self)
         if random and self._exchanged:
             self._restore_objects()
@@ -286,8 +298,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         Args:
             world_name: Another file; default: the present one.
         """
-        if self._ended:
-            raise RuntimeError("the environment has ended: make a new one to go on")
+        self._ended = False
         name = self.world_name if world_name is None else world_name
         self._wanted_seed = self.seed
         self._open(name)
@@ -308,13 +319,16 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._simulation.refresh()
 
     def end(self, ending_time: float = 3.0, **kwargs: Any) -> None:
-        """Write the animation if there is one, close the figure and finish.
+        """Write the animation if there is one, and close the figure.
+
+        A script may go on: what is stepped, reset or drawn after that has a figure and an animation of its own. Ending
+        twice in a row does nothing more.
 
         Args:
             ending_time: Seconds a window stays open.
             **kwargs: Options of the animation: ``ani_name``, ``suffix``, ``last_frame_duration``, ``fps``, …
         """
-        if self._ended:
+        if self._ended and self._plot is None:
             return
         self._finish_drawing(ending_time, **kwargs)
         self._ended = True

@@ -138,6 +138,10 @@ def world_map(
             but not divided; not positive: those of the grid.
         obstacles: What stands in the world.
     """
+    try:
+        resolution = float(resolution)
+    except (TypeError, ValueError):
+        raise TypeError(f"the resolution of a map is a number [m], not {resolution!r}") from None
     if grid is None:
         if not resolution > 0:
             raise ValueError("a world without a grid needs a positive resolution")

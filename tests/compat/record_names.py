@@ -30,6 +30,17 @@ MODULES = [
     *("irsim.lib.behavior.behavior_registry", "irsim.lib.behavior.behavior_methods", "irsim.lib.path_planners"),
     *("irsim.util", "irsim.util.util", "irsim.util.random", "irsim.config", "irsim.gui", "irsim.msg"),
 ]
+LEAVES = [
+    *("irsim.gui.keyboard_control", "irsim.gui.mouse_control", "irsim.version"),
+    *(f"irsim.world.sensors.{name}" for name in ("contact2d", "fmcw_lidar2d", "lidar2d", "sensor_factory")),
+    *(f"irsim.world.robots.robot_{name}" for name in ("acker", "diff", "omni")),
+    *(f"irsim.world.obstacles.obstacle_{name}" for name in ("acker", "diff", "omni", "static")),
+    *(f"irsim.world.map.{name}_map_generator" for name in ("image", "perlin")),
+    *("irsim.world.map.fog_map", "irsim.world.map.grid_map_generator_base", "irsim.world.map.obstacle_map"),
+    *("irsim.world.object_plot", "irsim.lib.algorithm.contact", "irsim.lib.path_planners.grid_planner_base"),
+    *("irsim.util.decorator", "irsim.util.message"),
+]
+"""Modules of which only what they define counts."""
 
 
 def parameters(item: object) -> list[str] | None:
@@ -57,6 +68,10 @@ def names_of(item: object) -> dict[str, list[str] | None]:
 def main() -> None:
     """Write the file."""
     names = {module: names_of(importlib.import_module(module)) for module in MODULES}
+    for leaf in LEAVES:
+        module = importlib.import_module(leaf)
+        own = names_of(module)
+        names[leaf] = {name: own[name] for name in own if getattr(vars(module)[name], "__module__", "") == leaf}
     for module, classes in CLASSES.items():
         for name in classes:
             names[f"{module}:{name}"] = names_of(getattr(importlib.import_module(module), name))

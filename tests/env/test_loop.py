@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import irsim
 
@@ -208,8 +210,26 @@ def test_environments_do_not_meet(make: Make) -> None:
     a.end()
     b.step()
     assert b.time == 0.1
-    with pytest.raises(RuntimeError, match="ended"):
-        a.step()
+    a.step()
+    assert (a.time, b.time) == (0.2, 0.1)
+
+
+def test_a_script_may_go_on_after_the_end(make: Make, tmp_path: Path) -> None:
+    env = irsim.make(make(ONE).scenario, display=False, save_ani=True)
+    env.path_param.ani_path = str(tmp_path)
+    for name, frames in (("a", 2), ("b", 3)):
+        for _ in range(frames):
+            env.step()
+            env.render(0)
+        env.end(0, ani_name=name)
+        env.end(0, ani_name="never")
+        with Image.open(tmp_path / f"{name}.gif") as animation:
+            assert getattr(animation, "n_frames", 1) == frames
+        env.reset()
+        assert env.time == 0
+    assert not (tmp_path / "never.gif").exists()
+    assert len(env.rollout(2).time) == 2
+    env.end(0)
 
 
 def test_pause_and_resume(make: Make) -> None:

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 LAYERS = (
     """
     _conflict _names _options angles code_examples codes colors diagnostics errors files log registry resources
-    selection units vectors
+    selection units vectors version
     """,
     "_core compatibility msg streams text",
     "kinematics shapes behaviors sensors distributions maps planners",

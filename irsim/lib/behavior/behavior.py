@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.lib.behavior.behavior_registry import behaviors_class_map, behaviors_map
+from irsim.lib.behavior import behavior_registry
 
 __all__ = ["Behavior"]
 
@@ -46,7 +46,9 @@ class Behavior:
 
     def _construct(self) -> None:
         name = self.behavior_dict.get("name")
-        maker = behaviors_class_map.get((getattr(self.object_info, "kinematics", None) or "", name or ""))
+        maker = behavior_registry.behaviors_class_map.get(
+            (getattr(self.object_info, "kinematics", None) or "", name or "")
+        )
         self._made = None
         if maker is None:
             return
@@ -97,6 +99,7 @@ class Behavior:
         Raises:
             ValueError: There is none.
         """
+        behaviors_map = behavior_registry.behaviors_map
         function = behaviors_map.get((kinematics, action))
         if function is None:
             known = sorted(name for drive, name in behaviors_map if drive == kinematics)

@@ -13,7 +13,8 @@ from irsim import _core as core
 from irsim.lib._worlds import behavior_options, dash, decide, decide_among
 from irsim.lib.algorithm.rvo import reciprocal_vel_obs
 from irsim.lib.algorithm.social_force_model import social_force_model
-from irsim.lib.behavior.behavior_registry import behaviors_map, register_behavior
+from irsim.lib.behavior.behavior_registry import register_behavior
+from irsim.registry import CUSTOM_BEHAVIORS
 from irsim.util import WrapToPi, relative_position, vel_world2diff, vel_world2omni
 
 __all__ = [
@@ -239,7 +240,7 @@ def beh_omni_sfm(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any
     return _among("sfm", ego_object, external_objects, kwargs)
 
 
-behaviors_map |= {
+CUSTOM_BEHAVIORS.functions |= {
     ("diff", "dash"): beh_diff_dash,
     ("diff", "rvo"): beh_diff_rvo,
     ("diff", "sfm"): beh_diff_sfm,

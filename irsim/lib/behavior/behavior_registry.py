@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 
@@ -20,11 +21,24 @@ __all__ = [
 
 Made = TypeVar("Made", bound=Callable[..., Any])
 
-behaviors_map = CUSTOM_BEHAVIORS.functions
-"""Functions by (kinematics, name); :mod:`irsim.lib.behavior.behavior_methods` adds the built-in ones."""
 behaviors_class_map = CUSTOM_BEHAVIORS.classes
+"""Classes by (kinematics, name), of user code only; so are ``group_behaviors_map``."""
 group_behaviors_map = CUSTOM_GROUP_BEHAVIORS.functions
-group_behaviors_class_map = CUSTOM_GROUP_BEHAVIORS.classes
+
+if TYPE_CHECKING:
+    behaviors_map = CUSTOM_BEHAVIORS.functions
+    group_behaviors_class_map = CUSTOM_GROUP_BEHAVIORS.classes
+
+
+def __getattr__(name: str) -> Any:
+    """``behaviors_map`` and ``group_behaviors_class_map``, the built-in ones included, which are imported for it."""
+    if name == "behaviors_map":
+        import_module("irsim.lib.behavior.behavior_methods")
+        return CUSTOM_BEHAVIORS.functions
+    if name == "group_behaviors_class_map":
+        import_module("irsim.lib.behavior.group_behavior_methods")
+        return CUSTOM_GROUP_BEHAVIORS.classes
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def register_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:

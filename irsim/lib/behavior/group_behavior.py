@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
-from irsim.lib.behavior.behavior_registry import group_behaviors_class_map, group_behaviors_map
+from irsim.lib.behavior import behavior_registry
+from irsim.lib.behavior.behavior_registry import group_behaviors_map
 
 __all__ = ["GroupBehavior"]
 
@@ -31,7 +32,7 @@ class GroupBehavior:
     def _construct(self) -> None:
 
         key = (self.kinematics or "static", self.name or "")
-        maker = group_behaviors_class_map.get(key)
+        maker = behavior_registry.group_behaviors_class_map.get(key)
         self._made = None
         if maker is None:
             if self.name is not None and key not in group_behaviors_map:

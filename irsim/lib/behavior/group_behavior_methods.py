@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.lib._worlds import behavior_options, decide_among
-from irsim.lib.behavior.behavior_registry import group_behaviors_class_map
+from irsim.registry import CUSTOM_GROUP_BEHAVIORS
 
 __all__ = [
     "OrcaGroupBehavior",
@@ -81,7 +81,7 @@ def beh_diff_sfm_group(members: Sequence[Any], **kwargs: Any) -> SfmGroupBehavio
     return SfmGroupBehavior(members, **kwargs)
 
 
-group_behaviors_class_map |= {
+CUSTOM_GROUP_BEHAVIORS.classes |= {
     ("omni", "orca"): beh_omni_orca,
     ("diff", "orca"): beh_diff_orca,
     ("omni", "sfm"): beh_omni_sfm_group,

@@ -1,0 +1,11 @@
+"""The version under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(__name__, {"__version__": "irsim"})
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,11 @@
+"""``PerlinGridGenerator`` under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(__name__, {"PerlinGridGenerator": "irsim.maps._generators"})
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,11 @@
+"""``ObstacleDiff``, which IR-SIM has deprecated, under its name there."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(__name__, {"ObstacleDiff": "irsim.object_base"})
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,11 @@
+"""``Lidar2D`` under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(__name__, {"Lidar2D": "irsim.scans"})
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,11 @@
+"""``SensorFactory`` under the name of IR-SIM."""
+
+from typing import Any
+
+from irsim._names import from_homes
+
+_get = from_homes(__name__, {"SensorFactory": "irsim.sensor_factory"})
+
+
+def __getattr__(name: str) -> Any:
+    return _get(name)

@@ -1,0 +1,62 @@
+"""Modules of 2.12 that scripts import from, and what the class maps list."""
+
+import subprocess
+import sys
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+from irsim.errors import ScenarioError
+from irsim.world import World
+
+PATHS = """
+irsim.gui.mouse_control:MouseControl irsim.gui.keyboard_control:KeyboardControl irsim.version:__version__
+irsim.world.sensors.lidar2d:Lidar2D irsim.world.sensors.fmcw_lidar2d:FMCWLidar2D
+irsim.world.sensors.contact2d:Contact2D irsim.world.sensors.sensor_factory:SensorFactory
+irsim.world.robots.robot_acker:RobotAcker irsim.world.robots.robot_diff:RobotDiff
+irsim.world.robots.robot_omni:RobotOmni irsim.world.robots:RobotDiff irsim.world.obstacles:ObjectStatic
+irsim.world.obstacles.obstacle_acker:ObstacleAcker irsim.world.obstacles.obstacle_diff:ObstacleDiff
+irsim.world.obstacles.obstacle_omni:ObstacleOmni irsim.world.obstacles.obstacle_static:ObjectStatic
+irsim.world.map.fog_map:FogMap irsim.world.map.obstacle_map:ObstacleMap
+irsim.world.map.grid_map_generator_base:GridMapGenerator irsim.world.map.image_map_generator:ImageGridGenerator
+irsim.world.map.perlin_map_generator:PerlinGridGenerator
+"""
+
+
+@pytest.mark.parametrize("path", PATHS.split())
+def test_the_module_is_there_and_gives_the_same_class(path):
+    module, _, name = path.partition(":")
+    package = ".".join(module.split(".")[:2])
+    found = getattr(import_module(module), name)
+    assert found is getattr(import_module(package), name, found)
+
+
+def listed(statement: str) -> str:
+    code = f"import irsim.lib.behavior.behavior_registry as r\n{statement}"
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_the_maps_of_behaviors_list_the_built_in_ones():
+    assert listed("print(len(r.behaviors_map), ('diff', 'rvo') in r.behaviors_map)") == "8 True"
+    assert listed("print(sorted(r.group_behaviors_class_map)[:2], len(r.group_behaviors_class_map))") == (
+        "[('diff', 'orca'), ('diff', 'sfm')] 4"
+    )
+    assert listed("from irsim.lib.behavior.behavior_registry import behaviors_map as b; print(len(b))") == "8"
+    assert listed("print(len(r.behaviors_class_map), len(r.group_behaviors_map))") == "0 0"
+
+
+def test_a_world_takes_its_arguments_by_place():
+    world = World("w", 8, 10, 0.2)
+    assert (world.name, world.height, world.width, world.step_time) == ("w", 8, 10, 0.2)
+    assert World().grid_map is None
+    with pytest.raises(ScenarioError, match="step_tim"):
+        World(step_tim=0.1)
+
+
+def test_a_world_takes_an_array_as_its_map():
+    values = np.eye(4) * 100
+    world = World("w", 4, 6, obstacle_map=values)
+    assert (world.grid_map == values).all()
+    assert world.reso.ravel().tolist() == [1.5, 1.0]
+    assert world.obstacle_positions.shape == (2, 4)
