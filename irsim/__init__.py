@@ -12,7 +12,7 @@ from irsim._conflict import refuse_conflicts
 refuse_conflicts()
 
 if TYPE_CHECKING:
-    from irsim.api import render, run, validate
+    from irsim.api import diff, fix, render, run, validate
     from irsim.batch import Batch, batch
     from irsim.benchmarks import benchmark
     from irsim.env import Env, EnvBase, EnvBase3D, make
@@ -34,6 +34,8 @@ _HOMES = {
     "ScenarioNotFoundError": "irsim.errors",
     "batch": "irsim.batch",
     "benchmark": "irsim.benchmarks",
+    "diff": "irsim.api",
+    "fix": "irsim.api",
     "make": "irsim.env",
     "register_behavior": "irsim.lib",
     "render": "irsim.api",
@@ -55,6 +57,8 @@ __all__ = [
     "__version__",
     "batch",
     "benchmark",
+    "diff",
+    "fix",
     "make",
     "register_behavior",
     "render",

@@ -9,67 +9,31 @@ from irsim.env import Env
 from irsim.episode import (
     Progress,
     advance,
-    as_finding,
     default_time_limit,
     horizon_of,
     import_modules,
     read_scenario,
-    source_of,
 )
-from irsim.results import RenderResult, RunResult, ValidationReport
+from irsim.results import RenderResult, RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.read import read
 from irsim.snapshot import snapshot
-from irsim.survey import survey
+from irsim.validation import diff, fix, validate
 from irsim.verdict import command, run_result
 
-__all__ = ["default_time_limit", "import_modules", "read_scenario", "render", "run", "snapshot", "validate"]
+__all__ = [
+    "default_time_limit",
+    "diff",
+    "fix",
+    "import_modules",
+    "read_scenario",
+    "render",
+    "run",
+    "snapshot",
+    "validate",
+]
 
 VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
-
-
-def validate(
-    path: str | Path | None = None, *, text: str | None = None, strict: bool = True, limits: Limits | None = None
-) -> ValidationReport:
-    """Check a scenario without running it.
-
-    Args:
-        path: The file.
-        text: Or its text.
-        strict: What IR-SIM would ignore is an error (default) or a warning.
-        limits: Tighter or wider limits of the loader.
-
-    Raises:
-        ScenarioNotFoundError: No such file.
-        ValueError: Neither or both of ``path`` and ``text``.
-    """
-    reading = read(source_of(path, text, limits), strict=strict, limits=limits or DEFAULT_LIMITS, survey=survey)
-    findings = [as_finding(d) for d in reading.diagnostics]
-    count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
-    scenario, counts = reading.scenario, dict[str, int]()
-    if scenario is not None:
-        robots = len(scenario.robots())
-        counts = {
-            "robots": robots,
-            "obstacles": len(scenario.objects) - robots,
-            "sensors": sum(len(o.sensors) for o in scenario.objects),
-        }
-        summary = "valid: " + ", ".join(f"{n} {word if n != 1 else word[:-1]}" for word, n in counts.items())
-        if count["warning"]:
-            summary += f"; {count['warning']} warning{'s' * (count['warning'] != 1)}"
-    else:
-        summary = f"{count['error']} error{'s' * (count['error'] != 1)}, {count['warning']} warnings"
-    return ValidationReport(
-        file=str(path) if path is not None else "(text)",
-        valid=count["error"] == 0,
-        summary=summary,
-        errors=count["error"],
-        warnings=count["warning"],
-        hints=count["hint"],
-        findings=findings,
-        counts=counts,
-    )
 
 
 def run(

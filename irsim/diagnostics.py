@@ -9,20 +9,25 @@ from typing import Any, Literal
 
 from irsim.codes import CODES
 
-__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "nearest"]
+__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "nearest", "surely"]
 
 Severity = Literal["error", "warning", "hint"]
 Path = tuple[str | int, ...]
 _ORDER = {"error": 0, "warning": 1, "hint": 2}
+_SLIP = 0.75
 
 
 @dataclass(frozen=True)
 class Edit:
-    """A machine-applicable repair: what to do with the node at ``path``."""
+    """A machine-applicable repair: what to do with the node at ``path``.
+
+    ``safe``: it does what was surely meant; otherwise it is one way out, and nobody but the author can choose it.
+    """
 
     action: Literal["remove", "replace", "rename", "add"]
     path: Path
     value: Any = None
+    safe: bool = True
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,11 @@ def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | 
     lowered = {str(choice).lower(): str(choice) for choice in choices}
     found = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
     return lowered[found[0]] if found else None
+
+
+def surely(word: object, meant: str) -> bool:
+    """Whether ``word`` can hardly mean anything but ``meant``: a slip of a letter or two."""
+    return nearest(word, [meant], _SLIP) is not None
 
 
 def by_severity(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irsim.diagnostics import Diagnostic, format_path
+from irsim.diagnostics import Diagnostic, Edit, format_path
 from irsim.env import Env
 from irsim.errors import OverLimitError
+from irsim.results import Edit as EditRecord
 from irsim.results import Finding, HorizonSource
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_text
@@ -111,8 +112,16 @@ def as_finding(diagnostic: Diagnostic) -> Finding:
         given=diagnostic.given,
         allowed=allowed if allowed is None or isinstance(allowed, str) else list(allowed),
         fix=diagnostic.fix,
+        edit=_edit(diagnostic.edit),
         tolerated=diagnostic.tolerated,
     )
+
+
+def _edit(edit: Edit | None) -> EditRecord | None:
+    """Only what is safe to do is offered."""
+    if edit is None or not edit.safe:
+        return None
+    return EditRecord(action=edit.action, path=format_path(edit.path), value=edit.value)
 
 
 def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:

@@ -9,11 +9,16 @@ from pydantic import BaseModel, ConfigDict, Field
 __all__ = [
     "BenchmarkResult",
     "BenchmarkRow",
+    "DryRun",
+    "Edit",
     "EpisodeRow",
     "Estimate",
     "EventRecord",
     "Finding",
+    "Fix",
     "HorizonSource",
+    "KeyChange",
+    "Left",
     "Proportion",
     "RenderResult",
     "ReplayResult",
@@ -21,8 +26,11 @@ __all__ = [
     "RobotResult",
     "RunResult",
     "RunTable",
+    "ScenarioDiff",
     "SnapshotResult",
+    "Stuck",
     "ValidationReport",
+    "WorldChange",
 ]
 
 
@@ -34,6 +42,16 @@ class Result(BaseModel):
     """Base of all results: fields are documented, nothing else gets in."""
 
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+
+class Edit(Result):
+    """A repair that a program can make without guessing."""
+
+    action: Literal["remove", "replace", "rename", "add"]
+    path: str
+    """What to remove, replace or rename, or the key to add."""
+    value: Any = None
+    """The new value, or the new name of a key."""
 
 
 class Finding(Result):
@@ -59,8 +77,117 @@ class Finding(Result):
     """What would be accepted."""
     fix: str | None = None
     """What to write instead."""
+    edit: Edit | None = None
+    """The same for programs, where nothing has to be guessed; ``irsim validate --fix`` makes it."""
     tolerated: bool = False
     """Whether ``irsim run`` goes on in spite of it, as IR-SIM does."""
+
+
+class EventRecord(Result):
+    """Something that happened in an episode."""
+
+    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    """``collision`` is reported when contact begins; ``no_path`` when ``follow`` finds none."""
+    time: float
+    """Simulated time [s]."""
+    step: int
+    """Steps executed; 0 is the initial state."""
+    object: str
+    """Name of the object, or of the first of the two that touch."""
+    partner: str | None
+    """Name of the other one in a collision."""
+    x: float
+    """Where [m]."""
+    y: float
+    """Where [m]."""
+
+
+class Fix(Result):
+    """A repair that was made."""
+
+    code: str
+    path: str
+    line: int | None
+    change: str
+    """What was done: ``renamed 'behaviour' to 'behavior'``."""
+
+
+class KeyChange(Result):
+    """A key that differs between two files."""
+
+    change: Literal["added", "removed", "changed"]
+    path: str
+    """Where it is now; where it was if it was removed."""
+    before: Any = None
+    after: Any = None
+
+
+class WorldChange(Result):
+    """A fact that differs between two worlds."""
+
+    object: str | None
+    """Name of the object (its new one); None for the world itself."""
+    change: Literal["added", "removed", "changed"]
+    key: str | None = None
+    """Which fact of it: ``pose``, ``sensors[0].number``."""
+    before: Any = None
+    after: Any = None
+
+
+class ScenarioDiff(Result):
+    """What ``irsim diff`` found."""
+
+    before: str
+    after: str
+    same: bool
+    """Neither a key nor a fact differs; comments and layout may."""
+    summary: str
+    keys: list[KeyChange]
+    """Changes of the files; entries are recognised by name or likeness when others come or go before them."""
+    world: list[WorldChange] | None
+    """Changes of the worlds, both built with one seed; None if one of the scenarios is invalid."""
+    comments_lost: list[str]
+    lines_removed: int
+    lines_added: int
+
+
+class Stuck(Result):
+    """A robot that gets nowhere."""
+
+    name: str
+    since: float
+    """When it began [s]."""
+    x: float
+    y: float
+    why: str
+
+
+class Left(Result):
+    """An object that left the world."""
+
+    name: str
+    time: float
+    """When [s]."""
+    x: float
+    y: float
+
+
+class DryRun(Result):
+    """What happened in a first look: some steps, nothing kept."""
+
+    seed: int
+    steps: int
+    sim_time: float
+    """Simulated time [s]."""
+    ended: Literal["done", "horizon", "budget"]
+    """``done``: every robot arrived or stopped; ``horizon``: the episode was over; ``budget``: the look was."""
+    summary: str
+    arrived: list[str]
+    """Robots that reached their last goal."""
+    collisions: list[EventRecord]
+    """The first ones, in order."""
+    stuck: list[Stuck]
+    left: list[Left]
 
 
 class ValidationReport(Result):
@@ -82,25 +209,12 @@ class ValidationReport(Result):
     """All findings, errors first."""
     counts: dict[str, int] = Field(default_factory=dict)
     """Robots, obstacles and sensors of a valid scenario."""
-
-
-class EventRecord(Result):
-    """Something that happened in an episode."""
-
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
-    """``collision`` is reported when contact begins; ``no_path`` when ``follow`` finds none."""
-    time: float
-    """Simulated time [s]."""
-    step: int
-    """Steps executed; 0 is the initial state."""
-    object: str
-    """Name of the object, or of the first of the two that touch."""
-    partner: str | None
-    """Name of the other one in a collision."""
-    x: float
-    """Where [m]."""
-    y: float
-    """Where [m]."""
+    fixes: list[Fix] = Field(default_factory=list)
+    """Repairs that were made; the findings are those that are left."""
+    changes: ScenarioDiff | None = None
+    """What differs from the scenario it was compared with."""
+    dry_run: DryRun | None = None
+    """What happened when it was tried."""
 
 
 class RobotResult(Result):

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli import benchmark, demo, describe, inspect, new, render, replay, run, schema, templates, validate
+from irsim.cli import benchmark, demo, describe, diff, inspect, new, render, replay, run, schema, templates, validate
 from irsim.cli.guard import guarded
 from irsim.cli.map import map_app
 from irsim.cli.skills import skills_app
@@ -46,6 +46,7 @@ for _verb in (
     templates.templates,
     new.new,
     validate.validate,
+    diff.diff,
     run.run,
     inspect.inspect,
     replay.replay,

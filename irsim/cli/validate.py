@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from irsim.cli.guard import INVALID
-from irsim.cli.options import Imports, MaxObjects
+from irsim.cli.options import Imports, MaxObjects, Seed
 from irsim.errors import ScenarioNotFoundError
 
 if TYPE_CHECKING:
-    from irsim.results import ValidationReport
+    from rich.console import Console
+
+    from irsim.results import DryRun, ValidationReport
+    from irsim.scenario.limits import Limits
 
 __all__ = ["validate"]
 
@@ -25,6 +29,13 @@ def validate(
     lenient: Annotated[
         bool, typer.Option("--lenient", help="Only warn where IR-SIM would carry on, as irsim run does.")
     ] = False,
+    fix: Annotated[
+        bool, typer.Option("--fix", help="Make the repairs that need no guessing, in the file; comments stay.")
+    ] = False,
+    simulate: Annotated[
+        bool, typer.Option("--simulate", help="Also try it for some steps and say what happens; about a second.")
+    ] = False,
+    seed: Seed = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
@@ -37,12 +48,8 @@ def validate(
     for file in files:
         text = sys.stdin.read() if file == "-" else None
         with progress(f"checking {file}"):
-            from irsim import api
-
             try:
-                report = api.validate(
-                    None if file == "-" else file, text=text, strict=not lenient, limits=limits_for(max_objects)
-                )
+                report, text = _checked(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
             except ScenarioNotFoundError as error:  # the other files are checked all the same
                 report, text = not_found(file, str(error)), ""
         valid &= report.valid
@@ -54,12 +61,63 @@ def validate(
         raise typer.Exit(INVALID)
 
 
+def _checked(
+    file: str, text: str | None, fix: bool, simulate: bool, seed: int | None, strict: bool, limits: Limits | None
+) -> tuple[ValidationReport, str | None]:
+    """The report on a file, or on a text from standard input; with ``fix``, on the repaired one."""
+    from irsim import api
+
+    path = None if file == "-" else file
+    fixes = []
+    if fix:
+        mended, report = api.fix(path, text=text, strict=strict, limits=limits)
+        fixes = report.fixes
+        if fixes and path is None:
+            text = mended
+        elif fixes:
+            from irsim.files import write_atomically
+            from irsim.scenario.locate import locate
+
+            write_atomically(Path(locate(file)), mended)
+    report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, limits=limits)
+    report.fixes = fixes
+    return report, text
+
+
 def _show(report: ValidationReport, file: str, text: str | None) -> None:
     from rich.text import Text
 
     from irsim.cli.findings import print_findings
     from irsim.cli.output import console
+    from irsim.text import clean
 
+    out = console()
+    for item in report.fixes:
+        line = "" if item.line is None else f"line {item.line}: "
+        out.print(
+            Text.assemble(("fixed", "bold green"), f" {item.code}  {line}{clean(item.change, 300)}"), soft_wrap=True
+        )
     print_findings(report.findings, file, text=text)
+    if report.dry_run is not None:
+        show_dry_run(report.dry_run, out)
     if report.valid:
-        console().print(Text.assemble((report.file, "bold"), ": ", (report.summary, "bold green")))
+        out.print(Text.assemble((report.file, "bold"), ": ", (report.summary, "bold green")))
+
+
+def show_dry_run(found: DryRun, out: Console) -> None:
+    """Print what happened in a first look.
+
+    Args:
+        found: From a report.
+        out: Where to.
+    """
+    from rich.text import Text
+
+    from irsim.text import clean
+
+    lines = [f"'{e.object}' with '{e.partner}' at {e.time:.1f} s, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]]
+    lines += [f"'{s.name}' stands since {s.since:.1f} s at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]]
+    lines += [f"'{gone.name}' left the world at {gone.time:.1f} s" for gone in found.left[1:]]
+    out.print(Text.assemble(("tried", "bold"), f" (seed {found.seed}): {clean(found.summary, 600)}"), soft_wrap=True)
+    for line in lines:
+        out.print(f"  {clean(line, 200)}", soft_wrap=True)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from irsim.codes import CODES
-from irsim.diagnostics import Edit, Path, format_path, nearest
+from irsim.diagnostics import Edit, Path, format_path, nearest, surely
 from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
@@ -94,7 +94,9 @@ class Explainer:
     def _own(self) -> Finding:
         """Raised by the language's own validators: message, allowed and fix come with it."""
         context = self.context
-        edit = Edit("replace", self.path, context["replace"]) if context.get("replace") is not None else None
+        meant = context.get("replace")
+        sure = not isinstance(meant, str) or surely(self.value, meant)
+        edit = Edit("replace", self.path, meant, safe=sure) if meant is not None else None
         carry_on = edit if context.get("tolerated") else carry_on_value(self.kind, self.path, self.value)
         return error(
             self.kind,
@@ -125,7 +127,9 @@ class Explainer:
             given=key,
             allowed=sorted(allowed),
             fix=f"rename it to '{near}'" if near else "remove it",
-            edit=Edit("rename", self.path, near) if near else Edit("remove", self.path),
+            edit=Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
+            if near
+            else Edit("remove", self.path, safe=False),
             carry_on=carry_on_unknown_key(self.path, at(self.data, parent)),
         )
 
@@ -139,7 +143,7 @@ class Explainer:
             given=self.value,
             allowed=allowed,
             fix=f"{self._key()}: {near}" if near else None,
-            edit=Edit("replace", self.path, near) if near else None,
+            edit=Edit("replace", self.path, near, safe=surely(self.value, near)) if near else None,
             carry_on=carry_on_value("unknown-value", self.path, self.value),
         )
 
@@ -219,7 +223,7 @@ class Explainer:
         if expected == "a list" and isinstance(value, Mapping):
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
         if value is None:
-            return "give a value or remove the key", Edit("remove", path)
+            return "give a value or remove the key", Edit("remove", path, safe=False)
         if expected == "true or false" and str(value).strip().lower() in _BOOLEANS:
             meant = _BOOLEANS[str(value).strip().lower()]
             return f"write {str(meant).lower()}", Edit("replace", path, meant)

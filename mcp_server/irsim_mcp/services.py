@@ -87,6 +87,21 @@ class Services:
         result: dict[str, Any] = answer["result"]
         return result
 
+    def base(self, base: str | None) -> dict[str, Any]:
+        """Arguments for the scenario to compare with; none if there is none.
+
+        Args:
+            base: A file in the workspace, or YAML text (which has more than one line, or a mapping in braces).
+
+        Raises:
+            ToolError: The path is refused, or the text is too long.
+        """
+        if not base:
+            return {}
+        if "\n" in base or base.lstrip().startswith("{") or ": " in base:
+            return {"base_text": self._text(base, "base")}
+        return {"base": self.workspace.scenario(base, "base")}
+
     def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
         if bool(scenario_path) == bool(scenario_yaml):
             given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"

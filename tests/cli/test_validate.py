@@ -61,3 +61,38 @@ def test_limits_can_be_raised(irsim: Run, room: Path) -> None:
     room.write_text(ROOM.replace("  - kin", "  - number: 20\n    kin"), encoding="utf-8")
     assert irsim("validate", "room.yaml", "--max-objects", "10").exit_code == 2
     assert irsim("validate", "room.yaml", "--max-objects", "30").exit_code == 0
+
+
+def test_fix_mends_the_file_in_place(irsim: Run, room: Path) -> None:
+    room.write_text(ROOM.replace("behavior", "behaviour") + "# the end\n", encoding="utf-8")
+    result = irsim("validate", "room.yaml", "--fix")
+    assert result.exit_code == 0, result.stdout
+    assert "renamed 'behaviour' to 'behavior'" in result.stdout
+    assert room.read_text(encoding="utf-8") == ROOM + "# the end\n"
+    assert "fixed" not in irsim("validate", "room.yaml", "--fix").stdout
+
+
+def test_fix_leaves_a_file_alone_that_it_cannot_mend(irsim: Run, room: Path) -> None:
+    text = ROOM.replace("dash", "no-such-thing")
+    room.write_text(text, encoding="utf-8")
+    assert irsim("validate", "room.yaml", "--fix").exit_code == 2
+    assert room.read_text(encoding="utf-8") == text
+
+
+def test_simulate_says_what_happens(irsim: Run, room: Path) -> None:
+    result = irsim("validate", "room.yaml", "--simulate")
+    assert result.exit_code == 0
+    assert "1 of 1 robots arrived" in result.stdout
+    tried = parsed(irsim("validate", "room.yaml", "--simulate", "--json"))["dry_run"]
+    assert tried == package.validate("room.yaml", simulate=True).model_dump(mode="json")["dry_run"]
+
+
+def test_diff_lists_changes_and_refuses_those_not_asked_for(irsim: Run, room: Path) -> None:
+    Path("other.yaml").write_text(ROOM.replace("dash", "rvo"), encoding="utf-8")
+    result = irsim("diff", "room.yaml", "other.yaml")
+    assert result.exit_code == 0
+    assert "behavior.name" in result.stdout
+    assert irsim("diff", "room.yaml", "other.yaml", "--only", "robot[0].behavior").exit_code == 0
+    assert irsim("diff", "room.yaml", "other.yaml", "--only", "world").exit_code == 1
+    found = parsed(irsim("diff", "room.yaml", "other.yaml", "--json"))
+    assert found == package.diff("room.yaml", "other.yaml").model_dump(mode="json")

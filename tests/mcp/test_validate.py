@@ -115,3 +115,27 @@ async def test_a_fence_around_the_yaml_is_explained(empty: Path) -> None:
     async with connected(empty) as client:
         data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": f"```yaml\n{ROOM}```\n"}))
     assert data["issues"][0]["fix"] == "leave out the lines with ```"
+
+
+async def test_tries_a_valid_scenario(empty: Path) -> None:
+    async with connected(empty) as client:
+        result = await client.call_tool("validate_scenario", {"scenario_yaml": ROOM})
+        quiet = await client.call_tool("validate_scenario", {"scenario_yaml": ROOM, "simulate": False})
+    assert "1 of 1 robots arrived" in data_of(result)["dry_run"]
+    assert data_of(result)["dry_run"] in text_of(result)
+    assert "dry_run" not in data_of(quiet)
+
+
+async def test_says_what_an_edit_changed(workspace: Path) -> None:
+    (workspace / "before.yaml").write_text(ROOM, encoding="utf-8")
+    edited = ROOM.replace("dash", "rvo")
+    async with connected(workspace) as client:
+        by_file = await client.call_tool("validate_scenario", {"scenario_yaml": edited, "base": "before.yaml"})
+        by_text = await client.call_tool("validate_scenario", {"scenario_yaml": edited, "base": ROOM})
+        outside = await client.call_tool("validate_scenario", {"scenario_yaml": edited, "base": "../x.yaml"})
+    lines = data_of(by_file)["changes"]
+    assert any("behavior.name" in line and '"dash" -> "rvo"' in line for line in lines)
+    assert any(line.startswith("world: changed") for line in lines)
+    assert data_of(by_text)["changes"][1:] == lines[1:]
+    assert outside.is_error
+    assert "path-outside-workspace" in text_of(outside)

@@ -65,7 +65,10 @@ LAYERS = (
     api
     benchmarks
     bridges
+    comparison
     config
+    description
+    dry_run
     episode
     learning
     lib
@@ -81,6 +84,7 @@ LAYERS = (
     templates
     testing
     util
+    validation
     verdict
     """,
     "cli __main__",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.behaviors._options import CustomOptions
-from irsim.diagnostics import Edit, nearest
+from irsim.diagnostics import Edit, nearest, surely
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint, warning
@@ -80,7 +80,7 @@ def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehav
         fix=f"name: {near}"
         if near
         else "register it before the scenario is read (--import MODULE on the command line)",
-        edit=Edit("replace", path, near) if near else None,
+        edit=Edit("replace", path, near, safe=surely(options.name, near)) if near else None,
         tolerated=True,
     )
 

@@ -53,7 +53,7 @@ def _missing_images(context: Context, folder: FilePath | None) -> Iterator[Findi
             given=name,
             allowed=f"an image file beside the scenario, or one of {', '.join(BUNDLED)}",
             fix=f"description: {near}" if near else "text belongs into 'world.description' or a comment",
-            edit=Edit("replace", path, near) if near else None,
+            edit=Edit("replace", path, near, safe=False) if near else None,
         )
 
 

@@ -141,7 +141,7 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
                 (*path, "shape"),
                 "without 'state' the object stands at [1, 1, 0], which shifts its vertices by (1, 1)",
                 fix="add 'state: [0, 0, 0]' if the vertices are world coordinates",
-                edit=Edit("add", (*path, "state"), [0, 0, 0]),
+                edit=Edit("add", (*path, "state"), [0, 0, 0], safe=False),
             )
     elif records[0].role == "robot":
         states: Any = [entry.state] if is_vector(entry.state) else entry.state

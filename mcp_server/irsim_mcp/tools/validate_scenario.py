@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 from typing import Annotated, Any, Literal
 
 from mcp.types import CallToolResult, TextContent
@@ -15,16 +16,18 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Report", "tool"]
 
 _DESCRIPTION = """
-    Check a scenario without running it. Use it after every edit, before drawing or running. Returns all problems at
-    once; an invalid scenario is a normal result with valid=false. Each issue has a code, the path and line, what is
-    wrong and how to fix it. Errors must be fixed (misspelt keys are errors too); warnings run, but likely not as
-    meant; hints are worth knowing. not-yet-simulated means that this version cannot do it: tell the user. Next: apply
-    the fixes and validate again; once valid, look at it with render_snapshot.
+    Check a scenario and try it. Use it after every edit, before drawing or running. Returns all problems at once; an
+    invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
+    be fixed; warnings run, but likely not as meant; hints are worth knowing. not-yet-simulated: this version cannot do
+    it, tell the user. dry_run says who arrived, collided, got stuck or left the world in the first steps. With base
+    (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix and validate again;
+    once valid, look with render_snapshot.
 """
 
 
 _GAPS = "Tell the user that this version cannot simulate this; to show the rest, run a labelled copy without it."
 _HINTS = 6
+_MOST_CHANGES = 80
 _ALLOWED = 800
 """Characters of the values that would be accepted."""
 
@@ -56,6 +59,8 @@ class Report(BaseModel):
     counts: dict[str, int]
     issues: list[Issue]
     truncated: bool
+    dry_run: str | None = None
+    changes: list[str] | None = None
     next: str
 
 
@@ -65,13 +70,20 @@ def tool(services: Services) -> StrictTool:
     async def validate_scenario(
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
+        base: Annotated[str | None, Field(description="Scenario to compare with: path or YAML text.")] = None,
+        simulate: Annotated[bool, Field(description="Try it, if valid.")] = True,
         max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
         response_format: Annotated[
             Literal["concise", "detailed"], Field(description="detailed: with hints, columns, all allowed values.")
         ] = "concise",
     ) -> Annotated[CallToolResult, Report]:
         found = await services.scenario_job(
-            "validate", scenario_path, scenario_yaml, seconds=services.limits.check_seconds
+            "validate",
+            scenario_path,
+            scenario_yaml,
+            seconds=services.limits.check_seconds,
+            simulate=simulate,
+            **services.base(base),
         )
         report = _report(found, max_issues, response_format == "detailed", services.limits.text)
         text = TextContent(type="text", text=_text(report))
@@ -109,8 +121,40 @@ def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Repo
         counts=found["counts"],
         issues=issues,
         truncated=cut > 0,
+        dry_run=_tried(found["dry_run"], detailed),
+        changes=_changes(found["changes"], detailed),
         next=advice,
     )
+
+
+def _tried(found: dict[str, Any] | None, detailed: bool) -> str | None:
+    """What happened, in words; in detail with everything that was noted."""
+    if found is None:
+        return None
+    more = [f"'{e['object']}' hit '{e['partner']}' at {e['time']:.1f} s" for e in found["collisions"][1:]]
+    more += [f"'{item['name']}' stands since {item['since']:.1f} s: {item['why']}" for item in found["stuck"][1:]]
+    more += [f"'{item['name']}' left the world at {item['time']:.1f} s" for item in found["left"][1:]]
+    return clean("; ".join([f"seed {found['seed']}, {found['summary']}", *(more if detailed else [])]), 1500)
+
+
+def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
+    """One line per change; the summary first."""
+    if found is None:
+        return None
+    most = _MOST_CHANGES if detailed else _MOST_CHANGES // 4
+    lines = [f"{item['change']} {item['path']}: {_values(item)}" for item in found["keys"]]
+    lines += [
+        f"world: {item['change']} {' '.join(filter(None, (item['object'], item['key'])))}: {_values(item)}"
+        for item in found["world"] or []
+    ]
+    lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
+    cut = [f"{len(lines) - most} more with response_format=detailed"] if len(lines) > most else []
+    return [clean(line, 300) for line in [found["summary"], *lines[:most], *cut]]
+
+
+def _values(item: dict[str, Any]) -> str:
+    before, after = (clean(json.dumps(item[key], ensure_ascii=False), 80) for key in ("before", "after"))
+    return {"added": after, "removed": before, "changed": f"{before} -> {after}"}[item["change"]]
 
 
 def _fitting(issues: list[Issue], room: int) -> list[Issue]:
@@ -137,8 +181,14 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
 
 def _text(report: Report) -> str:
     """The report in words; it says all that the structure says."""
-    issues = [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]
-    return "\n".join([report.summary, *issues, f"Next: {report.next}"])
+    lines = [report.summary]
+    lines += [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]
+    if report.dry_run is not None:
+        lines.append(f"Tried: {report.dry_run}")
+    if report.changes is not None:
+        lines.append(f"Changes: {report.changes[0]}")
+        lines += [f"- {line}" for line in report.changes[1:]]
+    return "\n".join([*lines, f"Next: {report.next}"])
 
 
 def _issue_text(number: int, issue: Issue) -> str:

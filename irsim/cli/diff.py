@@ -1,0 +1,89 @@
+"""``irsim diff``: what differs between two scenarios."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from irsim.cli.guard import FAILED
+from irsim.cli.options import Json, Seed
+
+if TYPE_CHECKING:
+    from irsim.results import ScenarioDiff
+
+__all__ = ["diff"]
+
+_SIGNS = {"added": ("+", "green"), "removed": ("-", "red"), "changed": ("~", "yellow")}
+_LONGEST = 100
+
+
+def diff(
+    before: Annotated[str, typer.Argument(metavar="BEFORE", help="Scenario file.", show_default=False)],
+    after: Annotated[str, typer.Argument(metavar="AFTER", help="The same after an edit.", show_default=False)],
+    seed: Seed = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--only",
+            metavar="PATH",
+            help="What may differ, with all below it: robot[0].vel_max. Exit code 1 if anything else does.",
+        ),
+    ] = None,
+    json_output: Json = False,
+) -> None:
+    """Say what differs between two scenarios: keys of the files, and facts of the worlds they become.
+
+    Order, layout and other ways to write the same do not count. Entries are recognised when others come or go.
+    """
+    from irsim import api
+    from irsim.cli.output import print_json
+
+    found = api.diff(before, after, seed=seed)
+    extra = [change.path for change in found.keys if only and not any(_within(change.path, path) for path in only)]
+    if json_output:
+        print_json(found)
+    else:
+        _show(found, extra)
+    if extra or (only and found.comments_lost):
+        raise typer.Exit(FAILED)
+
+
+def _within(path: str, allowed: str) -> bool:
+    return path == allowed or path.startswith((f"{allowed}.", f"{allowed}["))
+
+
+def _show(found: ScenarioDiff, extra: list[str]) -> None:
+    from rich.text import Text
+
+    from irsim.cli.output import console
+    from irsim.text import clean
+
+    out = console()
+
+    def line(kind: str, where: str, before: Any, after: Any) -> None:
+        sign, color = _SIGNS[kind]
+        values = [_shown(value) for value in (before, after)]
+        change = {"added": values[1], "removed": values[0], "changed": f"{values[0]} -> {values[1]}"}[kind]
+        out.print(Text.assemble((f"{sign} {clean(where, 120)}", color), f"  {change}"), soft_wrap=True)
+
+    if found.keys:
+        out.print("in the file", style="bold")
+    for change in found.keys:
+        line(change.change, change.path, change.before, change.after)
+    if found.world:
+        out.print("in the world", style="bold")
+    for fact in found.world or []:
+        line(fact.change, " ".join(filter(None, (fact.object or "world", fact.key))), fact.before, fact.after)
+    for comment in found.comments_lost:
+        out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, _LONGEST)}"), soft_wrap=True)
+    out.print(clean(found.summary, 600), soft_wrap=True)
+    if extra:
+        out.print(Text(f"not asked for: {clean(', '.join(extra), 400)}", style="bold red"), soft_wrap=True)
+
+
+def _shown(value: Any) -> str:
+    from irsim.scenario.rewrite import yaml_flow
+    from irsim.text import clean
+
+    return clean(yaml_flow(value), _LONGEST)

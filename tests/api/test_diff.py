@@ -1,0 +1,108 @@
+"""``irsim.diff``: what an edit changed, in the file and in the world."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim import templates
+
+BASE = """\
+world: {width: 10, height: 8, seed: 3}   # the hall
+robot:
+  - name: scout
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.3}
+    state: [1, 4, 0]   # by the door
+    goal: [9, 4]
+    vel_max: [1.0, 1.5]
+    vel_min: [-1.0, -1.5]
+    behavior: {name: dash}
+    sensors: [{name: lidar2d, number: 90, range_max: 4}]
+obstacle:
+  - {shape: {name: rectangle, length: 1, width: 2}, state: [5, 6, 0]}
+  - {shape: {name: circle, radius: 0.5}, state: [5, 1, 0]}
+"""
+
+
+def diff(before: str, after: str) -> irsim.results.ScenarioDiff:
+    return irsim.diff(before_text=before, after_text=after)
+
+
+def keys(found: irsim.results.ScenarioDiff) -> list[tuple[str, str]]:
+    return [(change.change, change.path) for change in found.keys]
+
+
+def world(found: irsim.results.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
+    assert found.world is not None
+    return [(change.change, change.object, change.key) for change in found.world]
+
+
+def test_a_file_does_not_differ_from_itself_written_otherwise() -> None:
+    other = (
+        "obstacle:\n- state: [5.0, 6, 0]\n  shape: {length: 1.0, name: rectangle, width: 2}\n"
+        "- {shape: {name: circle, radius: 0.5}, state: [5, 1, 0]}\n"
+        + BASE.partition("obstacle:")[0].replace("   #", "  #")
+    )
+    found = diff(BASE, other)
+    assert (found.same, found.keys, found.world, found.comments_lost) == (True, [], [], [])
+
+
+def test_one_value_is_one_key_and_one_fact() -> None:
+    found = diff(BASE, BASE.replace("number: 90", "number: 181"))
+    assert keys(found) == [("changed", "robot[0].sensors[0].number")]
+    assert world(found) == [("changed", "scout", "sensors[0].number")]
+    change = found.keys[0]
+    assert (change.before, change.after, found.lines_removed, found.lines_added) == (90, 181, 1, 1)
+
+
+def test_what_comes_before_does_not_shift_the_rest() -> None:
+    entry = "  - {shape: {name: circle, radius: 0.2}, state: [8, 2, 0]}\n"
+    found = diff(BASE, BASE.replace("obstacle:\n", f"obstacle:\n{entry}"))
+    assert keys(found) == [("added", "obstacle[0]")]
+    assert world(found) == [("added", "obstacle_1", None)]
+    back = diff(BASE.replace("obstacle:\n", f"obstacle:\n{entry}"), BASE)
+    assert keys(back) == [("removed", "obstacle[0]")]
+    assert [item[0] for item in world(back)] == ["removed"]
+
+
+def test_a_default_written_out_changes_the_file_but_not_the_world() -> None:
+    found = diff(BASE, BASE.replace("goal: [9, 4]", "goal: [9, 4]\n    goal_threshold: 0.1"))
+    assert keys(found) == [("added", "robot[0].goal_threshold")]
+    assert world(found) == []
+    assert not found.same
+
+
+def test_lost_comments_are_told() -> None:
+    found = diff(BASE, BASE.replace("   # by the door", ""))
+    assert (found.same, found.comments_lost) == (True, ["# by the door"])
+
+
+def test_another_drive_changes_what_follows_from_it() -> None:
+    found = diff(BASE, BASE.replace("{name: diff}", "{name: omni}"))
+    assert keys(found) == [("changed", "robot[0].kinematics.name")]
+    assert ("changed", "scout", "kinematics") in world(found)
+
+
+def test_with_an_invalid_file_only_the_keys_are_compared() -> None:
+    found = diff(BASE, BASE.replace("radius: 0.3", "radius: -1"))
+    assert keys(found) == [("changed", "robot[0].shape.radius")]
+    assert found.world is None
+    assert "invalid" in found.summary
+
+
+def test_validation_can_say_what_changed(tmp_path: Path) -> None:
+    path = tmp_path / "hall.yaml"
+    path.write_text(BASE.replace("[9, 4]", "[9, 5]"), encoding="utf-8")
+    report = irsim.validate(path, base_text=BASE)
+    assert report.changes is not None
+    assert [change.path for change in report.changes.keys] == ["robot[0].goal"]
+    assert [(fact.object, fact.key) for fact in report.changes.world or []] == [("scout", "goals")]
+
+
+@pytest.mark.parametrize("name", ["mixed-fleet", "crowd", "cave", "random-polygons", "fog-exploration", "sorting"])
+def test_templates_equal_themselves(name: str) -> None:
+    text = templates.load(name).text
+    assert diff(text, text).same
