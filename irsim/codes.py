@@ -148,6 +148,11 @@ CODES: dict[str, Code] = {
     "not-a-group-behavior": Code(
         "not a group behavior", "This behavior decides for each object alone: write it under 'behavior'."
     ),
+    "bad-social-group": Code(
+        "social group of members that are not there, or named twice",
+        "'social_groups' of a group 'sfm' lists who walks together, by the index of each member in its group, counted "
+        "from 0 in the order of the file. Each index is below the number of members and is named once.",
+    ),
     "unknown-kinematics": Code("unknown kinematics", "No drive of that name is built in or registered."),
     "unknown-shape": Code("unknown shape", "No shape of that name is built in or registered."),
     "unknown-sensor": Code("unknown sensor", "No sensor of that name is built in or registered."),

@@ -31,7 +31,9 @@ DIFFERENCES: dict[str, Difference] = {
     "D4": Difference(
         "unknown keys in behaviors, sensors, shapes, plot: silence or a bare TypeError",
         "a diagnostic with path, line and nearest name; `make` and `irsim run` warn where 2.12 carries on, "
-        "`validate`, `strict=True` and the MCP server refuse",
+        "`validate`, `strict=True` and the MCP server refuse. Numbers that a behavior cannot use (`vmax: -1`, "
+        "`timeHorizon: 0`) are refused by `make`, too, but for `acce` of `rvo` and for keys with which 2.12 goes on "
+        "without a group behavior",
         "whoever mistypes needs to be told",
     ),
     "D5": Difference(
@@ -62,9 +64,12 @@ DIFFERENCES: dict[str, Difference] = {
         "a world of a batch draws what it draws alone; numbers differ from 2.12",
     ),
     "D11": Difference(
-        "`orca` keeps velocities of its own, in single precision",
-        "real velocities, double precision",
-        "the solver planned from fiction",
+        "`orca` keeps velocities of its own, in single precision; `diff` members leave heading errors below 0.1 rad "
+        "alone",
+        "real velocities, double precision; who avoids somebody turns however little the new velocity is off its "
+        "heading (who avoids nobody leaves 0.1 rad alone as in 2.12)",
+        "the solver planned from fiction: fed with the real velocity, it would ask for the same small turn again and "
+        "again, and nobody would ever make it",
     ),
     "D12": Difference(
         "status, arrival and collisions exist after the first step",

@@ -12,7 +12,7 @@ from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
 from irsim.scenario.numerals import read_number
-from irsim.scenario.tolerance import carry_on_type, carry_on_unknown_key, carry_on_value
+from irsim.scenario.tolerance import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.where import at, field_at, lengths_of, literals, model_at, unit_of
 from irsim.scenario.wording import number, shown
 
@@ -97,7 +97,7 @@ class Explainer:
         meant = context.get("replace")
         sure = not isinstance(meant, str) or surely(self.value, meant)
         edit = Edit("replace", self.path, meant, safe=sure) if meant is not None else None
-        carry_on = edit if context.get("tolerated") else carry_on_value(self.kind, self.path, self.value)
+        carry_on = edit if context.get("tolerated") else self._carry_on()
         return error(
             self.kind,
             self.path,
@@ -160,7 +160,7 @@ class Explainer:
             f"{shown(self.value)} is out of range",
             given=self.value,
             allowed=" and ".join(limits.values()) + self._unit(),
-            carry_on=carry_on_value(self.kind, self.path, self.value),
+            carry_on=self._carry_on(),
         )
 
     def _not_finite(self) -> Finding:
@@ -211,7 +211,7 @@ class Explainer:
             allowed=expected + (self._unit() if self.kind in _NUMBERS else ""),
             fix=fix,
             edit=edit,
-            carry_on=carry_on_type(self.kind, self.path, self.value),
+            carry_on=carry_on_group(self.path, self.data) or carry_on_type(self.kind, self.path, self.value),
         )
 
     def _repair(self, expected: str) -> tuple[str | None, Edit | None]:
@@ -284,6 +284,9 @@ class Explainer:
             edit=Edit("replace", self.path, written),
             carry_on=carry_on_type(self.kind, self.path, written),
         )
+
+    def _carry_on(self) -> Edit | None:
+        return carry_on_group(self.path, self.data) or carry_on_value(self.kind, self.path, self.value)
 
     def _key(self) -> str:
         return next((part for part in reversed(self.path) if isinstance(part, str)), "value")

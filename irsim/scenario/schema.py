@@ -34,6 +34,7 @@ INEXPRESSIBLE: dict[str, str] = {
     "range-order": "a schema cannot compare two numbers of the document",
     "limits-order": "a schema cannot compare two numbers of the document",
     "angle-range": "a schema cannot compare two numbers of the document",
+    "bad-social-group": "the members of a group come from several entries",
     "duplicate-name": "uniqueness across entries, and over the objects of one entry",
     "unknown-object": "names of objects made by the document",
     "role-mismatch": "one entry model serves both sections",

@@ -11,8 +11,9 @@ from typing import Any
 
 from irsim.diagnostics import Edit, Path
 from irsim.scenario.findings import place
+from irsim.scenario.where import at
 
-__all__ = ["carry_on_type", "carry_on_unknown_key", "carry_on_value"]
+__all__ = ["carry_on_group", "carry_on_type", "carry_on_unknown_key", "carry_on_value"]
 
 _STRICT_SHAPES = ("circle", "rectangle")
 _STRICT_SECTIONS = ("", "entry.kinematics", "gui.mouse")
@@ -27,6 +28,39 @@ _SINGLE = ("entry.vel_min", "entry.vel_max")
 _NAMES = ("entry.name", "entry.group_name", "world.status", "world.name")
 _TRUNCATED = ("alpha", "offset", "goal", "range_low", "range_high", "center")
 _CLIPPED = {"entry.number": 0, "entry.fov": 0.0, "entry.sensors.angle_range": 0.0}
+_CHECKED_IN_GROUPS = {
+    "sfm": (
+        "gamma",
+        "gaze_vision_angle",
+        "group_repulsion_threshold",
+        "relaxation_time",
+        "sigma_obstacle",
+        "social_groups",
+    ),
+    "orca": ("maxNeighbors",),
+}
+"""Keys with which 2.12 fails to make a group behavior: it says so and goes on without one."""
+_NO_CHANGE = 1e-9
+"""A change of velocity that leaves an object where it is [m/s]."""
+
+
+def carry_on_group(path: Path, data: Any) -> Edit | None:
+    """2.12 goes on without a group behavior that has no name or that it fails to make.
+
+    Args:
+        path: Of a wrong value, or of a missing name.
+        data: The whole document.
+    """
+    if "group_behavior" not in path[:-1]:
+        return None
+    end = path.index("group_behavior") + 1
+    options, key = at(data, path[:end]), path[end]
+    if not isinstance(options, Mapping):
+        return None
+    name = options.get("name")
+    if (key == "name" and name is None) or key in _CHECKED_IN_GROUPS.get(str(name), ()):
+        return Edit("remove", path[:end])
+    return None
 
 
 def carry_on_unknown_key(path: Path, parent: Any) -> Edit | None:
@@ -59,7 +93,10 @@ def carry_on_type(kind: str, path: Path, value: Any) -> Edit | None:
 
 
 def carry_on_value(kind: str, path: Path, value: Any, most: int | None = None) -> Edit | None:
-    """2.12 falls back to a default mode, clips, cuts long vectors, and notices bad colors only when it draws."""
+    """2.12 falls back to a default mode, clips, cuts long vectors, and notices bad colors only when it draws.
+
+    With an ``acce`` of zero or less its ``rvo`` finds no velocity to change to: the object stays where it is.
+    """
     where = place(path)
     if kind == "unknown-value" and where in _FALLBACKS:
         return Edit("replace", path, _FALLBACKS[where])
@@ -67,6 +104,8 @@ def carry_on_value(kind: str, path: Path, value: Any, most: int | None = None) -
         return Edit("remove", path)
     if kind == "greater_than_equal" and where in _CLIPPED:
         return Edit("replace", path, _CLIPPED[where])
+    if kind == "greater_than" and where == "entry.behavior.acce":
+        return Edit("replace", path, _NO_CHANGE)
     if kind == "too_long" and where.rsplit(".", 1)[-1] in _TRUNCATED and most is not None:
         return Edit("replace", path, list(value)[:most])
     return None

@@ -75,7 +75,7 @@ def test_every_section_at_once() -> None:
         "behavior: {name: follow, planner: jps, local: {name: rvo}, replan: 2}",
         "behavior: {name: follow, planner: {name: rrt_star, max_iter: 900}}",
         "behavior: [{name: dash}]",
-        "group_behavior: {name: sfm, social_groups: [[0, 1]], gaze_vision_angle: 90}",
+        "group_behavior: {name: sfm, social_groups: [[0]], gaze_vision_angle: 90}",
         "plot: {show_text: true, text_position: [0, 1], traj_style: '--', trail_type: ellipse, obj_zorder: 5}",
         "plot: [{show_goal: true, goal_color: tab:blue}]",
         "color: '#1199ffcc'",

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.behaviors._options import CustomOptions
+from irsim.behaviors.sfm import Sfm
 from irsim.diagnostics import Edit
 from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.checks._context import Context
@@ -22,6 +23,8 @@ def check(context: Context) -> Iterator[Finding]:
     for group, members in groups.items():
         yield from _not_for_groups(context, members)
         leader = members[0]
+        if isinstance(leader.group_behavior, Sfm):
+            yield from _social_groups(context, leader, leader.group_behavior, len(members))
         if leader.group_behavior is None:
             yield from _unused(context, group, members)
         elif leader.role == "robot":
@@ -48,6 +51,33 @@ def _not_for_groups(context: Context, members: list[ObjectRecord]) -> Iterator[F
             fix="write it under 'behavior'",
             carry_on=Edit("remove", (*record.path, "group_behavior")),
         )
+
+
+def _social_groups(context: Context, leader: ObjectRecord, options: Sfm, size: int) -> Iterator[Finding]:
+    """Each member is in one social group at most, and there is a member of each index."""
+    seen: dict[int, tuple[int, int]] = {}
+    for i, together in enumerate(options.social_groups or ()):
+        for j, index in enumerate(together):
+            path = (*context.entry_path(leader, "group_behavior"), "social_groups", i, j)
+            if index >= size:
+                numbers = "its only member is 0" if size == 1 else f"its members are 0 to {size - 1}"
+                message = f"there is no member {index} in group {leader.group}: {numbers}"
+                fix = f"take {index} out, or raise 'number': indices count the members of the group from 0"
+            elif index in seen:
+                before = f"social_groups[{seen[index][0]}][{seen[index][1]}]"
+                message = f"member {index} is named twice, first in {before}"
+                fix = f"take {index} out here or there: each member walks with one social group"
+            else:
+                seen[index] = i, j
+                continue
+            yield error(
+                "bad-social-group",
+                path,
+                message,
+                given=index,
+                fix=fix,
+                carry_on=Edit("remove", (*leader.path, "group_behavior")),
+            )
 
 
 def _unused(context: Context, group: int, members: list[ObjectRecord]) -> Iterator[Finding]:

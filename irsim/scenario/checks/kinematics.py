@@ -81,8 +81,18 @@ def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
         allowed=f"{record.vel_dim} numbers{rows}",
         fix=f"{key}: {flow(values * record.vel_dim)}" if same else None,
         edit=same,
-        carry_on=same,
+        carry_on=_start_velocity(context, record, values) if key == "velocity" else same,
     )
+
+
+def _start_velocity(context: Context, record: ObjectRecord, values: list[float]) -> Edit | None:
+    """2.12 reads as much of it as an object needs that decides for itself; one number counts for each component."""
+    decides = record.behavior is not None or record.group_behavior is not None
+    limited = context.given(record, "acce") and len(values) > 1
+    if not decides or limited or not values:
+        return None
+    read = values * record.vel_dim if len(values) == 1 else [*values, *[0.0] * record.vel_dim][: record.vel_dim]
+    return Edit("replace", context.entry_path(record, "velocity"), read)
 
 
 def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
