@@ -1,4 +1,4 @@
-"""``irsim-mcp``: serve over standard input and output."""
+"""``irsim-mcp``: serve over standard input and output, or over HTTP."""
 
 from __future__ import annotations
 
@@ -8,14 +8,18 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from irsim_mcp.limits import ServerLimits
+
+if TYPE_CHECKING:
+    from irsim_mcp.http import Address
 
 __all__ = ["main"]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Serve until standard input ends.
+    """Serve until standard input ends, or, over HTTP, until told to end.
 
     Args:
         arguments: Of the command line.
@@ -26,21 +30,29 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _parser().error(f"--workspace: there is no folder {workspace}")
     limits = replace(ServerLimits(), robots=options.max_robots, objects=options.max_objects, work=options.max_work)
 
+    from irsim_mcp.http import HttpRefused, serve, token_from
     from irsim_mcp.server import build_server
     from irsim_mcp.worker import missing_limits
 
     for missing in missing_limits():
         print(f"irsim-mcp: {missing}", file=sys.stderr)
+    server = build_server(workspace, limits, writing=options.enable_write)
+    if options.http is not None:
+        try:
+            serve(server, options.http, token_from(options.token_file), options.allow_host)
+        except HttpRefused as refused:
+            _parser().error(str(refused))
+        return
     # Ctrl-C ends the process at once, without waiting for input that a thread is reading; workers notice and end too.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    build_server(workspace, limits).run("stdio")
+    server.run("stdio")
 
 
 def _parser() -> argparse.ArgumentParser:
     standard = ServerLimits()
     parser = argparse.ArgumentParser(
         prog="irsim-mcp",
-        description="MCP server of the robot-navigation simulator irsim, over standard input and output.",
+        description="MCP server of the robot-navigation simulator irsim, over standard input and output or HTTP.",
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
     parser.add_argument(
@@ -49,6 +61,32 @@ def _parser() -> argparse.ArgumentParser:
         default=Path(),
         metavar="DIR",
         help="folder that scenarios are read from; nothing outside it is (default: the current one)",
+    )
+    parser.add_argument(
+        "--enable-write",
+        action="store_true",
+        help="offer the tool write_scenario, which saves valid scenarios in the workspace",
+    )
+    parser.add_argument(
+        "--http",
+        type=_address,
+        metavar="[HOST:]PORT",
+        help="serve over streamable HTTP at http://HOST:PORT/mcp (default host: 127.0.0.1, which only this machine "
+        "reaches; others need a token); port 0 is any that is free",
+    )
+    parser.add_argument(
+        "--token-file",
+        type=Path,
+        metavar="FILE",
+        help="file with the token that HTTP clients must send as 'Authorization: Bearer TOKEN' (or set "
+        "IRSIM_MCP_TOKEN)",
+    )
+    parser.add_argument(
+        "--allow-host",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="name or address that HTTP clients connect to, beside HOST; may be given several times",
     )
     for name, most, what in (
         ("--max-robots", standard.robots, "robots of a scenario"),
@@ -67,6 +105,15 @@ class _Version(argparse.Action):
 
         print(f"irsim-mcp {__version__}")
         parser.exit()
+
+
+def _address(text: str) -> Address:
+    from irsim_mcp.http import address
+
+    try:
+        return address(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _positive(text: str) -> int:

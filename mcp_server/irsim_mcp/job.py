@@ -102,6 +102,21 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
     return report.model_dump_json(exclude={"findings": {"__all__": {"given"}}})
 
 
+def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
+    """The text of a file that is not there yet; what it names is looked for beside that."""
+    from irsim.scenario.load import load_text
+    from irsim.scenario.opening import or_raise
+    from irsim.scenario.read import read
+    from irsim.survey import survey
+
+    limits, path = _limits(job), job["arguments"]["path"]
+    document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
+    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=survey))
+    robots, objects = len(scenario.robots()), len(scenario.objects)
+    warnings = sum(item.severity == "warning" for item in found)
+    return json.dumps({"robots": robots, "obstacles": objects - robots, "warnings": warnings})
+
+
 def _run(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import run
     from irsim.runs import RunError
@@ -188,6 +203,7 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "benchmark": _benchmark,
     "validate": _validate,
+    "validate_new": _validate_new,
     "run": _run,
     "snapshot": _snapshot,
     "run_snapshot": _run_snapshot,

@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Callable
-from typing import Any
 
 from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError
 from mcp.server.mcpserver.resources import FunctionResource
-from mcp.types import Completion, CompletionArgument, CompletionContext, PromptReference, ResourceTemplateReference
 
-from irsim import resources
+from irsim_mcp.prompts import template_names
 
-__all__ = ["add_resources"]
+__all__ = ["SCHEMA", "SECTIONS", "TEMPLATE", "add_resources"]
 
-_SECTIONS = (
+SECTIONS = (
     "scenario", "world", "robot", "obstacle", "gui",
     "behavior", "distribution", "kinematics", "map", "planner", "sensor", "shape",
 )  # fmt: skip
-_SCHEMA, _TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
+SCHEMA, TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
 
 
 def add_resources(server: MCPServer) -> None:
     """Register all of them with a server."""
-    server.resource(_SCHEMA, title="JSON Schema of a part", mime_type="application/schema+json")(schema)
-    server.resource(_TEMPLATE, title="Scenario template", mime_type="application/yaml")(template)
-    for section in _SECTIONS:
+    server.resource(SCHEMA, title="JSON Schema of a part", mime_type="application/schema+json")(schema)
+    server.resource(TEMPLATE, title="Scenario template", mime_type="application/yaml")(template)
+    for section in SECTIONS:
         server.add_resource(
             FunctionResource.from_function(
                 functools.partial(schema, section),
@@ -38,7 +35,7 @@ def add_resources(server: MCPServer) -> None:
                 mime_type="application/schema+json",
             )
         )
-    for name in _template_names():
+    for name in template_names():
         server.add_resource(
             FunctionResource.from_function(
                 functools.partial(template, name),
@@ -50,16 +47,6 @@ def add_resources(server: MCPServer) -> None:
             )
         )
 
-    completing: Callable[[], Callable[..., Any]] = server.completion  # has no types of its own
-    completing()(_complete)
-
-
-async def _complete(
-    ref: PromptReference | ResourceTemplateReference, argument: CompletionArgument, context: CompletionContext | None
-) -> Completion:
-    choices = {_SCHEMA: _SECTIONS, _TEMPLATE: _template_names()}.get(getattr(ref, "uri", ""), ())
-    return Completion(values=[choice for choice in choices if choice.startswith(argument.value)])
-
 
 def schema(section: str) -> str:
     """JSON Schema of a section, key or component of scenario files, such as world or robot.sensors.lidar2d."""
@@ -68,7 +55,7 @@ def schema(section: str) -> str:
     try:
         part = schema_part("" if section == "scenario" else section)
     except TopicError as error:
-        near = f" Did you mean {' or '.join(error.near)}?" if error.near else f" There are {', '.join(_SECTIONS)}."
+        near = f" Did you mean {' or '.join(error.near)}?" if error.near else f" There are {', '.join(SECTIONS)}."
         raise ResourceNotFoundError(f"no part of the schema is called {section!r}.{near}") from None
     return json.dumps(part, ensure_ascii=False)
 
@@ -82,7 +69,3 @@ def template(name: str) -> str:
         return without_modeline(load(name).text)
     except TemplateError as error:
         raise ResourceNotFoundError(str(error)) from None
-
-
-def _template_names() -> tuple[str, ...]:
-    return tuple(sorted(path.parent.name for path in resources.templates_directory().glob("*/template.yaml")))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import difflib
 from contextlib import suppress
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
-from irsim.runs.store import RunError, find_run, mark_cancelled
+from irsim.runs.store import RunError, find_run, mark_cancelled, run_folders, runs_folder
 from irsim.scenario.confine import why_outside
 from irsim.text import clean
 from irsim_mcp.errors import failure
@@ -16,6 +16,7 @@ __all__ = ["Workspace"]
 _SUFFIXES = (".yaml", ".yml")
 _LOOKED_AT = 2000
 _NAMED = 3
+_LONGEST_NAME = 200
 
 
 class Workspace:
@@ -53,6 +54,31 @@ class Workspace:
         what = f"there is no file {clean(name)!r} in the workspace {self.root}"
         raise failure("file-not-found", what, where=argument, fix=self._advice(target))
 
+    def new_file(self, name: str) -> str:
+        """The path of a scenario file that may be written, relative to the workspace.
+
+        Raises:
+            ToolError: It leads out of the workspace or through a link, into a hidden folder, or is no YAML file.
+        """
+        wrong = why_outside(name, self.root)
+        if wrong is not None:
+            fix = f"name it relative to the workspace {self.root}, such as room.yaml"
+            raise failure("path-outside-workspace", f"{clean(name)!r} {wrong}", where="path", fix=fix)
+        path = PurePosixPath(name)
+        if path.suffix not in _SUFFIXES or "\\" in name or ":" in name or len(path.name.encode()) > _LONGEST_NAME:
+            fix = "end it with .yaml, such as rooms/a.yaml"
+            raise failure("bad-argument", f"{clean(name)!r} is no name of a scenario file", where="path", fix=fix)
+        if any(part.startswith(".") for part in path.parts):
+            fix = "choose a folder and a name without a dot in front"
+            raise failure("bad-argument", f"{clean(name)!r} is hidden", where="path", fix=fix)
+        on_the_way = [self.root.joinpath(*path.parts[: count + 1]) for count in range(len(path.parts))]
+        if any(part.is_symlink() for part in on_the_way):
+            what = f"{clean(name)!r} is or goes through a link"
+            raise failure("path-outside-workspace", what, where="path", fix="write to a plain file in plain folders")
+        if on_the_way[-1].is_dir():
+            raise failure("not-a-file", f"{clean(name)!r} is a folder", where="path", fix="name a file in it")
+        return path.as_posix()
+
     def check_run(self, run_id: str) -> None:
         """See that a run is recorded here.
 
@@ -63,6 +89,13 @@ class Workspace:
             find_run(run_id, self.root)
         except RunError as error:
             raise failure(error.code, error.message, where="run_id", fix=error.fix) from None
+
+    def runs(self) -> list[str]:
+        """Ids of the recorded runs, the last used one first."""
+        try:
+            return [folder.name for folder in run_folders(runs_folder(self.root))]
+        except RunError:
+            return []
 
     def mark_cancelled(self, run_id: str) -> None:
         """Note that a run was stopped on purpose."""
@@ -80,14 +113,14 @@ class Workspace:
 
     def _advice(self, target: Path) -> str:
         """Scenario files that may be meant."""
-        there = self._scenarios()
+        there = self.scenarios()
         near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _NAMED, 0.5)
         if near:
             return f"did you mean {' or '.join(map(repr, map(clean, near)))}?"
         some = ", ".join(repr(clean(name)) for name in there[:_NAMED])
         return f"the workspace has {some}" if some else "write the file first, or pass the text as scenario_yaml"
 
-    def _scenarios(self) -> list[str]:
+    def scenarios(self) -> list[str]:
         """YAML files of the workspace and of its folders."""
         found = []
         for pattern in ("*", "*/*"):

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from mcp import MCPError
 from mcp.server import MCPServer
 from mcp.server.caching import CacheHint
 from mcp.server.mcpserver import Context
-from mcp.types import CallToolResult, InputRequiredResult
+from mcp.types import INVALID_PARAMS, CallToolResult, GetPromptResult, InputRequiredResult
 
 from irsim import __version__
 from irsim.text import clean
+from irsim_mcp.completions import add_completions
+from irsim_mcp.docs import add_docs
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
+from irsim_mcp.prompts import add_prompts
 from irsim_mcp.resources import add_resources
 from irsim_mcp.run_resources import add_run_resources
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
+from irsim_mcp.skills import Skills
 from irsim_mcp.tools import (
     benchmark,
     get_job,
@@ -29,6 +33,7 @@ from irsim_mcp.tools import (
     render_snapshot,
     run_episode,
     validate_scenario,
+    write_scenario,
 )
 from irsim_mcp.worker import Workers
 
@@ -43,9 +48,13 @@ render_snapshot and look -> run_episode -> if it failed, inspect_run, look at th
 behaviors: benchmark, then get_job while it runs. Do not guess keys: lookup explains them, misspelt ones are errors. \
 Say what cannot be done instead of leaving it out.
 Scenarios are given as text (scenario_yaml) or as a file (scenario_path) inside the workspace {workspace}. The server \
-writes no files but records below .irsim; save YAML yourself if it is to be kept. The same scenario and seed \
+writes no files but records below .irsim; {saving}. The same scenario and seed \
 give the same result."""
-_HOUR = 3_600_000
+_SAVING = {
+    False: "save YAML yourself if it is to be kept",
+    True: "write_scenario saves a scenario that is to be kept",
+}
+_HOUR, _MINUTE = 3_600_000, 60_000
 
 
 class IrsimServer(MCPServer[Any]):
@@ -62,31 +71,54 @@ class IrsimServer(MCPServer[Any]):
             raise failure("unknown-tool", f"there is no tool {clean(name)!r}", fix=fix)
         return await super().call_tool(name, arguments, context)
 
+    async def get_prompt(
+        self, name: str, arguments: dict[str, Any] | None = None, context: Context[Any, Any] | None = None
+    ) -> GetPromptResult | InputRequiredResult:
+        """Fill in a prompt."""
+        prompts = {prompt.name: prompt for prompt in await self.list_prompts()}
+        if name not in prompts:
+            wrong = f"unknown-prompt: there is no prompt {clean(name)!r}. Fix: there are {', '.join(prompts)}."
+            raise MCPError(INVALID_PARAMS, wrong)
+        known = {argument.name: argument.required for argument in prompts[name].arguments or ()}
+        missing = [argument for argument, needed in known.items() if needed and argument not in (arguments or {})]
+        unknown = [clean(argument) for argument in arguments or {} if argument not in known]
+        if missing or unknown:
+            wrong = f"lacks {', '.join(missing)}" if missing else f"takes no {', '.join(unknown[:3])}"
+            raise MCPError(INVALID_PARAMS, f"bad-argument: {name} {wrong}. Fix: it takes {', '.join(known)}.")
+        return await super().get_prompt(name, arguments, context)
 
-def build_server(workspace: Path, limits: ServerLimits | None = None) -> IrsimServer:
+
+def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing: bool = False) -> IrsimServer:
     """Make a server.
 
     Args:
         workspace: The folder that scenarios are read from.
         limits: What a call may cost.
+        writing: Whether scenarios may be written there, too.
     """
     limits = limits or ServerLimits()
     folder = Workspace(workspace)
     services = Services(folder, limits, Workers(folder, limits), Jobs(folder, limits))
-    modules = (lookup, validate_scenario, render_snapshot, run_episode, inspect_run, benchmark, get_job)
-    caching: Mapping[Any, CacheHint] = {
-        method: CacheHint(ttl_ms=_HOUR, scope="public")
-        for method in ("tools/list", "resources/list", "resources/templates/list", "resources/read")
-    }
+    modules = [lookup, validate_scenario, render_snapshot, run_episode, inspect_run, benchmark, get_job]
+    tools = [module.tool(services) for module in modules]
+    if writing:
+        tools.append(write_scenario.tool(services))
+    lists = ("tools/list", "prompts/list", "resources/list", "resources/templates/list")
+    caching: dict[Any, CacheHint] = {method: CacheHint(ttl_ms=_HOUR, scope="public") for method in lists}
+    caching["resources/read"] = CacheHint(ttl_ms=_MINUTE, scope="private")  # runs go on
     server = IrsimServer(
         "irsim",
         title="irsim: 2D robot navigation",
         version=__version__,
-        instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300)),
-        tools=[module.tool(services) for module in modules],
+        instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300), saving=_SAVING[writing]),
+        tools=tools,
         cache_hints=caching,
+        extensions=[Skills()],
         log_level="WARNING",
     )
     add_resources(server)
+    add_docs(server)
     add_run_resources(server, services)
+    add_prompts(server, services)
+    add_completions(server, services)
     return server

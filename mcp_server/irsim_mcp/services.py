@@ -65,6 +65,29 @@ class Services:
         result: dict[str, Any] = answer["result"]
         return result
 
+    async def text_job(
+        self, task: str, text: str, argument: str, *, path: str, seconds: float, **arguments: Any
+    ) -> dict[str, Any]:
+        """Have a worker do something with the text of a file that is not written yet.
+
+        Args:
+            task: What to do.
+            text: The YAML.
+            argument: Name of the argument, for errors.
+            path: The file it is going to be, relative to the workspace.
+            seconds: Wall-clock time it may take.
+            **arguments: Further arguments of the task.
+
+        Raises:
+            ToolError: The text is too large, or the work failed.
+        """
+        given = {"text": self._text(text, argument), "path": path, **arguments}
+        answer = await self.workers.call(task, given, seconds=seconds)
+        if "error" in answer:
+            raise _as_failure(answer["error"], argument)
+        result: dict[str, Any] = answer["result"]
+        return result
+
     async def run_job(
         self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
     ) -> dict[str, Any]:

@@ -106,14 +106,18 @@ async def test_resources_can_be_listed_and_read(empty: Path, era: str) -> None:
         text = await text_at(client, "irsim://templates/crossing")
         deeper = json.loads(await text_at(client, "irsim://schema/robot.sensors.lidar2d"))
     assert patterns[:2] == ["irsim://schema/{section}", "irsim://templates/{name}"]
-    assert len(uris) == len(set(uris)) == len(SECTIONS) + len(templates.names())
+    assert len(uris) == len(set(uris))
+    assert sum(uri.startswith(("irsim://schema/", "irsim://templates/")) for uri in uris) == len(SECTIONS) + len(
+        templates.names()
+    )
     assert api.validate(text=text).valid
     assert "range_max" in deeper["properties"]
 
 
 async def test_every_listed_resource_can_be_read_and_is_what_it_says(empty: Path) -> None:
     async with connected(empty) as client:
-        uris = [str(resource.uri) for resource in (await client.list_resources()).resources]
+        listed = [str(resource.uri) for resource in (await client.list_resources()).resources]
+        uris = [uri for uri in listed if uri.startswith("irsim://")]
         texts = {uri: await text_at(client, uri) for uri in uris}
     for text in texts.values():
         assert 100 < len(text) < 1_000_000

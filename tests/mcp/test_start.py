@@ -65,7 +65,15 @@ def test_standard_output_has_messages_only(workspace: Path) -> None:
 def test_version_and_help() -> None:
     assert run("--version").stdout.startswith("irsim-mcp 0.")
     told = run("--help").stdout
-    for option in ("--workspace", "--max-robots", "--max-objects", "--max-work"):
+    for option in (
+        "--workspace",
+        "--max-robots",
+        "--max-objects",
+        "--max-work",
+        "--http",
+        "--token-file",
+        "--enable-write",
+    ):
         assert option in told
 
 
@@ -76,6 +84,7 @@ def test_version_and_help() -> None:
         (("--max-robots", "0"), "0 is not positive"),
         (("--max-work", "many"), "invalid"),
         (("--port", "80"), "unrecognized arguments"),
+        (("--http", "x"), "x is not [HOST:]PORT"),
     ],
 )
 def test_bad_options_end_with_2(arguments: tuple[str, ...], said: str) -> None:

@@ -1,0 +1,53 @@
+"""What clients can offer while an argument of a prompt or a resource is typed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from typing import Any
+
+from mcp.server import MCPServer
+from mcp.types import Completion, CompletionArgument, CompletionContext, PromptReference, ResourceTemplateReference
+
+from irsim.text import clean
+from irsim_mcp.docs import DOC, topics
+from irsim_mcp.prompts import DIFFICULTIES, drives, template_names
+from irsim_mcp.resources import SCHEMA, SECTIONS, TEMPLATE
+from irsim_mcp.run_resources import ARTIFACTS, RUN
+from irsim_mcp.services import Services
+
+__all__ = ["add_completions"]
+
+_MOST = 100
+
+
+def add_completions(server: MCPServer, services: Services) -> None:
+    """Register all of them with a server."""
+    workspace = services.workspace
+    choices: dict[tuple[str, str], Callable[[], Iterable[str]]] = {
+        ("design_scenario", "kinematics"): drives,
+        ("design_scenario", "difficulty"): lambda: DIFFICULTIES,
+        ("debug_run", "run_id"): workspace.runs,
+        ("compare_policies", "scenario"): lambda: (*workspace.scenarios(), *template_names()),
+        (SCHEMA, "section"): lambda: SECTIONS,
+        (TEMPLATE, "name"): template_names,
+        (DOC, "topic"): topics,
+        (RUN, "run_id"): workspace.runs,
+        (RUN, "artifact"): lambda: ARTIFACTS,
+    }
+
+    async def complete(
+        ref: PromptReference | ResourceTemplateReference,
+        argument: CompletionArgument,
+        context: CompletionContext | None,
+    ) -> Completion:
+        of = ref.name if isinstance(ref, PromptReference) else ref.uri
+        known: Iterable[str] = ()
+        if (of, argument.name) in choices:
+            with suppress(OSError):
+                known = choices[of, argument.name]()
+        found = [choice for choice in known if choice.startswith(argument.value) and clean(choice, 1000) == choice]
+        return Completion(values=found[:_MOST], total=len(found), has_more=len(found) > _MOST)
+
+    completing: Callable[[], Callable[..., Any]] = server.completion  # has no types of its own
+    completing()(complete)

@@ -1,0 +1,77 @@
+"""Documentation as resources: ``irsim://docs/{topic}``, at most 1 MB at a time. The tools do not depend on it."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+from mcp.server import MCPServer
+from mcp.server.mcpserver.exceptions import ResourceNotFoundError
+from mcp.server.mcpserver.resources import FunctionResource
+
+from irsim import resources
+from irsim.diagnostics import nearest
+from irsim.text import clean
+
+__all__ = ["DOC", "add_docs", "topics"]
+
+DOC = "irsim://docs/{topic}{?offset,limit}"
+_MOST_BYTES = 1_000_000
+_README = "readme"
+
+
+def topics() -> list[str]:
+    """Names of the pages: ``readme``, and the references of the skills by file name."""
+    return sorted((_README, *_pages()))
+
+
+def add_docs(server: MCPServer) -> None:
+    """Register the template and each page with a server."""
+    description = (
+        "A page of the documentation as Markdown. At most 1 MB at a time: offset and limit, in characters, give a part."
+    )
+    server.resource(DOC, name="docs", title="Documentation", description=description, mime_type="text/markdown")(page)
+    for topic in topics():
+        server.add_resource(
+            FunctionResource.from_function(
+                functools.partial(page, topic),
+                uri=f"irsim://docs/{topic}",
+                name=f"docs-{topic}",
+                title=f"Documentation: {topic}",
+                description="?offset=…&limit=… gives a part, counted in characters.",
+                mime_type="text/markdown",
+            )
+        )
+
+
+def page(topic: str, offset: int = 0, limit: int = _MOST_BYTES) -> str:
+    """A page of the documentation, or a part of it."""
+    if offset < 0 or limit < 1:
+        raise ResourceNotFoundError("bad-argument: offset is 0 or more, limit 1 or more (both in characters).")
+    part = _text(topic)[offset : offset + min(limit, _MOST_BYTES)]
+    return part.encode()[:_MOST_BYTES].decode(errors="ignore")
+
+
+def _text(topic: str) -> str:
+    if topic == _README:
+        root = resources.checkout()
+        if root is not None:
+            return (root / "README.md").read_text(encoding="utf-8")
+        from importlib.metadata import metadata
+
+        return str(metadata("irsim-mcp").get_payload())  # type: ignore[attr-defined]
+    pages = _pages()
+    if topic not in pages:
+        near = nearest(topic, topics())
+        fix = f"Did you mean {near}?" if near else f"There are {', '.join(topics())}."
+        raise ResourceNotFoundError(f"unknown-topic: no page is called {clean(topic)!r}. {fix}")
+    return pages[topic].read_text(encoding="utf-8")
+
+
+def _pages() -> dict[str, Path]:
+    """Files of the pages by name; of two that have the same the skill comes before it."""
+    found: dict[str, Path] = {}
+    for path in sorted(resources.skills_directory().glob("*/references/*.md")):
+        name = path.stem if path.stem not in found else f"{path.parents[1].name}-{path.stem}"
+        found[name] = path
+    return found

@@ -1,0 +1,185 @@
+"""Serving over HTTP: who may connect, and how the server is started."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+import os
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from mcp.server import MCPServer
+    from mcp.server.transport_security import TransportSecuritySettings
+    from starlette.types import ASGIApp, Receive, Scope, Send
+
+__all__ = ["PATH", "TOKEN_VARIABLE", "Address", "HttpRefused", "address", "serve", "token_from"]
+
+PATH = "/mcp"
+TOKEN_VARIABLE = "IRSIM_MCP_TOKEN"
+_LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+_SHORTEST_TOKEN = 16
+_LONGEST_TOKEN = 1024
+_CLOSING_SECONDS = 2
+_TOKEN = re.compile(r"[A-Za-z0-9._~+/=-]+")
+_ANYWHERE = ("0.0.0.0", "::")
+
+
+class HttpRefused(ValueError):
+    """Options with which it would not be safe to serve."""
+
+
+class Address(NamedTuple):
+    """Where to listen."""
+
+    host: str
+    port: int
+
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine can connect."""
+        if self.host == "localhost":
+            return True
+        try:
+            return ipaddress.ip_address(self.host).is_loopback
+        except ValueError:
+            return False
+
+    @property
+    def name(self) -> str:
+        """The host as it stands in an address."""
+        return f"[{self.host}]" if ":" in self.host else self.host
+
+
+def address(text: str) -> Address:
+    """Read ``[HOST:]PORT``; without a host it is 127.0.0.1.
+
+    Args:
+        text: Such as ``8000``, ``127.0.0.1:8000`` or ``[::1]:8000``; port 0 is any that is free.
+    """
+    host, _, port = text.rpartition(":")
+    if ":" in host and not (host.startswith("[") and host.endswith("]")):
+        raise ValueError(f"{text} is not [HOST:]PORT; write IPv6 addresses as [::1]:8000")
+    host = host.removeprefix("[").removesuffix("]")
+    if not re.fullmatch(r"\d{1,5}", port) or int(port) > 65535 or (":" in text and not host):
+        raise ValueError(f"{text} is not [HOST:]PORT")
+    return Address(host or "127.0.0.1", int(port))
+
+
+def token_from(file: Path | None) -> str | None:
+    """The token that clients must send: first line of a file, else of the variable ``IRSIM_MCP_TOKEN``, else none.
+
+    Raises:
+        HttpRefused: It cannot be read, or is none that is hard to guess.
+    """
+    if file is not None:
+        try:
+            text = file.read_text(encoding="utf-8").strip()
+        except (OSError, UnicodeDecodeError) as error:
+            raise HttpRefused(f"--token-file: {file} cannot be read: {error}") from None
+        source = f"--token-file {file}"
+    elif TOKEN_VARIABLE in os.environ:
+        text, source = os.environ[TOKEN_VARIABLE].strip(), TOKEN_VARIABLE
+    else:
+        return None
+    if not _SHORTEST_TOKEN <= len(text) <= _LONGEST_TOKEN or not _TOKEN.fullmatch(text):
+        raise HttpRefused(
+            f"{source}: a token is one line of {_SHORTEST_TOKEN} or more letters, digits and ._~+/=-; "
+            'python -c "import secrets; print(secrets.token_urlsafe(32))" makes one'
+        )
+    return text
+
+
+def _security(where: Address, names: Sequence[str]) -> TransportSecuritySettings:
+    """Which values of Host and Origin are let in; pages of other sites are not."""
+    from mcp.server.transport_security import TransportSecuritySettings
+
+    own = _LOOPBACK if where.loopback else ()
+    bound = () if where.host in _ANYWHERE else (where.name,)
+    hosts = list(dict.fromkeys((*own, *bound, *names)))
+    every = [form for host in hosts for form in (host, f"{host}:*")]
+    origins = [f"{scheme}://{form}" for scheme in ("http", "https") for form in every]
+    return TransportSecuritySettings(allowed_hosts=every, allowed_origins=origins)
+
+
+def application(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> ASGIApp:
+    """The server as a web application.
+
+    Args:
+        server: What is served.
+        where: Where it is going to listen.
+        token: What clients must send as a bearer token.
+        names: Names or addresses that clients know it by, beside the one it listens at.
+
+    Raises:
+        HttpRefused: Others than this machine could connect without a token, or by a name that nobody has told.
+    """
+    if not where.loopback and token is None:
+        raise HttpRefused(
+            f"--http {where.name}:{where.port} lets other machines connect, which needs a token: give "
+            f"--token-file FILE or set {TOKEN_VARIABLE}, or serve this machine only with --http {where.port}"
+        )
+    if where.host in _ANYWHERE and not names:
+        raise HttpRefused(
+            f"--http {where.name}:{where.port} needs --allow-host NAME, the name or address that clients connect to"
+        )
+    app: ASGIApp = server.streamable_http_app(
+        host=where.host, streamable_http_path=PATH, transport_security=_security(where, names)
+    )
+    return app if token is None else _WithToken(app, token)
+
+
+class _WithToken:
+    """Lets in who sends the token.
+
+    Args:
+        app: What is behind it.
+        token: What is asked for.
+    """
+
+    def __init__(self, app: ASGIApp, token: str) -> None:
+        self._app, self._expected = app, f"Bearer {token}".encode()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan" or (scope["type"] == "http" and self._known(scope)):
+            await self._app(scope, receive, send)
+            return
+        from starlette.responses import PlainTextResponse
+
+        response = PlainTextResponse(
+            "this server wants a token: send the header Authorization: Bearer TOKEN",
+            status_code=401,
+            headers={"WWW-Authenticate": "Bearer"},
+        )
+        await response(scope, receive, send)
+
+    def _known(self, scope: Scope) -> bool:
+        sent = [value for name, value in scope["headers"] if name == b"authorization"]
+        return len(sent) == 1 and hmac.compare_digest(sent[0], self._expected)
+
+
+def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> None:
+    """Serve until the process is told to end (see :func:`application`); says on standard error where."""
+    import socket
+
+    import uvicorn
+
+    app = application(server, where, token, names)
+    config = uvicorn.Config(
+        app, log_level="warning", server_header=False, timeout_graceful_shutdown=_CLOSING_SECONDS, ws="none"
+    )
+    family = socket.AF_INET6 if ":" in where.host else socket.AF_INET
+    with socket.socket(family) as listening:
+        if os.name == "posix":
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listening.bind((where.host, where.port))
+            listening.listen()
+        except OSError as error:
+            raise HttpRefused(f"--http {where.name}:{where.port}: {error.strerror or error}") from None
+        port = listening.getsockname()[1]
+        print(f"irsim-mcp: serving http://{where.name}:{port}{PATH}", file=sys.stderr, flush=True)
+        uvicorn.Server(config).run(sockets=[listening])

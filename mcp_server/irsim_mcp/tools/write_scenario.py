@@ -1,0 +1,66 @@
+"""``write_scenario``: keep a scenario as a file of the workspace; only there with ``--enable-write``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import anyio.to_thread
+from mcp.types import CallToolResult, TextContent
+from pydantic import BaseModel, ConfigDict, Field
+
+from irsim.text import clean
+from irsim_mcp.services import Services
+from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.writing import write_file
+
+__all__ = ["Written", "tool"]
+
+_DESCRIPTION = """
+    Save a scenario as a file of the workspace. It is validated first: one with errors is not written. An existing file
+    is kept unless overwrite=true. Only .yaml and .yml files in folders whose names start with no dot; missing folders
+    are made. Next: use the path as scenario_path.
+"""
+
+
+class Written(BaseModel):
+    """What was written."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    path: str
+    bytes: int
+    replaced: bool
+    summary: str
+    next: str
+
+
+def tool(services: Services) -> StrictTool:
+    """Make the tool."""
+
+    async def write_scenario(
+        path: Annotated[str, Field(max_length=300, description="Relative to the workspace, such as rooms/a.yaml.")],
+        yaml: Annotated[str, Field(description="The whole scenario (at most 256 KiB).")],
+        overwrite: bool = False,
+    ) -> Annotated[CallToolResult, Written]:
+        where = services.workspace.new_file(path)
+        found = await services.text_job("validate_new", yaml, "yaml", path=where, seconds=services.limits.check_seconds)
+        data = yaml.encode()
+        replaced = await anyio.to_thread.run_sync(write_file, services.workspace.root, where, data, overwrite)
+        summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_counted(found)}"
+        advice = f"Look at it with render_snapshot scenario_path={clean(where)}, then run_episode."
+        report = Written(path=where, bytes=len(data), replaced=replaced, summary=summary, next=advice)
+        text = TextContent(type="text", text=f"{summary}\nNext: {advice}")
+        return CallToolResult(content=[text], structured_content=report.model_dump())
+
+    return strict(
+        write_scenario,
+        title="Save a scenario",
+        description=_DESCRIPTION,
+        read_only=False,
+        idempotent=True,
+        destructive=True,
+    )
+
+
+def _counted(found: dict[str, int]) -> str:
+    return ", ".join(f"{count} {kind if count != 1 else kind[:-1]}" for kind, count in found.items())

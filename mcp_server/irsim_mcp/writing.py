@@ -1,0 +1,106 @@
+"""Writing a file below a folder, at once and never through a link, whoever else changes the folder meanwhile."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from irsim.text import clean
+from irsim_mcp.errors import failure
+
+__all__ = ["write_file"]
+
+_BY_DESCRIPTOR = {os.open, os.mkdir, os.link, os.rename, os.unlink, os.stat} <= os.supports_dir_fd
+_FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_NOFOLLOW", 0)
+_TEMPORARY = ".new-"
+
+
+def write_file(root: Path, name: str, data: bytes, overwrite: bool) -> bool:
+    """Write a file by way of a temporary one, so that nobody ever sees half of it.
+
+    Args:
+        root: The folder to stay in.
+        name: Path of the file relative to it, with ``/``, already checked; folders that are missing are made.
+        data: What to write.
+        overwrite: Whether a file of that name may be replaced.
+
+    Returns:
+        Whether one was.
+
+    Raises:
+        ToolError: The file exists, something on the way is a link or no folder, or the system refuses.
+    """
+    *folders, last = name.split("/")
+    try:
+        with _descended(root, folders) as (folder, descriptor):
+            return _written(folder, descriptor, last, data, overwrite)
+    except FileExistsError:
+        what = f"{clean(name)!r} exists already"
+        raise failure("file-exists", what, where="path", fix="overwrite=true replaces it; or choose another") from None
+    except OSError as error:
+        what = f"{clean(name)!r} cannot be written: {error.strerror or error}"
+        fix = "use folders that are no links, and check permissions and the space left"
+        raise failure("file-access", what, where="path", fix=fix) from None
+
+
+@contextmanager
+def _descended(root: Path, folders: list[str]) -> Iterator[tuple[Path, int | None]]:
+    """The folder to write in, and a descriptor of it where the system can work with those."""
+    if not _BY_DESCRIPTOR:
+        folder = root.joinpath(*folders)
+        folder.mkdir(parents=True, exist_ok=True)
+        yield folder, None
+        return
+    descriptor = os.open(root, _FOLDER & ~getattr(os, "O_NOFOLLOW", 0))
+    try:
+        for part in folders:
+            with suppress(FileExistsError):
+                os.mkdir(part, dir_fd=descriptor)
+            inner = os.open(part, _FOLDER, dir_fd=descriptor)
+            os.close(descriptor)
+            descriptor = inner
+        yield Path(), descriptor
+    finally:
+        os.close(descriptor)
+
+
+def _written(folder: Path, descriptor: int | None, name: str, data: bytes, overwrite: bool) -> bool:
+    temporary, target = str(folder / f"{_TEMPORARY}{secrets.token_hex(6)}"), str(folder / name)
+    file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644, dir_fd=descriptor)
+    try:
+        with os.fdopen(file, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if not overwrite:
+            _moved_to_new(temporary, target, descriptor)
+            return False
+        there = _is_there(target, descriptor)
+        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)  # a link itself, not where it leads
+        return there
+    finally:
+        with suppress(FileNotFoundError):
+            os.unlink(temporary, dir_fd=descriptor)
+
+
+def _moved_to_new(temporary: str, target: str, descriptor: int | None) -> None:
+    """Give a file a name that nothing has yet, in one go."""
+    try:
+        os.link(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):  # a file system without links
+        if _is_there(target, descriptor):
+            raise FileExistsError from None
+        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
+
+
+def _is_there(target: str, descriptor: int | None) -> bool:
+    try:
+        os.stat(target, dir_fd=descriptor, follow_symlinks=False)
+    except FileNotFoundError:
+        return False
+    return True
