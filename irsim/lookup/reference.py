@@ -1,4 +1,4 @@
-"""Writes the references of the agent skill and the page on IR-SIM: ``python -m irsim.lookup.reference [--check]``.
+"""Writes the references of the agent skills and the page on IR-SIM: ``python -m irsim.lookup.reference [--check]``.
 
 They are generated from the models, registries, templates and codes, as the answers of :func:`irsim.lookup.lookup` are.
 """
@@ -7,24 +7,32 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import irsim.compatibility
 from irsim import resources
 from irsim.files import write_atomically
+from irsim.lookup.api_pages import PACKS
 from irsim.lookup.compatibility import page
 from irsim.lookup.pages import pages
 from irsim.scenario.schema import json_schema
 
-__all__ = ["compatibility", "main", "out_of_date"]
+__all__ = ["SKILLS", "compatibility", "main", "out_of_date"]
 
-SKILL = "irsim-scenario"
+SCENARIO = "irsim-scenario"
+SKILLS: dict[str, Callable[[], dict[str, str]]] = {SCENARIO: pages, **PACKS}
+"""What makes the pages of each skill."""
 
 
-def out_of_date(folder: Path) -> list[Path]:
-    """Pages that are missing, differ from what would be written, or should not be there."""
-    wanted = {folder / f"{name}.md": text for name, text in pages().items()}
+def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
+    """Pages that are missing, differ from what would be written, or should not be there.
+
+    Args:
+        folder: Where the pages are.
+        skill: Of which skill.
+    """
+    wanted = {folder / f"{name}.md": text for name, text in SKILLS[skill]().items()}
     stale = [path for path, text in wanted.items() if not path.is_file() or path.read_text(encoding="utf-8") != text]
     return stale + sorted(set(folder.glob("*")) - set(wanted))
 
@@ -42,22 +50,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(prog="python -m irsim.lookup.reference", description=__doc__.partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if pages are out of date")
-    folder = resources.skills_directory() / SKILL / "references"
+    folders = {skill: resources.skills_directory() / skill / "references" for skill in SKILLS}
     if parser.parse_args(arguments).check:
-        stale = out_of_date(folder) + [
+        stale = [path for skill, folder in folders.items() for path in out_of_date(folder, skill)] + [
             path for path, text in compatibility().items() if not path.is_file() or path.read_text("utf-8") != text
         ]
         for path in stale:
             print(f"{path} is out of date; python -m irsim.lookup.reference writes it again", file=sys.stderr)
         return 1 if stale else 0
-    folder.mkdir(parents=True, exist_ok=True)
-    for path in out_of_date(folder):
-        path.unlink(missing_ok=True)
-    for name, text in pages().items():
-        write_atomically(folder / f"{name}.md", text)
+    for skill, folder in folders.items():
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in out_of_date(folder, skill):
+            path.unlink(missing_ok=True)
+        for name, text in SKILLS[skill]().items():
+            write_atomically(folder / f"{name}.md", text)
     for path, text in compatibility().items():
         write_atomically(path, text)
-    print(f"wrote {folder}")
+    print(f"wrote {', '.join(map(str, folders.values()))}")
     return 0
 
 

@@ -1,0 +1,239 @@
+"""References of the skills about programs, comparisons and contributing, read off the code itself."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+import irsim
+from irsim import resources
+from irsim.lookup.tables import plain_table
+from irsim.metrics.definitions import METRICS
+from irsim.registry import REGISTRIES
+
+__all__ = ["PACKS", "written"]
+
+Pages = dict[str, str]
+NOTE = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->"
+_FOLDERS = {
+    "behavior": "behaviors",
+    "distribution": "distributions",
+    "kinematics": "kinematics",
+    "map": "maps",
+    "planner": "planners",
+    "sensor": "sensors",
+    "shape": "shapes",
+}
+
+
+def written(title: str, *parts: str) -> str:
+    """A page with its note."""
+    return "\n\n".join((f"# {title}", NOTE, *(part.strip() for part in parts if part))) + "\n"
+
+
+def runner() -> Pages:
+    """Pages of ``irsim-runner``."""
+    from irsim.batch import Batch
+    from irsim.env import Env
+    from irsim.views import ObjectView
+
+    functions = (
+        *("make", "run", "render", "validate", "benchmark", "batch"),
+        *("register_behavior", "irsim.lib.register_behavior_class"),
+        *("irsim.lib.register_group_behavior", "irsim.lib.register_group_behavior_class"),
+    )
+    return {
+        "functions": written(
+            "Functions", "What a program calls first.", *(_function(*_find(name)) for name in functions), _options(Env)
+        ),
+        "environment": written(
+            "The environment", "What `irsim.make` returns. `x ->`: a property.", _members(Env), _attributes(Env)
+        ),
+        "objects": written(
+            "Objects",
+            "What `env.robot`, `env.robot_list`, `env.get_object_by_name(…)` and the arguments of your behaviors are. "
+            "Arrays are columns, (n, 1), unless it says otherwise, and read-only: change an object with `set_…`.",
+            _members(ObjectView),
+        ),
+        "batch": written("Batches", "What `irsim.batch` returns.", _attributes(Batch), _members(Batch)),
+    }
+
+
+def comparisons() -> Pages:
+    """Pages of ``irsim-benchmark``."""
+    from irsim import results
+
+    canonical = [metric for metric in METRICS if metric.canonical]
+    extra = [metric for metric in METRICS if not metric.canonical]
+    heads = ("key", "unit", "what it is, per robot", "over robots", "better")
+
+    def table(metrics: list[Any]) -> str:
+        return plain_table(heads, [(f"`{m.key}`", m.unit, m.text, m.robots, m.better or "") for m in metrics])
+
+    return {
+        "metrics": written(
+            "Metrics",
+            "A value belongs to a robot; over the robots of an episode it is combined as told: `mean`, `min`, `max`, "
+            "or `all` (1 if all have 1). Episodes then give mean, spread and a 95 % interval. A value that has no "
+            "meaning in an episode (a time to the goal where nobody arrived, a distance to humans where there are "
+            "none) is left out there, and `n` says how many are in.",
+            "## Canonical",
+            table(canonical),
+            "## Widely used extras",
+            table(extra),
+            "Beside them an episode has `aggregated_time`, the sum of the robots' times [s].",
+        ),
+        "result": written(
+            "The result",
+            "What `irsim benchmark --json`, `irsim.benchmark` and the tools `benchmark` and `get_job` give.",
+            *(
+                f"## {name}\n\n{_one_line(model.__doc__)}\n\n{_fields(model)}"
+                for name, model in (
+                    ("BenchmarkResult", results.BenchmarkResult),
+                    ("BenchmarkRow", results.BenchmarkRow),
+                    ("Proportion", results.Proportion),
+                    ("Estimate", results.Estimate),
+                    ("EpisodeRow", results.EpisodeRow),
+                )
+            ),
+        ),
+    }
+
+
+def contributing() -> Pages:
+    """Pages of ``irsim-dev``."""
+    rows, root = [], resources.checkout() or Path()
+    for kind, registry in REGISTRIES.items():
+        for feature in registry.features():
+            if feature.origin == "built-in":
+                model = f"irsim/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
+                header = ""
+                if feature.kernel is not None:
+                    stem = re.sub(r"(?<!^)(?=[A-Z])", "_", feature.kernel.__name__.removesuffix("Options")).lower()
+                    path = f"irsim/core/{_FOLDERS[kind]}/{stem}.hpp"
+                    header = f"`{path}`" if (root / path).is_file() else ""
+                rows.append((kind, f"`{feature.name}`", f"`{model}`", header))
+    return {
+        "features": written(
+            "Features and their files",
+            "One declaration each; what computes it is a header of the core, or the Python function in the same file.",
+            plain_table(("kind", "name", "what users see", "how it is computed"), rows),
+        ),
+    }
+
+
+PACKS: dict[str, Callable[[], Pages]] = {
+    "irsim-runner": runner,
+    "irsim-benchmark": comparisons,
+}
+"""Pages of each skill but ``irsim-scenario``, whose pages are made of the language."""
+
+
+def _find(name: str) -> tuple[str, Any]:
+    """A function by its name below ``irsim`` or in full."""
+    if not name.startswith("irsim."):
+        return f"irsim.{name}", getattr(importlib.import_module(irsim._HOMES[name]), name)
+    from irsim import lib
+
+    return name, getattr(lib, name.rpartition(".")[2])
+
+
+def _signature(member: Any) -> str:
+    """Parameters with defaults, types and ``self`` left out."""
+    shown = []
+    starred = False
+    for parameter in inspect.signature(member).parameters.values():
+        if parameter.name == "self":
+            continue
+        if parameter.kind is parameter.KEYWORD_ONLY and not starred:
+            shown.append("*")
+            starred = True
+        variadic = parameter.kind is parameter.VAR_POSITIONAL
+        mark = "*" if variadic else "**" if parameter.kind is parameter.VAR_KEYWORD else ""
+        starred = starred or variadic
+        default = "" if parameter.default is parameter.empty else f"={parameter.default!r}"
+        shown.append(f"{mark}{parameter.name}{default}")
+    return f"({', '.join(shown)})"
+
+
+def _function(name: str, function: Any) -> str:
+    text, arguments = _docstring(function)
+    listed = "\n".join(f"- `{key}`: {about}" for key, about in arguments)
+    return f"## {name}\n\n`{name}{_signature(function)}`\n\n{text}\n\n{listed}"
+
+
+def _options(cls: type) -> str:
+    _, arguments = _docstring(cls)
+    listed = "\n".join(f"- `{key}`: {about}" for key, about in arguments)
+    return f"## Keywords of irsim.make\n\n{listed}"
+
+
+def _docstring(thing: Any) -> tuple[str, list[tuple[str, str]]]:
+    """The text before the sections, and the entries of ``Args``."""
+    doc = inspect.cleandoc(thing.__doc__ or "")
+    text = re.split(r"\n\n(?:Args|Returns|Raises|Yields|Attributes):", doc)[0]
+    return _markup(" ".join(text.split())), _section(doc, "Args")
+
+
+def _section(doc: str, name: str) -> list[tuple[str, str]]:
+    found = re.search(rf"(?:^|\n){name}:\n(.*?)(?=\n\S|\Z)", doc, re.DOTALL)
+    if not found:
+        return []
+    entries: list[tuple[str, str]] = []
+    for line in inspect.cleandoc(found[1]).splitlines():
+        start = re.match(r"(\*{0,2}[\w, ]+?): (.*)", line)
+        if start and not line.startswith(" "):
+            entries.append((start[1], _markup(start[2])))
+        elif entries and line.strip():
+            entries[-1] = (entries[-1][0], f"{entries[-1][1]} {_markup(line.strip())}")
+    return entries
+
+
+def _markup(text: str) -> str:
+    text = re.sub(r":\w+:`[.~]*([^`]*)`", r"`\1`", text)
+    return text.replace("``", "`")
+
+
+def _one_line(doc: str | None) -> str:
+    return _markup(" ".join((doc or "").partition("\n\n")[0].split()))
+
+
+def _members(cls: type) -> str:
+    rows = []
+    for name, member in sorted(_public(cls), key=lambda pair: pair[0]):
+        if isinstance(member, property):
+            rows.append((f"`{name}` ->", _one_line(member.__doc__)))
+        else:
+            rows.append((f"`{name}{_signature(member)}`", _one_line(member.__doc__)))
+    return plain_table(("name", "what it is"), [row for row in rows if row[1]])
+
+
+def _public(cls: type) -> Iterator[tuple[str, Any]]:
+    names = {name for base in cls.__mro__ if base.__module__.startswith("irsim") for name in vars(base)}
+    for name in names:
+        member = inspect.getattr_static(cls, name)
+        if not name.startswith("_") and (isinstance(member, property) or inspect.isfunction(member)):
+            yield name, member
+
+
+def _attributes(cls: type) -> str:
+    rows = [(f"`{name}`", about) for name, about in _section(inspect.cleandoc(cls.__doc__ or ""), "Attributes")]
+    return plain_table(("attribute", "what it is"), rows) if rows else ""
+
+
+def _fields(model: type[BaseModel]) -> str:
+    source = inspect.getsource(model)
+    rows = []
+    for name, field in model.model_fields.items():
+        about = field.description or ""
+        if not about:
+            found = re.search(rf"\n    {name}:.*?\n    \"\"\"(.*?)\"\"\"", source, re.DOTALL)
+            about = " ".join(found[1].split()) if found else ""
+        rows.append((f"`{name}`", _markup(about)))
+    return plain_table(("field", "what it is"), rows)

@@ -1,0 +1,179 @@
+"""The skill ``irsim-benchmark``: commands run, examples end as they state, what it says of intervals is so."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+import irsim
+from irsim.metrics.definitions import METRICS
+from irsim.metrics.statistics import wilson
+from tests.skills.conftest import ROOT, execute, fences, parts, spans
+from tests.skills.test_skill import SKELETON, tool_arguments
+
+SKILL = ROOT / "skills" / "irsim-benchmark"
+VERDICT = SKILL / "scripts" / "verdict.py"
+_, BODY = parts(SKILL / "SKILL.md")
+
+
+def read(name: str, page: str) -> str:
+    return " ".join((SKILL / "examples" / name / page).read_text(encoding="utf-8").split())
+
+
+def commands(name: str) -> list[list[str]]:
+    text = (SKILL / "examples" / name / "elements.md").read_text(encoding="utf-8")
+    return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
+
+
+def verdict(path: Path, *words: str) -> tuple[int, dict[str, Any]]:
+    done = subprocess.run(
+        [sys.executable, str(VERDICT), str(path), *words], capture_output=True, text=True, check=False
+    )
+    assert "Traceback" not in done.stderr
+    return done.returncode, json.loads(done.stdout) if done.stdout else {"said": done.stderr}
+
+
+def shares(row: dict[str, Any]) -> str:
+    found = row["success"]
+    return f"{100 * found['rate']:.0f} % [{100 * found['low']:.0f}, {100 * found['high']:.0f}]"
+
+
+def test_commands_work_as_written(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.yaml").write_text(SKELETON, encoding="utf-8")
+    told = [span for span in spans(BODY) if span.startswith("irsim ") and ".yaml" in span]
+    assert len(told) >= 4
+    for command in told:
+        output = execute(shlex.split(command), tmp_path)
+        if command.endswith("--json"):
+            (tmp_path / "result.json").write_text(output, encoding="utf-8")
+    [command] = [span for span in spans(BODY) if span.startswith("python ")]
+    assert command == "python scripts/verdict.py result.json"
+    code, answer = verdict(tmp_path / "result.json")
+    assert (code, "one behavior only" in answer["said"]) == (2, True)
+
+
+def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> None:
+    tools = asyncio.run(tool_arguments(tmp_path))
+    assert {"scenarios", "behaviors", "seeds"} <= tools["benchmark"]
+    assert "job_id" in tools["get_job"]
+    assert "seed" in tools["run_episode"]
+
+
+def test_metrics_it_names_are_defined() -> None:
+    known = {metric.key for metric in METRICS}
+    named = {span for span in spans(BODY) if re.fullmatch(r"[a-z]+(_[a-z]+)+", span)} & {
+        *("goal_reached", "collision_count", "time_to_goal", "path_length", "distance_to_human_min"),
+        *("personal_space_intrusion_ratio", "space_compliance"),
+    }
+    assert len(named) == 7
+    assert named | {"spl", "success", "collision_count", "timeout"} <= known
+
+
+def test_the_table_of_seeds_is_wilsons() -> None:
+    rows = re.findall(r"^\| (\d+) \| (\d+) to (\d+) % \| ([\d.]+) % \|$", BODY, re.MULTILINE)
+    assert [row[0] for row in rows] == ["10", "30", "100", "400"]
+    for count, low, high, most in rows:
+        n = int(count)
+        assert [round(100 * end) for end in wilson(n // 2, n)] == [int(low), int(high)]
+        assert 100 * wilson(0, n)[1] == pytest.approx(float(most), abs=0.5 if float(most) > 10 else 0.06)
+    assert [round(100 * end) for end in wilson(7, 10)] == [40, 89]
+
+
+def test_the_example_of_what_to_say_is_the_one_of_the_examples() -> None:
+    [told] = fences(BODY, "text")
+    assert "97 % [89, 99] against 40 % [29, 53]" in told
+    assert "[-68, -43]" in told
+
+
+def test_two_behaviors_that_cannot_be_told_apart(tmp_path: Path) -> None:
+    [words] = commands("posts")
+    output = execute(words, SKILL / "examples" / "posts")
+    result = json.loads(output)
+    (tmp_path / "result.json").write_text(output, encoding="utf-8")
+    code, told = verdict(tmp_path / "result.json", "--metric", "success", "--metric", "time_to_goal")
+    assert code == 1
+    success, time = told["differences"]
+    page, reply = read("posts", "elements.md"), read("posts", "reply.md")
+    numbers = f"{success['difference']:.2f} [{success['low']:.2f}, {success['high']:.2f}]"
+    assert f"Success is **{success['verdict']}**: {numbers}, about {success['pairs_needed']} pairs" in page
+    numbers = f"{time['difference']:+.2f} s [{time['low']:.2f}, {time['high']:.2f}]"
+    assert f"Time is **{time['verdict']}** for RVO: {numbers}" in page
+    assert f"ORCA {shares(result['rows'][0])}, RVO {shares(result['rows'][1])}" in reply
+    assert f"(RVO {result['rows'][1]['collision']['count']} of 30)" in reply
+    failed = irsim.run(SKILL / "examples" / "posts" / "scenario.yaml", seed=0)
+    assert (failed.outcome, failed.sim_time) == ("timeout", pytest.approx(40.0))
+
+
+def test_success_over_density(tmp_path: Path) -> None:
+    *filling, words = commands("density")
+    folder = SKILL / "examples" / "density"
+    for command in filling:
+        execute(command, tmp_path)
+        name = command[-1]
+        made = yaml.safe_load((tmp_path / name).read_text(encoding="utf-8"))
+        kept = yaml.safe_load((folder / name).read_text(encoding="utf-8"))
+        made["world"].pop("plot")
+        kept["world"].pop("plot")
+        assert made == kept
+    output = execute(words, folder)
+    result = json.loads(output)
+    page, reply = read("density", "elements.md"), read("density", "reply.md")
+    for orca, sfm in zip(result["rows"][0:6:2], result["rows"][1:6:2], strict=True):
+        people = re.search(r"\d+", orca["scenario"])
+        assert people
+        assert f"| {people[0]} | {shares(orca)} | {shares(sfm)} |" in page
+        assert shares(orca) in reply
+        assert shares(sfm) in reply
+    (tmp_path / "result.json").write_text(output, encoding="utf-8")
+    code, told = verdict(tmp_path / "result.json")
+    assert code == 0
+    assert {answer["verdict"] for answer in told["differences"]} == {"worse"}
+    last = told["differences"][-1]
+    assert f"**{last['difference']:.2f}** [{last['low']:.2f}, {last['high']:.2f}]" in page
+    together = result["rows"][6:]
+    assert f"success {shares(together[0])} against {shares(together[1])}" in " ".join(BODY.split())
+    arrived = [row["metrics"]["time_to_goal"]["n"] for row in together]
+    assert f"({arrived[0]} against {arrived[1]} episodes)" in BODY
+    assert together[1]["timeout"]["count"] == 0
+
+
+def row(behavior: str, count: int, n: int, differences: tuple[float, float, float] | None) -> dict[str, Any]:
+    low, high = wilson(count, n)
+    paired = {}
+    if differences is not None:
+        mean, least, most = differences
+        paired = {"success": {"n": n, "mean": mean, "std": 0.1, "low": least, "high": most}}
+    share = {"count": count, "n": n, "rate": count / n, "low": low, "high": high}
+    return {"scenario": "a.yaml", "behavior": behavior, "success": share, "paired": paired}
+
+
+@pytest.mark.parametrize(
+    ("counts", "n", "difference", "said"),
+    [
+        ((9, 20), 20, (0.55, 0.3, 0.8), "better"),
+        ((20, 9), 20, (-0.55, -0.8, -0.3), "worse"),
+        ((10, 11), 20, (0.05, -0.2, 0.3), "open"),
+        ((3, 5), 5, (0.4, 0.1, 0.8), "open"),  # too few
+        ((20, 20), 20, (0.0, 0.0, 0.0), "open"),  # all alike
+    ],
+)
+def test_verdicts(tmp_path: Path, counts: tuple[int, int], n: int, difference: Any, said: str) -> None:
+    path = tmp_path / "result.json"
+    rows = [row("one", counts[0], n, None), row("two", counts[1], n, difference)]
+    path.write_text(json.dumps({"behaviors": ["one", "two"], "rows": rows, "notes": []}), encoding="utf-8")
+    code, told = verdict(path)
+    [answer] = told["differences"]
+    assert (answer["verdict"], code) == (said, 1 if said == "open" else 0)
+    if counts == (20, 20):
+        assert answer["low"] == pytest.approx(-answer["high"])
+        assert 0.1 < answer["high"] < 0.2  # Wilson's interval, not the point that resampling gives

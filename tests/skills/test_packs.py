@@ -1,0 +1,120 @@
+"""Every skill follows the rules of its format, its links lead somewhere, its scripts explain themselves."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim.lookup.reference import SKILLS, out_of_date
+from tests.skills.conftest import ROOT, parts
+
+FOLDERS = sorted(path.parent for path in (ROOT / "skills").glob("*/SKILL.md"))
+EXAMPLES = [folder for skill in FOLDERS for folder in sorted(skill.glob("examples/*"))]
+SCRIPTS = [path for skill in FOLDERS for path in sorted(skill.rglob("*.py")) if path.parent.name == "scripts"]
+each = pytest.mark.parametrize("skill", FOLDERS, ids=lambda path: path.name)
+example = pytest.mark.parametrize("folder", EXAMPLES, ids=lambda path: f"{path.parents[1].name}-{path.name}")
+
+
+def test_the_packs_are_there() -> None:
+    assert [skill.name for skill in FOLDERS] == ["irsim-benchmark", "irsim-runner", "irsim-scenario"]
+    assert set(SKILLS) == {skill.name for skill in FOLDERS}
+
+
+@each
+def test_frontmatter_follows_the_specification(skill: Path) -> None:
+    front, _ = parts(skill / "SKILL.md")
+    assert set(front) <= {"name", "description", "license", "compatibility", "metadata", "allowed-tools"}
+    assert front["name"] == skill.name
+    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", front["name"])
+    assert len(front["name"]) <= 64
+    assert 0 < len(front["description"]) <= 1024
+    assert "<" not in front["description"]
+    assert "Use it" in front["description"]
+    assert re.search(r"\bNot for\b", front["description"])
+    assert len(front["compatibility"]) <= 500
+    assert all(isinstance(value, str) for value in front["metadata"].values())
+    assert front["metadata"]["version"] == irsim.__version__
+
+
+if sys.version_info >= (3, 11):  # which the validator needs; the test above has its rules
+
+    @each
+    def test_the_reference_validator_agrees(skill: Path) -> None:
+        command = [sys.executable, "-c", "from skills_ref.cli import main; main()", "validate", str(skill)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+@each
+def test_short_enough_to_be_loaded_whole(skill: Path) -> None:
+    text = (skill / "SKILL.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) < 300
+    assert len(text) / 4 < 5000  # about four characters to a token
+
+
+@each
+def test_links_lead_to_files_of_the_skill_and_every_page_can_be_reached(skill: Path) -> None:
+    pages = sorted(skill.rglob("*.md"))
+    for page in pages:
+        for link in re.findall(r"\[[^]]+\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            target = (page.parent / link).resolve()
+            assert target.is_file(), f"{page.name}: {link}"
+            assert target.is_relative_to(skill)
+    linked = {(skill / link).resolve() for link in re.findall(r"\]\(([^)#]+)\)", parts(skill / "SKILL.md")[1])}
+    linked |= {page for found in linked for page in found.parent.glob("*.md")}
+    assert set(pages) - linked == {skill / "SKILL.md"}
+
+
+@each
+def test_references_lie_one_level_deep_and_are_up_to_date(skill: Path) -> None:
+    folder = skill / "references"
+    assert all(path.is_file() for path in folder.iterdir())
+    assert {path.name: len(path.read_bytes()) for path in folder.iterdir() if len(path.read_bytes()) > 18_500} == {}
+    if skill.name != "irsim-scenario":  # whose pages depend on what other tests register; it has a test of its own
+        assert out_of_date(folder, skill.name) == []
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_explain_themselves_and_refuse_nonsense(script: Path, tmp_path: Path) -> None:
+    def call(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(script), *words]
+        return subprocess.run(
+            command, capture_output=True, text=True, cwd=tmp_path, stdin=subprocess.DEVNULL, check=False
+        )
+
+    told = call("--help")
+    assert told.returncode == 0
+    assert told.stdout.startswith("usage: ")
+    assert len(told.stdout) < 4000
+    refused = call(*["missing-file"] * (2 if script.name == "changed.py" else 1))
+    assert refused.returncode == 2
+    assert refused.stdout == ""
+    assert "Traceback" not in refused.stderr
+    assert "missing-file" in refused.stderr
+
+
+def test_each_pack_has_worked_examples() -> None:
+    for skill in FOLDERS:
+        assert len([folder for folder in EXAMPLES if folder.is_relative_to(skill)]) >= 2, skill.name
+
+
+@example
+def test_an_example_leads_from_prompt_to_picture(folder: Path) -> None:
+    names = {path.name for path in folder.iterdir()}
+    assert {"prompt.md", "elements.md", "reply.md", "snapshot.png"} <= names
+    assert {name for name in names if name.endswith(".yaml")}
+    assert "| asked |" in (folder / "elements.md").read_text(encoding="utf-8")
+    assert "emplate" in (folder / "elements.md").read_text(encoding="utf-8") or folder.name in ("patrol-edit", "cafe")
+
+
+@example
+def test_pictures_are_small(folder: Path) -> None:
+    png = (folder / "snapshot.png").read_bytes()
+    assert png.startswith(b"\x89PNG")
+    assert max(int.from_bytes(png[16:20], "big"), int.from_bytes(png[20:24], "big")) <= 480
+    assert len(png) < 20_000

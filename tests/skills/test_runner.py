@@ -1,0 +1,229 @@
+"""The skill ``irsim-runner``: its programs run, its examples end as they state, its gotchas are so."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import irsim
+from irsim.batch import batch
+from tests.skills.conftest import ROOT, execute, fences, parts, spans
+from tests.skills.test_skill import SKELETON
+
+SKILL = ROOT / "skills" / "irsim-runner"
+_, BODY = parts(SKILL / "SKILL.md")
+HALL = SKELETON.replace("    plot:", "    sensors: [{name: lidar2d}]\n    plot:").replace(
+    "  height: 8 ", "  time_limit: 15\n  height: 8 "
+)
+POLICY = "def act(env):\n    return [0.5, 0.0]\n"
+
+
+def read(name: str, page: str) -> str:
+    return " ".join((SKILL / "examples" / name / page).read_text(encoding="utf-8").split())
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A directory with the scenario that the skill speaks of, and a policy."""
+    (tmp_path / "hall.yaml").write_text(HALL, encoding="utf-8")
+    (tmp_path / "policy.py").write_text(POLICY, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def copied(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
+    """A copy of an example, with the skill's scripts where it looks for them."""
+    shutil.copytree(SKILL / "scripts", tmp_path / "scripts")
+    shutil.copytree(SKILL / "examples" / request.param, tmp_path / "examples" / request.param)
+    return tmp_path / "examples" / str(request.param)
+
+
+def commands(folder: Path) -> list[list[str]]:
+    """The commands of an example's page, in order."""
+    text = (folder / "elements.md").read_text(encoding="utf-8")
+    return [shlex.split(line) for block in fences(text, "bash") for line in block.splitlines()]
+
+
+def result_of(folder: Path, name: str) -> str:
+    [words] = [words for words in commands(folder) if name in words]
+    return execute(words, folder)
+
+
+def test_the_loop_runs_and_repeats_itself(folder: Path) -> None:
+    program, _ = fences(BODY, "python")
+    first, second = (execute(["python", "-c", program], folder).splitlines() for _ in range(2))
+    rows = [line for line in first if re.match(r"\d ", line)]
+    assert len(rows) == 5
+    assert rows == [line for line in second if re.match(r"\d ", line)]
+
+
+def test_the_script_works_as_written(folder: Path) -> None:
+    [command] = [line for block in fences(BODY, "bash") for line in block.splitlines()]
+    words = shlex.split(command)
+    told = json.loads(execute(["python", str(SKILL / words[1]), *words[2:]], folder))
+    assert told["seed"] == 7
+    assert len(told["episodes"]) == 5
+    assert told["success"] + told["collision"] + told["timeout"] == 5
+    assert (folder / "end.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["hall.yaml", "--policy", "policy:missing"], 2, "missing"),
+        (["hall.yaml", "--policy", "broken:act"], 1, "ZeroDivisionError"),
+        (["short.yaml"], 2, "world.time_limit"),
+        (["wrong.yaml"], 2, "hight"),
+    ],
+)
+def test_the_scripts_exit_codes_tell_whose_fault_it_is(folder: Path, words: list[str], code: int, said: str) -> None:
+    (folder / "broken.py").write_text("def act(env):\n    return 1 / 0\n", encoding="utf-8")
+    (folder / "short.yaml").write_text(SKELETON, encoding="utf-8")
+    (folder / "wrong.yaml").write_text(HALL.replace("height", "hight"), encoding="utf-8")
+    if words[0] == "hall.yaml":
+        words = [*words, "--steps", "5"]
+    command = [sys.executable, str(SKILL / "scripts" / "episodes.py"), *words]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_behavior_works_by_the_command_it_names(folder: Path) -> None:
+    _, program = fences(BODY, "python")
+    (folder / "creeping.py").write_text(program, encoding="utf-8")
+    mapping = re.search(r"`behavior: (\{name: creep.*?\})`", BODY)
+    assert mapping
+    (folder / "creep.yaml").write_text(HALL.replace("{name: dash}", mapping[1]), encoding="utf-8")
+    told = execute(["irsim", "run", "creep.yaml", "--import", "creeping", "--steps", "100", "--json"], folder)
+    assert json.loads(told)["robots"][0]["path_length"] == pytest.approx(4.0, abs=0.1)
+
+
+@pytest.mark.parametrize("copied", ["lidar-policy"], indirect=True)
+def test_the_policy_arrives_as_often_as_stated(copied: Path) -> None:
+    words = next(words for words in commands(copied) if words[0] == "irsim")
+    given = (copied / "scenario.yaml").read_text(encoding="utf-8")
+    execute([*words, "--force"], copied)
+    filled = yaml.safe_load((copied / "scenario.yaml").read_text(encoding="utf-8"))
+    edited = yaml.safe_load(given)
+    assert edited["world"].pop("plot") != filled["world"].pop("plot")
+    assert edited["robot"][0].pop("plot") == {**filled["robot"][0].pop("plot"), "show_trajectory": True}
+    assert edited == filled
+    (copied / "scenario.yaml").write_text(given, encoding="utf-8")
+    told = json.loads(result_of(copied, "../../scripts/episodes.py"))
+    assert f"**{told['success']} of {len(told['episodes'])}**" in read(copied.name, "elements.md")
+    assert f"{told['success']} of {len(told['episodes'])} layouts" in read(copied.name, "reply.md")
+    assert (told["success"], told["seed"]) == (10, 1)
+
+
+@pytest.mark.parametrize("copied", ["give-way"], indirect=True)
+def test_the_behavior_of_ones_own_makes_the_stated_difference(copied: Path) -> None:
+    for words in commands(copied):
+        told = execute(words, copied)
+        if words[1] == "run":
+            assert "success: the robot arrived within 11.0 s" in told
+    dashing = (copied / "scenario.yaml").read_text(encoding="utf-8").replace("give_way, distance: 1.6", "dash")
+    (copied / "dash.yaml").write_text(dashing, encoding="utf-8")
+    result = irsim.run(copied / "dash.yaml", seed=3)
+    assert (result.outcome, round(result.sim_time, 1)) == ("collision", 2.8)
+    assert "in **success** after 11.0 s" in read(copied.name, "elements.md")
+    assert "**collision** at 2.8 s" in read(copied.name, "elements.md")
+
+
+@pytest.mark.parametrize("copied", ["scan-data"], indirect=True)
+def test_the_data_set_is_the_stated_one(copied: Path) -> None:
+    for words in commands(copied):
+        told = execute(words, copied)
+        if words[1] == "run":
+            assert "within 9.3 s" in told
+    shapes = json.loads(told)["shapes"]
+    assert f"**{shapes['scan'][0]}** samples" in read(copied.name, "elements.md")
+    data = np.load(copied / "samples.npz")
+    assert data["scan"].shape == (shapes["scan"][0], 61)
+    assert data["action"][:, 0].max() <= 1.0
+    assert 0 < data["scan"].min() <= data["scan"].max() == 5.0
+
+
+@pytest.mark.parametrize("name", ["lidar-policy", "give-way", "scan-data"])
+def test_the_assumptions_in_the_replies_are_those_of_the_files(name: str) -> None:
+    data = yaml.safe_load((SKILL / "examples" / name / "scenario.yaml").read_text(encoding="utf-8"))
+    for path, value in re.findall(r"- `([a-z]+\[.+?)` = (.+?): ", read(name, "reply.md")):
+        found = data
+        for word in re.findall(r"[^.\[\]]+", path):
+            found = found[int(word)] if isinstance(found, list) else found[word]
+        assert found == yaml.safe_load(value), path
+
+
+def test_what_it_names_exists() -> None:
+    from irsim.env import Env
+    from irsim.views import ObjectView
+
+    for name in re.findall(r"`env\.(\w+)", BODY):
+        assert hasattr(Env, name) or name in ("seed", "scenario"), name
+    for name in ("state", "goal", "velocity_xy", "get_lidar_scan", "set_state"):
+        assert hasattr(ObjectView, name)
+    commands = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
+    assert commands <= {"run", "render", "benchmark", "inspect", "validate"}
+
+
+def test_what_it_warns_of_is_so(folder: Path) -> None:
+    env = irsim.make(folder / "hall.yaml", display=False, seed=1, log_level="ERROR")
+    env.step([5.0, 0.0])
+    assert env.robot.velocity[0, 0] == 1.0  # limited by the file
+    assert env.robot.state.shape == (3, 1)
+    with pytest.raises(ValueError, match="read-only"):
+        env.robot.state[0, 0] = 1
+    assert env.get_lidar_scan()["ranges"].max() == env.get_lidar_scan()["range_max"]
+    for _ in range(20):
+        env.step([0.0, 0.0])
+    assert (env.outcome, env.done()) == ("running", False)
+    env.end(ending_time=0)
+    quiet = irsim.make(folder / "hall.yaml", headless=True, log_level="ERROR")
+    assert quiet.save_figure("x.png") is None
+    quiet.end()
+
+
+def test_done_is_true_after_a_collision_and_outcome_tells(folder: Path) -> None:
+    (folder / "hit.yaml").write_text(HALL.replace("[6, 6.5, 0]", "[6, 4, 0]"), encoding="utf-8")
+    env = irsim.make(folder / "hit.yaml", display=False, log_level="ERROR")
+    for _ in range(100):
+        env.step()
+    assert (env.done(), env.outcome) == (True, "collision")
+    env.end(ending_time=0)
+
+
+def test_an_animation_of_a_loop_lands_where_told(folder: Path) -> None:
+    env = irsim.make(folder / "hall.yaml", display=False, save_ani=True, log_level="ERROR")
+    for _ in range(3):
+        env.step([0.5, 0.1])
+        env.render(0)
+    env.end(ending_time=0, path=folder / "run.gif")
+    assert (folder / "run.gif").read_bytes().startswith(b"GIF8")
+
+
+def test_layouts_follow_the_seed_and_batches_are_the_same_worlds() -> None:
+    path = SKILL / "examples" / "scan-data" / "scenario.yaml"
+    env = irsim.make(path, display=False, seed=5, log_level="ERROR")
+    start = [robot.state.copy() for robot in env.robot_list]
+    env.step()
+    env.reset()
+    assert all(np.array_equal(robot.state, before) for robot, before in zip(env.robot_list, start, strict=True))
+    env.reset(random=True)
+    assert not np.array_equal(env.robot_list[0].state, start[0])
+    worlds = batch(path, 2, seeds=[4, 5])
+    np.testing.assert_array_equal(worlds.pose[1, 0], start[0][:, 0])
+    kept = worlds.pose
+    before = kept.copy()
+    worlds.step()
+    assert not np.array_equal(kept, before)  # a view
+    env.end(ending_time=0)
