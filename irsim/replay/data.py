@@ -94,7 +94,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     head = {
         "format": FORMAT,
         "run_id": run.id,
-        "title": clean(title or run.id),
+        "title": run.id if run.meta.get("scenario") is None else clean(title),
         "status": run.status,
         **_ending(run),
         "seed": int(run.meta["seed"]),

@@ -54,7 +54,7 @@ def drawn_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]],
                 shape=shapes.setdefault(text, len(shapes)),
                 color=_hex(style.obj_color),
                 alpha=round(float(style.obj_alpha), 3),
-                goal=bool(style.show_goal),
+                goal=record.role == "robot" or bool(style.show_goal),
                 arrow=bool(style.show_arrow),
             )
         objects.append(drawn)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import io
 import json
@@ -12,11 +13,21 @@ import numpy as np
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
 from irsim.runs.store import RunError, text_of
+from irsim.scenario.limits import Limits
 from irsim.text import clean
 
 __all__ = ["ARTIFACTS", "artifact"]
 
-ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json", "events.json", "trace.json", "trace.csv")
+ARTIFACTS = (
+    "scenario.yaml",
+    "resolved.json",
+    "run.json",
+    "result.json",
+    "events.json",
+    "trace.json",
+    "trace.csv",
+    "replay.json",
+)
 """What there is of a run."""
 _FILES = ARTIFACTS[:4]
 _DECIMALS = 4
@@ -33,11 +44,14 @@ def artifact(
     robot: str | None = None,
     offset: int = 0,
     most: int = 1_000_000,
+    limits: Limits | None = None,
 ) -> str:
     """A part of what was recorded.
 
     Files are given from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. What does not
     fit ends with whole rows; ``next_step`` of ``events.json`` and ``trace.json`` says where to go on, null at the end.
+    ``replay.json`` is what the page of :mod:`irsim.replay` reads: ``data`` holds the characters from ``offset`` on, of
+    ``total``, which together are a packed run in base64.
 
     Args:
         run: Which run.
@@ -48,6 +62,7 @@ def artifact(
         robot: Only this object; ``trace.json`` then has its ranges, too.
         offset: First character of a file.
         most: Bytes at most.
+        limits: Of the reader of the scenario, which ``replay.json`` needs.
 
     Raises:
         RunError: There is no such artifact, object or step.
@@ -57,6 +72,8 @@ def artifact(
         if text is None:
             raise RunError("unknown-run", f"run {run.id} has no {name}: it is {run.status}")
         return text[offset:].encode()[:most].decode(errors="ignore")
+    if name == "replay.json":
+        return _replay(run, offset, most, limits)
     if name == "events.json":
         return _events(run, from_step, to_step, robot, most)
     if name == "trace.json":
@@ -64,6 +81,14 @@ def artifact(
     if name == "trace.csv":
         return _csv(run, from_step, to_step, every, robot, most)
     raise RunError("unknown-run", f"a run has no {clean(name)!r}", f"there are {', '.join(ARTIFACTS)}")
+
+
+def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
+    from irsim.replay.data import pack_run
+
+    text = base64.b64encode(pack_run(run, limits=limits).data).decode()
+    head = json.dumps({"run_id": run.id, "offset": offset, "total": len(text)})
+    return f'{head[:-1]}, "data": "{text[offset : offset + most - len(head) - 20]}"}}'
 
 
 def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, most: int) -> str:

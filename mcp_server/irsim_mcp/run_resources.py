@@ -10,7 +10,16 @@ from irsim_mcp.services import Services
 __all__ = ["ARTIFACTS", "RUN", "add_run_resources", "uri"]
 
 RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
-ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json", "events.json", "trace.json", "trace.csv")
+ARTIFACTS = (
+    "scenario.yaml",
+    "resolved.json",
+    "run.json",
+    "result.json",
+    "events.json",
+    "trace.json",
+    "trace.csv",
+    "replay.json",
+)
 """The same as in :mod:`irsim.runs.artifacts`, which a server does not load."""
 _MOST_BYTES = 1_000_000
 
@@ -50,9 +59,9 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
         return str(found["text"])
 
     description = (
-        f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB at a time: files go on with offset (characters),"
-        " events and traces with from_step (their next_step); every thins a trace, robot picks one object and, in "
-        "trace.json, adds its ranges."
+        f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB at a time: files and the data of replay.json go "
+        "on with offset (characters), events and traces with from_step (their next_step); every thins a trace, robot "
+        "picks one object and, in trace.json, adds its ranges."
     )
     server.resource(RUN, name="run", title="Recorded run", description=description, mime_type="text/plain")(
         run_artifact

@@ -20,6 +20,7 @@ from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.prompts import add_prompts
+from irsim_mcp.replay_page import replay_app
 from irsim_mcp.resources import add_resources
 from irsim_mcp.run_resources import add_run_resources
 from irsim_mcp.sandbox import Workspace
@@ -113,7 +114,7 @@ def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing
         instructions=_INSTRUCTIONS.format(workspace=clean(folder.root, 300), saving=_SAVING[writing]),
         tools=tools,
         cache_hints=caching,
-        extensions=[Skills()],
+        extensions=[Skills(), replay_app()],
         log_level="WARNING",
     )
     add_resources(server)

@@ -109,6 +109,7 @@ def strict(
     idempotent: bool,
     destructive: bool = False,
     open_world: bool = False,
+    page: str | None = None,
 ) -> StrictTool:
     """Make a tool of a function.
 
@@ -120,6 +121,7 @@ def strict(
         idempotent: Whether the same call again gives the same.
         destructive: Whether it may destroy something.
         open_world: Whether it reaches beyond this machine.
+        page: Resource that shows its results, for hosts of MCP Apps.
     """
     hints = ToolAnnotations(
         read_only_hint=read_only,
@@ -128,7 +130,11 @@ def strict(
         open_world_hint=open_world,
     )
     tool = StrictTool.from_function(
-        function, title=title, description=" ".join(inspect.cleandoc(description).split()), annotations=hints
+        function,
+        title=title,
+        description=" ".join(inspect.cleandoc(description).split()),
+        annotations=hints,
+        meta=None if page is None else {"ui": {"resourceUri": page}},
     )
     meta = tool.fn_metadata
     tool.fn_metadata = _AsGiven(**{name: getattr(meta, name) for name in type(meta).model_fields})

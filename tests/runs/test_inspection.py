@@ -164,6 +164,12 @@ def test_artifacts_fit_and_go_on(pair: Run) -> None:
         while piece := artifact(pair, name, offset=len(text), most=100):
             text += piece
         assert text == whole
+    text, whole = "", json.loads(artifact(pair, "replay.json"))
+    while len(text) < whole["total"]:
+        piece = artifact(pair, "replay.json", offset=len(text), most=5000)
+        assert len(piece) <= 5000
+        text += json.loads(piece)["data"]
+    assert text == whole["data"]
     steps, start = [], 0
     while True:
         part = json.loads(artifact(pair, "trace.json", from_step=start, robot="left", most=2000))

@@ -4,10 +4,12 @@ import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
 import { makeLayer, showLayer } from "./layer.js";
-import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, poseAt } from "./run.js";
+import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, poseAt, rowOfTime } from "./run.js";
 import { scanAt } from "./scan.js";
 
 const DENSE = 2.5; // pixels between points of a trail
+const RECENT = 3; // seconds of a trail that stand out
+const LEAST = 3.5; // pixels: radius of the mark of what would be too small to be seen
 const STEPS = [1, 2, 5];
 
 export function makeDrawing() {
@@ -25,9 +27,13 @@ export function drawFrame(context, drawing, run, shown, camera, colors, ratio) {
     drawGround(target, drawing, run, own, colors, ratio);
   });
   if (shown.trails) {
-    showLayer(drawing.trails, context, camera, ratio, key, row, 0.5, (target, own, from, to) => {
-      drawTrails(target, run, own, colors, ratio, from, to);
+    const faint = Math.max(0.14, 0.5 / (1 + run.movers.length / 25));
+    showLayer(drawing.trails, context, camera, ratio, key, row, faint, (target, own, from, to) => {
+      drawTrails(target, run, own, colors, ratio, from, to, 1.6);
     });
+    context.globalAlpha = 0.75;
+    drawTrails(context, run, camera, colors, ratio, Math.floor(rowOfTime(run, run.time[row] - RECENT)), row, 2);
+    context.globalAlpha = 1;
   }
   if (shown.robot >= 0) drawWay(context, run, shown, camera, colors, ratio);
   if (shown.goals) drawGoals(context, run, shown, camera, colors, ratio);
@@ -107,9 +113,9 @@ function place(context, camera, ratio, pose) {
   context.rotate(pose.heading);
 }
 
-function drawTrails(context, run, camera, colors, ratio, from, to) {
+function drawTrails(context, run, camera, colors, ratio, from, to, width) {
   inMetres(context, camera, ratio);
-  context.lineWidth = 1.6 / camera.scale;
+  context.lineWidth = width / camera.scale;
   context.lineJoin = "round";
   context.lineCap = "round";
   for (const object of run.objects) {
@@ -235,9 +241,21 @@ function drawBody(context, run, object, at, shown, camera, colors, ratio) {
     context.lineWidth = 2 * px;
     context.stroke();
   }
-  const edge = hit ? colors.danger : chosen ? colors.ink : colors.paper;
-  paintShape(context, run, object, pose, camera, ratio, color, rests ? 0.4 : 1, rests ? color : edge, hit ? 3.5 : 1);
+  const edge = hit ? colors.danger : chosen ? colors.ink : colors.paper, small = object.radius < LEAST * px;
+  if (small) {
+    inMetres(context, camera, ratio);
+    context.beginPath();
+    context.arc(pose.x, pose.y, LEAST * px, 0, 2 * Math.PI);
+    context.fillStyle = hit ? colors.danger : color;
+    context.globalAlpha = rests ? 0.5 : 1;
+    context.fill();
+    context.globalAlpha = 1;
+    return;
+  }
+  const width = hit ? Math.min(3.5, 1 + 0.3 * object.radius * camera.scale) : 1;
+  paintShape(context, run, object, pose, camera, ratio, color, rests ? 0.4 : 1, rests ? color : edge, width);
   if (!object.arrow && object.role !== "robot") return;
+  if (object.radius < 2 * LEAST * px) return;
   const way = object.drive === "omni" ? courseAt(run, object.index, at, pose.heading) : pose.heading;
   place(context, camera, ratio, { x: pose.x, y: pose.y, heading: way });
   const size = Math.min(object.radius * 0.62, Math.max(object.radius * 0.4, 5 * px));

@@ -1,9 +1,9 @@
 // The column at the side, the head line and the clock.
 
 import { $, element, setTerms } from "./dom.js";
-import { eventWords, seconds, valuesOf } from "./words.js";
+import { eventWords, ofRobot, seconds, valuesOf } from "./words.js";
 
-const LISTED = 500;
+const LISTED = 300; // events at a time
 const NONE = -1;
 
 export function fillPanel(player, goToEvent) {
@@ -21,21 +21,27 @@ export function fillPanel(player, goToEvent) {
     ...[...run.robots, ...movers].map((index) => element("option", { value: index, textContent: run.objects[index].name })),
   );
   $("view").setAttribute("aria-label", `The world from above: ${run.robots.length} robots, ${run.objects.length - run.robots.length} other objects`);
-  const told = run.events.slice(0, LISTED);
   $("eventshead").textContent = `Events (${head.event_count})`;
-  $("events").replaceChildren(
-    ...told.map((event) => {
-      const button = element("button", { type: "button", className: event.kind }, element("i"),
-        element("time", { textContent: seconds(event.time) }), element("span", { textContent: eventWords(run, event) }));
-      button.addEventListener("click", () => goToEvent(event));
-      return element("li", {}, button);
-    }),
-  );
-  if (!told.length) $("events").append(element("p", { textContent: "Nothing happened." }));
-  if (head.event_count > told.length) $("events").append(element("p", { textContent: `… and ${head.event_count - told.length} more` }));
+  player.goToEvent = goToEvent;
+  listEvents(player, 0);
   $("time").max = run.rows - 1;
-  player.listed = [...$("events").querySelectorAll("button")];
-  player.current = null;
+}
+
+/** List the events from a place on. */
+function listEvents(player, first) {
+  const { run, goToEvent } = player, list = $("events"), count = run.events.length;
+  const last = Math.min(count, first + LISTED), held = list.contains(document.activeElement);
+  const buttons = run.events.slice(first, last).map((event) => {
+    const className = `${event.kind}${ofRobot(run, event) ? "" : " other"}`, button = element("button", { type: "button", className },
+      element("i"), element("time", { textContent: seconds(event.time) }), element("span", { textContent: eventWords(run, event) }));
+    button.addEventListener("click", () => goToEvent(event));
+    return button;
+  });
+  const before = first ? [element("p", { textContent: `… ${first} before` })] : [];
+  const after = run.head.event_count > last ? [element("p", { textContent: `… ${run.head.event_count - last} more` })] : [];
+  const none = count ? [] : [element("p", { textContent: "Nothing happened." })];
+  list.replaceChildren(...[...before, ...buttons, ...after, ...none].map((part) => element("li", {}, part)));
+  Object.assign(player, { listed: buttons, listedFrom: first, current: null, heldFocus: held });
 }
 
 function factsOf({ head, robots }) {
@@ -59,23 +65,31 @@ export function showMoment(player) {
 
 /** The last event so far is marked in the list, and brought into view when it changes. */
 function markCurrent(player, row) {
-  const { run, listed } = player;
-  let low = 0, high = listed.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (run.events[middle].row <= row) low = middle + 1;
-    else high = middle;
-  }
-  const button = listed[low - 1] ?? null;
+  const { events } = player.run, place = eventsUntil(events, row) - 1;
+  const off = place - player.listedFrom, beyond = (off < 0 && player.listedFrom > 0) || off >= LISTED;
+  if (beyond) listEvents(player, Math.max(0, Math.min(events.length - LISTED, place - LISTED / 2)));
+  const button = player.listed[place - player.listedFrom] ?? null;
   if (button === player.current) return;
   player.current?.removeAttribute("aria-current");
   player.current = button;
   if (!button) return;
   button.setAttribute("aria-current", "true");
+  if (player.heldFocus) button.focus({ preventScroll: true });
+  player.heldFocus = false;
   const list = $("events"), top = button.offsetTop - list.offsetTop;
   if (top < list.scrollTop || top + button.offsetHeight > list.scrollTop + list.clientHeight) {
     list.scrollTop = top - list.clientHeight / 2;
   }
+}
+
+function eventsUntil(events, row) {
+  let low = 0, high = events.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (events[middle].row <= row) low = middle + 1;
+    else high = middle;
+  }
+  return low;
 }
 
 export function showChoices({ run, shown }) {

@@ -1,8 +1,9 @@
 // Events as marks over the scrubber: click one to go there.
 
 import { $ } from "./dom.js";
-import { eventWords, seconds } from "./words.js";
+import { eventWords, ofRobot, seconds } from "./words.js";
 
+const ROOMY = 7; // pixels per event
 const INSET = 8, NEAR = 7; // pixels: half a thumb of the scrubber, and how close a click must be
 
 const placeOf = (run, row, width) => INSET + ((width - 2 * INSET) * row) / Math.max(1, run.rows - 1);
@@ -13,24 +14,24 @@ export function drawMarks(run, colors, ratio) {
   canvas.height = Math.round(height * ratio);
   const context = canvas.getContext("2d");
   context.scale(ratio, ratio);
-  const order = { waypoint: 0, arrival: 1, collision: 2 };
+  const order = { waypoint: 0, arrival: 1, collision: 2 }, drawn = new Set();
+  const crowded = run.events.length > width / ROOMY;
   for (const event of [...run.events].sort((a, b) => order[a.kind] - order[b.kind])) {
-    const x = placeOf(run, event.row, width), y = height / 2 + 1;
+    const x = placeOf(run, event.row, width), y = height / 2 + 1, place = `${Math.round(x)} ${event.kind}`;
+    if (drawn.has(place)) continue;
+    drawn.add(place);
+    context.globalAlpha = ofRobot(run, event) ? 1 : 0.45;
     context.beginPath();
     if (event.kind === "collision") {
       context.fillStyle = colors.danger;
-      context.moveTo(x, y - 6);
-      context.lineTo(x + 5, y);
-      context.lineTo(x, y + 6);
-      context.lineTo(x - 5, y);
+      if (crowded) context.rect(x - 0.75, y - 6, 1.5, 5);
+      else for (const [dx, dy] of [[0, -6], [5, 0], [0, 6], [-5, 0]]) context.lineTo(x + dx, y + dy);
     } else {
       context.fillStyle = event.kind === "arrival" ? colors.good : colors.muted;
-      context.arc(x, y, event.kind === "arrival" ? 4 : 2, 0, 2 * Math.PI);
+      if (crowded) context.rect(x - 0.75, y + 1, 1.5, event.kind === "arrival" ? 5 : 3);
+      else context.arc(x, y, event.kind === "arrival" ? 4 : 2, 0, 2 * Math.PI);
     }
     context.fill();
-    context.strokeStyle = colors.card;
-    context.lineWidth = 1;
-    context.stroke();
   }
 }
 

@@ -12,6 +12,9 @@ export function eventWords(run, { kind, object, partner }) {
   return kind === "collision" ? `${name} hits${whom || " something"}` : `${name} ${KINDS[kind] ?? kind}${whom}`;
 }
 
+/** Whether a robot takes part in an event. */
+export const ofRobot = (run, { object, partner }) => [object, partner].some((index) => run.objects[index]?.role === "robot");
+
 /** Name and value pairs of an object at a moment. */
 export function valuesOf(run, index, at) {
   const object = run.objects[index], pose = poseAt(run, index, at), goal = goalAt(run, index, at);

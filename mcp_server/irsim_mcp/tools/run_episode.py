@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from irsim.text import clean
 from irsim_mcp.limits import RUN_SECONDS, STEPS
 from irsim_mcp.progress import reporter
+from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
@@ -119,7 +120,9 @@ def tool(services: Services) -> StrictTool:
         text = TextContent(type="text", text=_text(episode))
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
-    return strict(run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True)
+    return strict(
+        run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True, page=PAGE
+    )
 
 
 def _episode(found: dict[str, Any], detailed: bool) -> Episode:
