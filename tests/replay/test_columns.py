@@ -4,28 +4,23 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra import numpy as arrays
 
 from irsim.replay.columns import Columns, changes, quantised
 from tests.replay.reading import unpacked
 
-SHAPES = arrays.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=9)
+NUMBERS = st.integers(-(2**31), 2**31 - 1)
 
 
-@given(
-    st.lists(st.tuples(arrays.arrays(np.int32, SHAPES), st.integers(0, 2)), max_size=4),
-    st.dictionaries(st.text(max_size=5), st.text(max_size=9), max_size=3),
-)
-def test_a_block_is_read_back(given_columns: list[tuple[np.ndarray, int]], given_head: dict[str, str]) -> None:
-    given_head.pop("columns", None)
+@given(st.lists(st.lists(NUMBERS, min_size=3, max_size=3), max_size=4), st.integers(0, 2), st.text(max_size=9))
+def test_a_block_is_read_back(rows: list[list[int]], order: int, text: str) -> None:
+    table = np.array(rows, dtype=np.int32).reshape(-1, 3)
     columns = Columns()
-    for number, (values, order) in enumerate(given_columns):
-        columns.add(f"c{number}", values, order)
-    head, found = unpacked(columns.block(given_head))
-    head.pop("columns")
-    assert head == given_head
-    for number, (values, _) in enumerate(given_columns):
-        np.testing.assert_array_equal(found[f"c{number}"], values)
+    columns.add("table", table, order)
+    columns.add("flat", table.ravel(), order)
+    head, found = unpacked(columns.block({"text": text}))
+    assert head["text"] == text
+    np.testing.assert_array_equal(found["table"], table)
+    np.testing.assert_array_equal(found["flat"], table.ravel())
 
 
 def test_smooth_series_are_small() -> None:
