@@ -36,6 +36,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "unknown-color": ("robot: {color: greenish}", "robot: {color: green}"),
     "unknown-behavior": ("robot: {behavior: {name: rov}}", "robot: {behavior: {name: rvo}}"),
     "not-a-group-behavior": ("robot: {group_behavior: {name: dash}}", "robot: {group_behavior: {name: orca}}"),
+    "bad-social-group": ("robot: {group_behavior: {name: sfm, social_groups: [[0, 1]]}}", "robot: {number: 2, distribution: {name: random}, group_behavior: {name: sfm, social_groups: [[0, 1]]}}"),
     "unknown-kinematics": ("robot: {kinematics: {name: difff}}", "robot: {kinematics: {name: diff}}"),
     "unknown-shape": ("robot: {shape: {name: square}}", "robot: {shape: {name: rectangle, length: 0.4, width: 0.4}}"),
     "unknown-sensor": ("robot: {sensors: [{name: laser}]}", "robot: {sensors: [{name: lidar2d}]}"),
