@@ -542,6 +542,10 @@ class State:
         """(3 + E,) pose and extra rows that reset() returns to."""
     def velocity_world(self, row: int) -> tuple[float, float]:
         """World-frame velocity that the present control gives at the present pose."""
+    def velocities_world(self, world: int) -> NDArray[np.float64]:
+        """(N, 2) the same of every object of a world."""
+    def near_row(self, row: int) -> list[int]:
+        """Places, ascending, of the other objects of its world whose bounding boxes meet that of a row now."""
     def drive_velocity_world(self, row: int) -> tuple[float, float]:
         """World-frame velocity that `drive` gives at the present pose."""
     def moved(self, row: int) -> None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.crowd import AVOIDANCE_MARGIN, centres
+
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
     from irsim.simulation import Simulation
@@ -19,8 +21,6 @@ Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _CIRCLE_POINTS = 64
 _STRAIGHT = 1e-12
 """A corner that turns less than this [m2] counts as straight."""
-_RADIUS_MARGIN = 0.1
-"""What avoidance methods of IR-SIM add to a body's radius [m]."""
 
 
 def column(values: Any) -> Floats:
@@ -83,7 +83,7 @@ class ObjectBody:
     @property
     def radius_extend(self) -> float:
         """``radius`` plus the margin that avoidance methods keep."""
-        return self.radius + _RADIUS_MARGIN
+        return self.radius + AVOIDANCE_MARGIN
 
     @property
     def vertices(self) -> Floats | None:
@@ -129,14 +129,15 @@ class ObjectBody:
     @property
     def centroid(self) -> Floats:
         """(2, 1) centre of the body's area, world frame."""
-        point = self.geometry.centroid
-        return column([point.x, point.y])
+        x, y, theta = self._simulation.pose[self.row].tolist()
+        a, b = self._centre()
+        c, s = math.cos(theta), math.sin(theta)
+        return column([x + c * a - s * b, y + s * a + c * b])
 
     @property
     def original_centroid(self) -> Floats:
         """(2, 1) centre of the body's area, body frame."""
-        point = self.original_geometry.centroid
-        return column([point.x, point.y])
+        return column(self._centre())
 
     @property
     def original_state(self) -> Floats:
@@ -190,6 +191,11 @@ class ObjectBody:
     def get_Gh(self) -> Inequality:
         """(G, h, cone_type, convex_flag) of the body where it is now, world frame."""
         return convex_inequality(self._simulation, self.row, world_frame=True)
+
+    def _centre(self) -> list[float]:
+        world, index = divmod(self.row, self._simulation.objects)
+        centre: list[float] = centres(self._simulation, world)[index].tolist()
+        return centre
 
     def _part(self, part: int, *, world_frame: bool) -> Floats:
         state = self._simulation.state

@@ -67,7 +67,7 @@ class ObjectHooks:
 
     def _take_part(self) -> None:
         """Be asked in the steps of the present simulation, if anything is overridden."""
-        if self.overridden():
+        if self._subclassed or not self.__dict__.keys().isdisjoint(HOOKS):
             hooks = self._simulation.hooks
             if hooks is None:
                 hooks = self._simulation.hooks = Hooks(self._simulation)

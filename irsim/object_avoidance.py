@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from irsim import _core as core
 from irsim.body import column
+from irsim.crowd import discs
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
@@ -87,7 +88,13 @@ class ObjectAvoidance:
     @property
     def rvo_neighbors(self) -> list[list[float]]:
         """``rvo_neighbor_state`` of all others that are not ``unobstructed``."""
-        return [other.rvo_neighbor_state for other in self.external_objects if not other.unobstructed]
+        others = [other for other in self.external_objects if not other.unobstructed]
+        if not others or any(type(other).rvo_neighbor_state is not _NEIGHBOR_STATE for other in others):
+            return [other.rvo_neighbor_state for other in others]
+        first = others[0]
+        everybody = discs(first._simulation, first.world)
+        chosen: list[list[float]] = everybody[[other.index for other in others]].tolist()
+        return chosen
 
     @property
     def rvo_line_segments(self) -> list[list[float]]:
@@ -120,3 +127,6 @@ class ObjectAvoidance:
     def _world_velocity(self) -> list[float]:
         velocity: list[float] = self.velocity_xy[:, 0].tolist()
         return velocity
+
+
+_NEIGHBOR_STATE = ObjectAvoidance.rvo_neighbor_state

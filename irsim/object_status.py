@@ -43,6 +43,8 @@ class ObjectStatus:
         arrive_mode: Any
         goal_threshold: Any
         external_objects: Any
+        environment_objects: Any
+        surroundings: Any
 
         def set_goal(self, goal: Any, init: bool = False) -> None:
             """See :class:`irsim.views.ObjectView`."""
@@ -82,7 +84,7 @@ class ObjectStatus:
     def check_collision_status(self) -> None:
         """Set the flags of collision and stop from where everything is now."""
         simulation = self._simulation
-        collided = any(not other.unobstructed and self.check_collision(other) for other in self.external_objects)
+        collided = any(self.check_collision(other) for other in self.possible_collision_objects)
         simulation.collided[self.row] = collided
         simulation.stopped[self.row] = collided and self.role in _STOPS.get(simulation.world.collision_mode, ())
 
@@ -94,6 +96,10 @@ class ObjectStatus:
     @property
     def possible_collision_objects(self) -> list[ObjectView]:
         """The others, ``unobstructed`` ones left out, whose bounding boxes meet its own."""
+        if self.surroundings is None:
+            objects = self.environment_objects
+            near = [objects[i] for i in self._simulation.state.near_row(self.row)]
+            return [other for other in near if not other.unobstructed]
         low, high = _box(self)
         found = []
         for other in self.external_objects:

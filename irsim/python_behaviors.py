@@ -40,6 +40,16 @@ class PythonBehaviors:
 
         records = self._simulation.scenario.objects
         native = group_behaviors(records)
+        own: dict[tuple[str, str], bool] = {}
+
+        def is_own(record: ObjectRecord) -> bool:
+            if record.behavior is None or record.kinematics is None:
+                return False
+            pair = _name(record.kinematics), _name(record.behavior)
+            if pair not in own:
+                own[pair] = _is_own(record, record.behavior, CUSTOM_BEHAVIORS)
+            return own[pair]
+
         members: dict[int, list[int]] = {}
         for index, record in enumerate(records):
             if record.joined:
@@ -47,7 +57,7 @@ class PythonBehaviors:
         self.objects = [
             index
             for index, record in enumerate(records)
-            if not (record.joined and record.group in native) and _is_own(record, record.behavior, CUSTOM_BEHAVIORS)
+            if not (record.joined and record.group in native) and is_own(record)
         ]
         self.groups = [
             group

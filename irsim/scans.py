@@ -87,6 +87,13 @@ class Lidar2D:
     angle_max: float
     angle_inc: float
     time_inc: float
+    _simulation: Simulation
+    _index: int
+    _beams: slice
+    _ranges: Floats
+    _hits: NDArray[np.int32]
+    _valid: NDArray[np.uint8]
+    _velocities: Floats
     _settings: ClassVar[tuple[str, ...]] = (
         "number",
         "range_min",
@@ -110,21 +117,26 @@ class Lidar2D:
 
     def attach(self, simulation: Simulation, index: int) -> None:
         """Read the ``index``-th sensor of this simulation from now on."""
-        self._simulation, self._index = simulation, index
-        _, first, number = simulation.world.scans()[index]
-        first += self.parent.world * simulation.world.beams_per_world
-        self._beams = slice(first, first + number)
-        self._ranges = simulation.ranges[self._beams]
-        self._hits = simulation.hits[self._beams]
-        self._valid = simulation.valid[self._beams]
-        first, rows = simulation.world.velocity_slices()[index]
-        first += self.parent.world * simulation.world.velocities_per_world
-        self._velocities = simulation.state.velocities[first : first + rows * number].reshape(rows, number)
-        self._describe(number)
+        own, world = self.__dict__, self.parent.world  # without __setattr__: many do this at once
+        _, first, number = simulation.scans[index]
+        first += world * simulation.world.beams_per_world
+        beams = slice(first, first + number)
+        own["_simulation"], own["_index"], own["_beams"] = simulation, index, beams
+        own["_ranges"], own["_hits"], own["_valid"] = (
+            simulation.ranges[beams],
+            simulation.hits[beams],
+            simulation.valid[beams],
+        )
+        first, rows = simulation.velocity_slices[index]
+        first += world * simulation.world.velocities_per_world
+        own["_velocities"] = simulation.state.velocities[first : first + rows * number].reshape(rows, number)
+        if own.get("_described") is not self.options:
+            self._describe(number)
 
     def _describe(self, number: int) -> None:
         """Show the options, and the beams they mean."""
         options, own = self.options, self.__dict__
+        own["_described"] = options
         angles: Floats = self._simulation.state.beam_angles[self._beams].copy()
         own.update({name: getattr(options, name) for name in self._settings}, number=number, angle_list=angles)
         own["offset"] = column(options.offset)

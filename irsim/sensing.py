@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -123,8 +124,8 @@ def attach_sensors(simulation: Simulation, view: ObjectView) -> None:
 
 
 def _native(simulation: Simulation, view: ObjectView) -> Iterator[int]:
-    """Numbers of the sensors of an object among the native ones of its world."""
-    return (number for number, (owner, _, _) in enumerate(simulation.world.scans()) if owner == view.index)
+    """Numbers, one by one, of the sensors of an object among the native ones of its world."""
+    return count(simulation.first_scan(view.index))
 
 
 def _measure(simulation: Simulation, mask: NDArray[np.bool_] | None) -> None:

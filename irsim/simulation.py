@@ -14,7 +14,7 @@ from irsim.diagnostics import Diagnostic
 from irsim.errors import PlacementError
 from irsim.log import Logger
 from irsim.streams import generator
-from irsim.world.build import COLLISION_MODES, build_world
+from irsim.world.build import COLLISION_MODES, Built, build_world
 
 if TYPE_CHECKING:
     from irsim.hooks import Hooks
@@ -54,6 +54,8 @@ class Simulation:
         command, given: (R, 3), (R,) control wanted for the next step, and which rows it is imposed on.
         arrived, collided, stopped: (R,) flags, uint8.
         goal: (R, 3) current goals; NaN where there is none.
+        scans: (owner, first beam, beams) of each native sensor of a world.
+        velocity_slices: (first, rows) of each among the measured velocities.
         infeasible: (R,) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
         ids: (N + 1,) id of each object of a world; the last entry, -1, stands for none.
         names: Name of every object that ever was in it, by id.
@@ -92,7 +94,8 @@ class Simulation:
         self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
         self.passable: set[int] = set()
-        world = build_world(scenario, self.copies)
+        self._built: Built = {}
+        world = build_world(scenario, self.copies, self._built)
         self.revision = 0
         self._history = history
         self._reseeded = False
@@ -114,6 +117,10 @@ class Simulation:
         self.infeasible = state.infeasible
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.count = state.count
+        self.scans, self.velocity_slices = world.scans(), world.velocity_slices()
+        self._first_scan: dict[int, int] = {}
+        for number, (owner, _, _) in enumerate(self.scans):
+            self._first_scan.setdefault(owner, number)
         self._all = np.ones(self.copies, dtype=np.uint8)
         records = self.scenario.objects
         self.robots = np.array([record.role == "robot" for record in records], dtype=bool)
@@ -129,7 +136,7 @@ class Simulation:
             scenario: The present one but for its objects.
             origins: For each of them, the simulation of one world and the row that hold its present state.
         """
-        world = build_world(scenario)
+        world = build_world(scenario, built=self._built)
         world.collision_mode = self.world.collision_mode
         state = core.State(world, self.state, [(source.state, row) for source, row in origins])
         self.scenario = scenario
@@ -139,7 +146,7 @@ class Simulation:
     def restore(self, scenario: ResolvedScenario) -> None:
         """Start the next scene with these objects; the first one if there is a new seed."""
         seed, scene, _ = self.key()
-        world = build_world(scenario)
+        world = build_world(scenario, built=self._built)
         world.collision_mode = self.world.collision_mode
         state = core.State(world, np.array([seed], dtype=np.uint64), self._history)
         self.scenario = scenario
@@ -264,6 +271,10 @@ class Simulation:
         core.integrate_row(self.world, self.state, row)
         if self.drives is not None:
             self.drives.move_row(row)
+
+    def first_scan(self, index: int) -> int:
+        """Number of the first native sensor of an object among those of its world; its others follow."""
+        return self._first_scan.get(index, 0)
 
     # all rows ---------------------------------------------------------------------------------------------------------
 

@@ -73,6 +73,13 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
     sensors: list[Any]
     lidar: Lidar2D | None
 
+    _simulation: Simulation
+    index: int
+    world: int
+    row: int
+    _pose: Floats
+    _pose_column: Floats
+
     def __init__(self, simulation: Simulation, index: int, world: int = 0) -> None:
         record = simulation.scenario.objects[index]
         self.describe(record)
@@ -121,10 +128,9 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
 
     def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
         """Look at another place from now on: rows move when objects come and go."""
-        self._simulation, self.index, self.world = simulation, index, world
-        self.row = world * simulation.objects + index
-        self._pose = simulation.pose[self.row]
-        self._pose_column = simulation.pose[self.row, :, None]
+        own, row = self.__dict__, world * simulation.objects + index  # without __setattr__: many do this at once
+        own["_simulation"], own["index"], own["world"], own["row"] = simulation, index, world, row
+        own["_pose"], own["_pose_column"] = simulation.pose[row], simulation.pose[row, :, None]
         if self.sensors:
             attach_sensors(simulation, self)
         self._take_part()
@@ -521,7 +527,8 @@ def _view_class(record: ObjectRecord) -> type[ObjectView]:
 def set_views(simulation: Simulation, shown: Sequence[ObjectView]) -> None:
     """Let these views show the rows of a simulation of one world, in this order."""
     for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
-        view.describe(record)
+        if view.record is not record:
+            view.describe(record)
         view.attach(simulation, index)
     simulation.__dict__["_views"] = {0: list(shown)}
 

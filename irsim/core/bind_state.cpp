@@ -70,6 +70,32 @@ std::tuple<double, double> velocity_of(const BoundState& self, int row) {
   return {v.x, v.y};
 }
 
+nb::object velocities_of(const BoundState& self, int w) {
+  self.check_world(w);
+  const int n = self.world->objects;
+  std::vector<double> out, scratch;
+  for (int i = 0; i < n; ++i) {
+    const Vec2 v = velocity_world(*self.world, self.state, w * n + i, scratch);
+    out.insert(out.end(), {v.x, v.y});
+  }
+  return own(std::move(out), {static_cast<std::size_t>(n), 2});
+}
+
+/// Others whose bounding boxes meet that of a row, where everything is now.
+std::vector<int> near_row(BoundState& self, int row) {
+  self.check_row(row);
+  const World& world = *self.world;
+  const int w = row / world.objects, object = row % world.objects;
+  place_fixed(world, self.state, w);
+  place_moving(world, self.state, w);
+  const Box box = self.state.footprint(world, w, object).box;
+  std::vector<int> found;
+  for (int i = 0; i < world.objects; ++i) {
+    if (i != object && self.state.footprint(world, w, i).box.meets(box)) found.push_back(i);
+  }
+  return found;
+}
+
 std::tuple<double, double> drive_velocity_of(const BoundState& self, int row) {
   self.check_row(row);
   std::vector<double> scratch;
@@ -365,6 +391,8 @@ void bind_state(nb::module_& m) {
           nb::arg("row"))
       .def("initial_state", &initial_state, nb::arg("row"))
       .def("velocity_world", &velocity_of, nb::arg("row"))
+      .def("velocities_world", &velocities_of, nb::arg("world"))
+      .def("near_row", &near_row, nb::arg("row"))
       .def("drive_velocity_world", &drive_velocity_of, nb::arg("row"))
       .def(
           "moved",

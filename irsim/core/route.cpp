@@ -23,6 +23,8 @@ constexpr double kLegGain = 2.0;                     // of turning back to the l
 constexpr double kSteeringShare = 0.9;               // of the largest steering angle that poses are planned with
 constexpr int kMostWaits = 30;    // steps something is in the way of a leg before there is a new plan
 constexpr int kMostBraking = 40;  // steps of braking looked ahead
+constexpr double kStood = 0.1;    // who gets no farther than this [m] ...
+constexpr double kStuck = 5.0;    // ... for so long [s] on a way that may be too narrow has no path
 constexpr std::uint64_t kDrawsPerPlan = std::uint64_t{1} << 40;
 
 /// Distances of a body from its origin: farthest, and farthest to the side.
@@ -132,6 +134,7 @@ class Follower {
       go_on_legs(u);
       if (!route_.legs.empty()) return;
     }
+    if (route_.unsure) look_whether_stuck();
     if (std::holds_alternative<DashOptions>(world_.specs[object_].behavior)) steer(u);
     if (route_.hold) u[2] = 0.0;
     back_off_goal();
@@ -160,7 +163,11 @@ class Follower {
 
   void plan() {
     const Goal& goal = state_.goal[row_];
-    if (!(route_.goal.x == goal.x && route_.goal.y == goal.y)) route_.told = false;
+    const bool same_way = route_.goal.x == goal.x && route_.goal.y == goal.y && route_.among == state_.scenes[w_].fixed;
+    if (!(route_.goal.x == goal.x && route_.goal.y == goal.y)) route_.told = false, route_.stood = {kNone, kNone};
+    const bool in_vain = same_way && route_.unsure && norm(route_.tried.position() - position()) < kStood &&
+                         std::fabs(wrap(route_.tried.theta - state_.pose[row_].theta)) < kFacing;
+    route_.unsure = false;
     route_.goal = goal.position();
     route_.planned_at = state_.count[w_];
     route_.among = state_.scenes[w_].fixed;
@@ -196,12 +203,32 @@ class Follower {
         if (!std::holds_alternative<AckerOptions>(world_.drive[object_])) route_.room = extent.reach;
       }
       if (!found && !round && sideways) found = route_.hold = as_it_stands();
-      if (!found && !round && !sideways) found = find_legs(extent.reach);
+      if (!found && !round && !sideways) {
+        found = !in_vain && find_legs(extent.reach);
+        if (!found) route_.unsure = true, route_.tried = in_vain ? route_.tried : state_.pose[row_];
+      }
       found = found || (!round && (attempt(easy, ahead, true) || attempt(ahead, ahead, true)));
     }
-    if (!route_.path.empty() || route_.told) return;
+    if (route_.path.empty()) tell();
+  }
+
+  /// Once for every goal: there is no path.
+  void tell() {
+    if (route_.told) return;
     route_.told = true;
     state_.log(world_, w_, EventKind::no_path, object_, -1, position());
+  }
+
+  /// On a path for less than the whole body, standing still for long means that it does not fit through.
+  void look_whether_stuck() {
+    const Vec2 here = position();
+    if (!(norm(here - route_.stood) <= kStood)) {
+      route_.stood = here, route_.stood_at = state_.count[w_];
+      return;
+    }
+    const double stood = static_cast<double>(state_.count[w_] - route_.stood_at) * world_.step_time;
+    const double left = norm(state_.goal[row_].position() - here);
+    if (stood >= kStuck && left > world_.goal_threshold[object_]) tell();
   }
 
   /// Poses for a drive that does not move sideways where there is no room to turn everywhere.

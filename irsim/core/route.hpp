@@ -42,6 +42,10 @@ struct Route {
   int backing = 0;                     // steps for which it goes on backing out of a corner
   double room = 0.0;                   // behaviors keep a disc so large about the origin off walls [m]
   bool told = false;                   // that there is no path to this goal
+  bool unsure = false;                 // it is free for less than the whole body: poses were looked for in vain
+  Pose tried{};                        // where that was
+  Vec2 stood{kNone, kNone};            // where the object has been ...
+  std::int64_t stood_at = 0;           // ... since this step
   std::shared_ptr<const Fixed> among;  // the static objects it was planned among
   std::vector<Body> bodies;            // for which it is free of collisions, and for which sight is asked for
 };

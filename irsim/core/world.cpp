@@ -65,8 +65,13 @@ void find_members(World& world) {
 
 Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
 
-void set_beams(Mount& mount, std::vector<double> angles) {
+/// `like`: a mount that may have the same beams.
+void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nullptr) {
   mount.count = static_cast<int>(angles.size());
+  if (like != nullptr && like->angle == angles) {
+    mount.angle = std::move(angles), mount.cosine = like->cosine, mount.sine = like->sine;
+    return;
+  }
   mount.angle = std::move(angles);
   for (const double angle : mount.angle) {
     mount.cosine.push_back(std::cos(angle));
@@ -97,7 +102,7 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
     Mount mount = mount_of(object, static_cast<int>(k));
     mount.first = world.beams_per_world, mount.first_velocity = world.velocities_per_world;
     with(spec.sensors[k], [&](const auto& options) {
-      set_beams(mount, beams(options));
+      set_beams(mount, beams(options), world.scans.empty() ? nullptr : &world.scans.back().mount);
       mount.velocity_rows = velocity_rows(options), mount.offset = options.offset;
     });
     world.beams_per_world += mount.count;

@@ -157,19 +157,37 @@ def build_route(options: Follow) -> core.RouteOptions:
     )
 
 
-def build_world(scenario: ResolvedScenario, copies: int = 1) -> core.World:
-    """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`."""
+Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec]]
+"""What was built for a record, by its identity: the record, its group's behavior, the object."""
+
+
+def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None = None) -> core.World:
+    """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`.
+
+    Args:
+        scenario: What to build.
+        copies: Worlds.
+        built: What an earlier call built, taken again for the records that are still there; brought up to date.
+    """
     groups = group_behaviors(scenario.objects)
     contact = scenario.world.collision_mode == "contact"
     row = {record.id: index for index, record in enumerate(scenario.objects)}
+    before = {} if built is None else built
+    now: Built = {}
+    for record in scenario.objects:
+        group_behavior = groups.get(record.group) if record.joined else None
+        known = before.get(id(record))
+        if known is None or known[0] is not record or known[1] is not group_behavior:
+            known = record, group_behavior, build_object(record, group_behavior, contact=contact)
+        now[id(record)] = known
+    if built is not None:
+        built.clear()
+        built.update(now)
     world = core.World(
         step_time=scenario.world.step_time,
         collision_mode=COLLISION_MODES[scenario.world.collision_mode],
         gravity=scenario.world.gravity,
-        objects=[
-            build_object(record, groups.get(record.group) if record.joined else None, contact=contact)
-            for record in scenario.objects
-        ],
+        objects=[now[id(record)][2] for record in scenario.objects],
         placements=[
             core.RandomPlacement(
                 objects=[row[number] for number in placement.objects if number in row],

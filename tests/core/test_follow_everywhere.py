@@ -103,3 +103,13 @@ def test_too_narrow_is_said() -> None:
     shape = "{name: rectangle, length: 1.4, width: 0.3}"
     result = irsim.run(text=narrow("diff", shape, gap(5, 5, 0.28), "dash", [1.0, 1.0]), seed=1, steps=30)
     assert [event.kind for event in result.events] == ["no_path"]
+
+
+def test_standing_before_a_way_that_is_too_narrow_is_said() -> None:
+    """A disc as wide as the body gets round the corner between the walls, the body does not."""
+    shape = "{name: rectangle, length: 1.4, width: 0.3}"
+    walls = gap(4, 3, 0.5) + gap(4.8, 7, 0.5)
+    result = irsim.run(text=narrow("diff", shape, walls, "dash", [1.0, 1.0]), seed=1, steps=250)
+    assert result.outcome == "timeout"
+    assert [event.kind for event in result.events] == ["no_path"]
+    assert "no path" in str(result.reason)

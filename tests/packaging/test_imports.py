@@ -26,6 +26,7 @@ LAYERS = (
     batch
     body
     contacts
+    crowd
     current
     env
     env_access
