@@ -39,7 +39,8 @@ def run(
     record: Annotated[
         bool,
         typer.Option(
-            "--record", help="Keep everything that happens, for `irsim inspect`: 24 hours, below .irsim/runs."
+            "--record",
+            help="Keep everything that happens, for `irsim inspect` and `replay`: 24 hours, below .irsim/runs.",
         ),
     ] = False,
     record_to: Annotated[
@@ -116,7 +117,10 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     if result.run_id is not None:
         folder = Path(next(iter(result.artifacts.values()))).parent
         name = result.run_id if folder.parent.parent.name == ".irsim" else shlex.quote(str(folder))
-        out.print(Text.assemble("recorded: ", (f"irsim inspect {name}", "cyan")), soft_wrap=True)
+        out.print(
+            Text.assemble("recorded: ", (f"irsim inspect {name}", "cyan"), " or ", (f"irsim replay {name}", "cyan")),
+            soft_wrap=True,
+        )
     out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
 
 

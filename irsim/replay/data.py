@@ -23,7 +23,7 @@ from irsim.text import clean
 __all__ = ["Packed", "pack_run"]
 
 FORMAT = 1
-_MOST_POSES = 1_000_000
+_MOST_POSES = 2_000_000
 """Rows times moving objects; runs beyond that show every so many-th step."""
 _MOST_EVENTS = 4000
 _MOST_RANGES = 2_000_000

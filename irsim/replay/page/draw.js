@@ -292,6 +292,10 @@ function drawNames(context, run, at, camera, colors, ratio) {
 function drawScale(context, camera, colors, ratio) {
   const metres = spacing(camera, 60), length = metres * camera.scale, x = 14, y = camera.height - 14;
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.fillStyle = colors.card;
+  context.globalAlpha = 0.8;
+  context.fillRect(x - 6, y - 20, length + 12, 26);
+  context.globalAlpha = 1;
   context.strokeStyle = context.fillStyle = colors.muted;
   context.lineWidth = 1.5;
   context.beginPath();
