@@ -151,4 +151,10 @@ def find_chromium(session: nox.Session) -> dict[str, str]:
     # It unpacks into the temporary folder, and brings the libraries of the system only if it takes this for a bare one.
     bare = {"TMPDIR": str(folder), "AWS_EXECUTION_ENV": "AWS_Lambda_nodejs22.x"}
     path = session.run("node", str(script), env=bare, silent=True, external=True)
-    return {"IRSIM_CHROMIUM": str(path).split()[-1], "LD_LIBRARY_PATH": str(folder / "al2023" / "lib")}
+    fonts = folder / "fonts.conf"
+    fonts.write_text(f"<fontconfig><dir>{folder}/fonts</dir><cachedir>{folder}/fonts-cache</cachedir></fontconfig>")
+    return {
+        "IRSIM_CHROMIUM": str(path).split()[-1],
+        "LD_LIBRARY_PATH": str(folder / "al2023" / "lib"),
+        "FONTCONFIG_FILE": str(fonts),
+    }

@@ -1,4 +1,4 @@
-"""The page, put together from the files in ``page/``: HTML, style sheet and modules become one text.
+"""The page, put together from the files in ``web/``: HTML, style sheet and modules become one text.
 
 The modules are ordinary ones for editors and tools. Here they become one script: what one of them imports comes before
 it, and the words ``import`` and ``export`` go. So a name at the top of a module is used once in the whole page.
@@ -15,7 +15,7 @@ from pathlib import Path
 
 __all__ = ["bundle", "page"]
 
-_SOURCES = Path(__file__).with_name("page")
+_SOURCES = Path(__file__).with_name("web")
 _IMPORT = re.compile(r"^import\s[^;]*?\sfrom\s+\"\./([a-z]+)\.js\";\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:async )?function |const |let |class )", re.MULTILINE)
 _FIRST = "main"

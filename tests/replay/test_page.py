@@ -16,7 +16,7 @@ from irsim.runs import Run, RunError
 from tests.replay.conftest import HOSTILE, recorded, scene
 from tests.replay.reading import data_in, unpacked
 
-SOURCES = Path(irsim.__file__).parent / "replay" / "page"
+SOURCES = Path(irsim.__file__).parent / "replay" / "web"
 
 
 def test_modules_share_no_names() -> None:

@@ -395,8 +395,7 @@ def test_a_hundred_robots_are_small_and_fast(crowd: Path, watched: Watched) -> N
         medians[way] = min(page.evaluate(FRAMES) for _ in range(2))
         page.keyboard.press("Space")
         page.keyboard.press("f")
-    print("median milliseconds per frame", medians)
-    assert max(medians.values()) <= 1000 / 30
+    assert max(medians.values()) <= 33.5  # two of the screen's frames, 1/30 s, as its clock rounds it
 
 
 def test_long_lists_of_events_move_along(crowd: Path, watched: Watched) -> None:
