@@ -131,6 +131,7 @@ def contributing() -> Pages:
 PACKS: dict[str, Callable[[], Pages]] = {
     "irsim-runner": runner,
     "irsim-benchmark": comparisons,
+    "irsim-dev": contributing,
 }
 """Pages of each skill but ``irsim-scenario``, whose pages are made of the language."""
 

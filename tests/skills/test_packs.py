@@ -20,8 +20,8 @@ each = pytest.mark.parametrize("skill", FOLDERS, ids=lambda path: path.name)
 example = pytest.mark.parametrize("folder", EXAMPLES, ids=lambda path: f"{path.parents[1].name}-{path.name}")
 
 
-def test_the_packs_are_there() -> None:
-    assert [skill.name for skill in FOLDERS] == ["irsim-benchmark", "irsim-runner", "irsim-scenario"]
+def test_the_four_packs_are_there() -> None:
+    assert [skill.name for skill in FOLDERS] == ["irsim-benchmark", "irsim-dev", "irsim-runner", "irsim-scenario"]
     assert set(SKILLS) == {skill.name for skill in FOLDERS}
 
 

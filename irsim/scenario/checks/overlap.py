@@ -10,6 +10,7 @@ from irsim import _core as core
 from irsim.maps._grid import MapCells, Walls
 from irsim.registry import SHAPES
 from irsim.scenario.checks._context import Context
+from irsim.scenario.extent import parts_of
 from irsim.scenario.findings import Finding, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
@@ -161,6 +162,15 @@ def reach_of(shape: Any) -> float:
         return max(reach_of(part) + math.hypot(part.pose[0], part.pose[1]) for part in shape.parts)
     if shape.name in ("polygon", "linestring"):
         return max((math.hypot(x, y) for x, y in shape.vertices or [(1.0, 1.0)]), default=0.0)
+    return max((_reach_of_part(part) for part in parts_of(shape)), default=math.inf)
+
+
+def _reach_of_part(part: Any) -> float:
+    """The same for geometry of the core, of shapes that somebody has added."""
+    if hasattr(part, "vertices"):
+        return max(math.hypot(x, y) for x, y in part.vertices)
+    if hasattr(part, "center") and hasattr(part, "radius"):
+        return math.hypot(*part.center) + float(part.radius)
     return math.inf
 
 

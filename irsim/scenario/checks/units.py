@@ -74,7 +74,7 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     world = context.scenario.world
     reach = reach_of(record.shape)
-    if 2 * reach < min(world.width, world.height, _WIDEST):
+    if 2 * reach < min(world.width, world.height, _WIDEST) or not math.isfinite(reach):
         return
     width = 2 * inner_disc(parts_of(record.shape))[2]
     if 2 * reach > _WIDEST or width >= min(world.width, world.height):
