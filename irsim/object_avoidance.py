@@ -89,7 +89,7 @@ class ObjectAvoidance:
     def rvo_neighbors(self) -> list[list[float]]:
         """``rvo_neighbor_state`` of all others that are not ``unobstructed``."""
         others = [other for other in self.external_objects if not other.unobstructed]
-        if not others or any(type(other).rvo_neighbor_state is not _NEIGHBOR_STATE for other in others):
+        if not others or any(kind.rvo_neighbor_state is not _NEIGHBOR_STATE for kind in set(map(type, others))):
             return [other.rvo_neighbor_state for other in others]
         first = others[0]
         everybody = discs(first._simulation, first.world)
