@@ -7,6 +7,7 @@ from typing import Annotated, Any
 from mcp.types import TextContent
 from pydantic import Field
 
+from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
@@ -57,7 +58,7 @@ def _answer(topic: str) -> str:
         answer = look_up(topic)
     except TopicError as error:
         fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists what there is"
-        raise failure("unknown-topic", f"nothing is called {topic!r}", where="topic", fix=fix) from None
+        raise failure("unknown-topic", f"nothing is called {clean(topic)!r}", where="topic", fix=fix) from None
     if answer.kind == "template":
         return _template(answer.topic, {})
     if answer.kind != "index":
