@@ -89,12 +89,11 @@ class ObjectAvoidance:
     def rvo_neighbors(self) -> list[list[float]]:
         """``rvo_neighbor_state`` of all others that are not ``unobstructed``."""
         others = [other for other in self.external_objects if not other.unobstructed]
-        if not others or any(kind.rvo_neighbor_state is not _NEIGHBOR_STATE for kind in set(map(type, others))):
+        kinds: set[Any] = set(map(type, others))
+        if not others or any(kind.rvo_neighbor_state is not _NEIGHBOR_STATE for kind in kinds):
             return [other.rvo_neighbor_state for other in others]
-        first = others[0]
-        everybody = discs(first._simulation, first.world)
-        chosen: list[list[float]] = everybody[[other.index for other in others]].tolist()
-        return chosen
+        everybody: list[list[float]] = discs(others[0]._simulation, others[0].world).tolist()
+        return [everybody[other.index] for other in others]
 
     @property
     def rvo_line_segments(self) -> list[list[float]]:
