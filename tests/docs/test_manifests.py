@@ -148,3 +148,12 @@ def test_mcpb_accepts_the_bundle(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", [".", ".claude-plugin/plugin.json"])
 def test_claude_accepts_the_plugin(path: str, tmp_path: Path) -> None:
     validated(shutil.which("claude"), "plugin", "validate", "--strict", path, home=tmp_path)
+
+
+def test_claude_installs_the_plugin_by_the_readmes_commands(tmp_path: Path) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    commands = re.findall(r"`claude (plugin [^`]+)`", readme)
+    assert len(commands) == 2
+    for command in commands:
+        words = command.replace("/path/to/irsim", str(ROOT)).split()
+        validated(shutil.which("claude"), *words, home=tmp_path)

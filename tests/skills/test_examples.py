@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -18,7 +16,6 @@ from tests.skills.conftest import EXAMPLES, SKILL, execute, fences
 
 RESULT = re.compile(r"`irsim run scenario\.yaml --seed (\d+)` ends in \*\*(\w+)\*\* after ([\d.]+) s")
 ASSUMED = re.compile(r"^- `([^`]+)` = (.+?): ", re.MULTILINE)
-CHANGED = SKILL / "scripts" / "changed.py"
 each = pytest.mark.parametrize("folder", EXAMPLES, ids=lambda path: path.name)
 
 
@@ -77,51 +74,21 @@ def test_the_template_is_filled_and_edited_as_told(tmp_path: Path) -> None:
     words = shlex.split(command)
     execute(words, tmp_path)
     filled = tmp_path / words[words.index("-o") + 1]
-    output = execute(["python", str(CHANGED), str(filled), str(folder / "scenario.yaml")], tmp_path)
+    output = execute(["irsim", "diff", str(filled), str(folder / "scenario.yaml"), "--json"], tmp_path)
     [edited] = re.findall(r"nothing else: (.*?) and the comment", text, re.DOTALL)
-    assert {item["path"] for item in json.loads(output)["changed"]} == set(re.findall(r"`([^`]+)`", edited))
+    assert {item["path"] for item in json.loads(output)["keys"]} == set(re.findall(r"`([^`]+)`", edited))
     assert words[2] in templates.names()
 
 
 def test_the_edit_touches_only_what_was_asked() -> None:
     folder = SKILL / "examples" / "patrol-edit"
     [command] = fences(read(folder, "elements.md"), "bash")
-    output = json.loads(execute(shlex.split(command), folder))
-    assert [item["path"] for item in output["changed"]] == [
-        "robot[0].vel_max[0]",
-        "robot[0].vel_min[0]",
-        "robot[0].waypoints[3][0]",
-        "robot[0].waypoints[3][1]",
-    ]
+    output = json.loads(execute([*shlex.split(command), "--json"], folder))
+    assert {item["path"] for item in output["keys"]} == {
+        "robot[0].vel_max",
+        "robot[0].vel_min",
+        "robot[0].waypoints",
+    }
+    assert {item["object"] for item in output["world"]} == {"guard"}
     assert output["comments_lost"] == []
     assert output["lines_removed"] == output["lines_added"] == 3
-
-
-def changed(before: Path, after: Path, *more: str) -> tuple[int, dict[str, object]]:
-    command = [sys.executable, str(CHANGED), str(before), str(after), *more]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    return done.returncode, json.loads(done.stdout) if done.stdout else {}
-
-
-def test_the_script_finds_other_changes_and_lost_comments(tmp_path: Path) -> None:
-    before, after = tmp_path / "before.yaml", tmp_path / "after.yaml"
-    before.write_text("world: {width: 10, height: 8}  # m\nrobot: {name: '#1', state: [1, 1, 0]}\n", encoding="utf-8")
-    after.write_text("world:\n  width: 10\n  height: 9\nrobot: {name: '#1', state: [1, 1, 0], goal: [2, 2]}\n")
-    code, found = changed(before, after, "--only", "world.height")
-    assert code == 1
-    assert found["comments_lost"] == ["# m"]
-    assert found["not_asked_for"] == ["robot.goal[0]", "robot.goal[1]"]
-    code, found = changed(before, before, "--only", "world")
-    assert code == 0
-    assert found["changed"] == []
-
-
-def test_the_script_says_what_it_cannot_read(tmp_path: Path) -> None:
-    broken = tmp_path / "broken.yaml"
-    broken.write_text("world: [", encoding="utf-8")
-    command = [sys.executable, str(CHANGED), str(broken), str(tmp_path / "missing.yaml")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert "Traceback" not in done.stderr
-    assert "missing.yaml" in done.stderr

@@ -80,23 +80,14 @@ def test_the_skeleton_is_valid_without_a_remark_and_succeeds(tmp_path: Path) -> 
 
 
 def test_commands_work_as_written(tmp_path: Path) -> None:
-    (tmp_path / "hall.yaml").write_text(SKELETON, encoding="utf-8")
+    after = SKELETON.replace("behavior:", "sensors: [{name: lidar2d}]\n    behavior:")
+    for name, text in (("hall", SKELETON), ("before", SKELETON), ("after", after)):
+        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
     commands = [span for span in spans(BODY) if span.startswith("irsim ")]
     assert len(commands) >= 6
     for command in dict.fromkeys(commands):
         execute(shlex.split(command), tmp_path)
     assert (tmp_path / "start.png").is_file()
-
-
-def test_the_script_works_as_written(tmp_path: Path) -> None:
-    [command] = [span for span in spans(BODY) if span.startswith("python ")]
-    after = SKELETON.replace("behavior:", "sensors: [{name: lidar2d}]\n    behavior:")
-    (tmp_path / "before.yaml").write_text(SKELETON, encoding="utf-8")
-    (tmp_path / "after.yaml").write_text(after, encoding="utf-8")
-    words = shlex.split(command)
-    assert words[1] == "scripts/changed.py"
-    output = execute(["python", str(SKILL / words[1]), *words[2:]], tmp_path)
-    assert '"path": "robot[0].sensors[0].name"' in output
 
 
 def test_codes_are_those_of_the_program() -> None:
@@ -119,7 +110,7 @@ def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> No
     calls = [spans(cell) for cell in rows[1:] if "`" in cell]
     assert {name for names in calls for name in names if name in tools} == set(tools)
     assert {"scenario_path", "scenario_yaml"} <= tools["validate_scenario"] & set(spans(table))
-    assert "response_format" in tools["validate_scenario"]
+    assert {"response_format", "base"} <= tools["validate_scenario"]
     assert {"seed"} <= tools["run_episode"]
     assert {"step", "seed"} <= tools["render_snapshot"]
     assert {"topic", "parameters"} <= tools["lookup"]
