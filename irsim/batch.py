@@ -1,10 +1,15 @@
-"""Many worlds of one scenario, stepped together; each is bit-identical to the same world alone."""
+"""Many worlds of one scenario, stepped together; each is bit-identical to the same world alone.
+
+``irsim.batch(…)``, the function, and this module have the same name: calling the module calls the function.
+"""
 
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -172,3 +177,12 @@ def batch(
     if len(seeds) != n:
         raise ValueError(f"{len(seeds)} seeds for {n} worlds")
     return Batch(resolved, list(seeds), threads or os.cpu_count() or 1)
+
+
+class _CallableModule(ModuleType):
+    def __call__(self, *args: Any, **kwargs: Any) -> Batch:
+        """Open worlds: ``irsim.batch(…)`` after something has imported this module, which then has that name."""
+        return batch(*args, **kwargs)
+
+
+sys.modules[__name__].__class__ = _CallableModule

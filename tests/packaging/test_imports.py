@@ -187,3 +187,15 @@ with tempfile.TemporaryDirectory() as folder:
 def test_the_package_says_it_is_typed() -> None:
     for package in ("irsim", "mcp_server/irsim_mcp"):
         assert (ROOT / package / "py.typed").is_file()
+
+
+def test_a_function_works_though_its_module_of_the_same_name_was_imported_first() -> None:
+    assert "numpy" in loaded_by(
+        """
+from irsim.batch import Batch
+import irsim, pathlib, tempfile
+with tempfile.TemporaryDirectory() as folder:
+    path = pathlib.Path(folder, "room.yaml")
+    path.write_text("robot: {kinematics: {name: diff}, goal: [4, 4]}\\n")
+    assert isinstance(irsim.batch(path, 2), Batch)"""
+    )

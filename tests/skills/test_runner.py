@@ -15,7 +15,6 @@ import pytest
 import yaml
 
 import irsim
-from irsim.batch import batch
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
 from tests.skills.test_skill import SKELETON
 
@@ -220,7 +219,7 @@ def test_layouts_follow_the_seed_and_batches_are_the_same_worlds() -> None:
     assert all(np.array_equal(robot.state, before) for robot, before in zip(env.robot_list, start, strict=True))
     env.reset(random=True)
     assert not np.array_equal(env.robot_list[0].state, start[0])
-    worlds = batch(path, 2, seeds=[4, 5])
+    worlds = irsim.batch(path, 2, seeds=[4, 5])
     np.testing.assert_array_equal(worlds.pose[1, 0], start[0][:, 0])
     kept = worlds.pose
     before = kept.copy()
