@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import shlex
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from irsim.observers.events import Event, collision_of, first_events, passable_names
+from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
 from irsim.scenario.randomness import random_parts
@@ -62,8 +63,8 @@ def run_result(
     from irsim import __version__
 
     events = env.events
-    robots = _robots(env, events)
-    hits = _robot_collisions(env, events)
+    hits, counts = _collisions(env, events)
+    robots = _robots(env, events, counts)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -77,7 +78,7 @@ def run_result(
         random=random_parts(env.scenario),
         outcome=outcome,
         summary=_summary(robots, hits, env.sim_time),
-        reason=None if outcome == "success" else _reason(env, robots, hits, source),
+        reason=None if outcome == "success" else _reason(env, robots, hits, events[-_MAX_EVENTS:], source),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,
@@ -113,10 +114,9 @@ def command(
     return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
 
 
-def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
-    outcomes = robot_outcomes(env.simulation)
+def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotResult]:
+    outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")
-    passable = passable_names(env.simulation)
     robots = []
     for view in env.robot_list:
         ended = outcomes[view.name]
@@ -127,7 +127,7 @@ def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
                 name=view.name,
                 outcome="timeout" if ended == "running" else ended,
                 time_to_goal=None if arrival is None else arrival.time,
-                collision_count=sum(collision_of(e, view.name, passable) for e in events),
+                collision_count=counts[view.name],
                 infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
@@ -137,11 +137,22 @@ def _robots(env: Env, events: list[Event]) -> list[RobotResult]:
     return robots
 
 
-def _robot_collisions(env: Env, events: list[Event]) -> list[Event]:
-    """The collisions of robots; passing through something ``unobstructed`` is none."""
+def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str]]:
+    """The collisions of robots, and how many each had; passing through something ``unobstructed`` is none."""
     passable = passable_names(env.simulation)
-    names = [view.name for view in env.robot_list]
-    return [event for event in events if any(collision_of(event, name, passable) for name in names)]
+    names = {view.name for view in env.robot_list}
+    hits, counts = list[Event](), Counter[str]()
+    for event in events:
+        if event.kind == "collision":  # may be one of a million
+            first, second = event.object, event.partner or ""
+            mine, theirs = first in names and second not in passable, second in names and first not in passable
+            if mine or theirs:
+                hits.append(event)
+            if mine:
+                counts[first] += 1
+            if theirs:
+                counts[second] += 1
+    return hits, counts
 
 
 def _path_length(env: Env, row: int) -> float:
@@ -166,19 +177,21 @@ def _summary(robots: list[RobotResult], events: Sequence[Event], sim_time: float
     return f"{text}; {hit}" if hit else text
 
 
-def _reason(env: Env, robots: list[RobotResult], events: Sequence[Event], source: HorizonSource) -> str:
+def _reason(
+    env: Env, robots: list[RobotResult], hits: Sequence[Event], last: Sequence[Event], source: HorizonSource
+) -> str:
     """Why it is no success: the first collision, and who was still on the way."""
     if not robots:
         return "there are no robots"
     reasons = []
     collided = {robot.name for robot in robots if robot.outcome == "collision"}
-    if hit := _first_hit(collided, events):
+    if hit := _first_hit(collided, hits):
         others = len(collided) - 1
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
     views = {view.name: view for view in env.robot_list}
     late = [robot for robot in robots if robot.outcome == "timeout"]
     if late:
-        named = [f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot)}" for robot in late[:_NAMED]]
+        named = [f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot, last)}" for robot in late[:_NAMED]]
         more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
         reasons.append(f"at {env.sim_time:.1f} s ({_LIMITS[source]}) {', '.join(named)}{more}")
     return "; ".join(reasons)
@@ -196,16 +209,14 @@ def _quoted(name: object) -> str:
     return f"'{clean(name, _LONGEST_NAME)}'"
 
 
-def _state_of(env: Env, view: ObjectView, robot: RobotResult) -> str:
+def _state_of(env: Env, view: ObjectView, robot: RobotResult, last: Sequence[Event]) -> str:
     """What a robot is doing that has not arrived: ``stands still 3.21 m from its goal``."""
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
-    if any(event.kind == "no_path" and event.object == robot.name for event in env.events[-_MAX_EVENTS:]) and (
-        speed < _STANDING
-    ):
+    if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < _STANDING:
         return f"stands still {place}: there is no path to it"
     if speed >= _STANDING:
         return f"still moved at {speed:.2g} m/s, {place}"

@@ -252,12 +252,23 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         Returns:
             Periods executed.
         """
-        if self.world_param.step_mode == "external":
-            raise RuntimeError("advance needs an environment in step_mode 'internal'")
         self._ended = False
-        done = (recorder or self._simulation).advance(steps, until_done=until_done)
+        if self.world_param.step_mode == "external":
+            done = self._wait(steps, until_done, recorder)
+        else:
+            done = (recorder or self._simulation).advance(steps, until_done=until_done)
         self._after_step()
         return done
+
+    def _wait(self, steps: int, until_done: bool, recorder: Recorder | None) -> int:
+        """Periods in which the caller, who alone could, moves nothing."""
+        for done in range(steps):
+            if until_done and self._simulation.state.done(0):
+                return done
+            self._simulation.step_external()
+            if recorder is not None:
+                recorder.look()
+        return steps
 
     def done(self, mode: str = "all") -> bool | None:
         """Whether the robots are through: arrived, or stopped by a collision.

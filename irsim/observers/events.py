@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -11,8 +10,7 @@ if TYPE_CHECKING:
 __all__ = ["Event", "collision_of", "first_collisions", "first_events", "passable_names", "read_events"]
 
 
-@dataclass(frozen=True, slots=True)
-class Event:
+class Event(NamedTuple):
     """One thing that happened.
 
     Attributes:
@@ -77,7 +75,8 @@ def first_collisions(simulation: Simulation, events: list[Event]) -> dict[str, E
     passable = passable_names(simulation)
     first: dict[str, Event] = {}
     for event in events:
-        for name in (event.object, event.partner):
-            if name is not None and collision_of(event, name, passable):
-                first.setdefault(name, event)
+        if event.kind == "collision":
+            for name in (event.object, event.partner):
+                if name is not None and name not in first and collision_of(event, name, passable):
+                    first[name] = event
     return first

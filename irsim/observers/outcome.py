@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from irsim.observers.events import first_collisions, first_events, read_events
+from irsim.observers.events import Event, first_collisions, first_events, read_events
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -14,12 +14,17 @@ __all__ = ["Outcome", "outcome_of", "robot_outcomes"]
 Outcome = Literal["running", "success", "collision", "timeout"]
 
 
-def robot_outcomes(simulation: Simulation, world: int = 0) -> dict[str, Outcome]:
+def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] | None = None) -> dict[str, Outcome]:
     """Outcome of every robot so far.
 
     ``collision``: it touched something before it first arrived; ``success``: it arrived without; otherwise ``running``.
+
+    Args:
+        simulation: Where to look.
+        world: Index of the world.
+        events: Its events, if they have been read already.
     """
-    events = read_events(simulation, world)
+    events = read_events(simulation, world) if events is None else events
     arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
     outcomes: dict[str, Outcome] = {}
     for record in simulation.scenario.objects:

@@ -98,7 +98,7 @@ def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, mo
             continue
         if robot is not None and robot not in (event.object, event.partner):
             continue
-        part = json.dumps({field: getattr(event, field) for field in event.__slots__})
+        part = json.dumps({field: getattr(event, field) for field in event._fields})
         room -= len(part) + 2
         if room < 0:
             next_step = event.step

@@ -147,14 +147,15 @@ def _room(corners: list[tuple[float, float]], points: Floats) -> Floats:
     a = np.asarray(corners, dtype=np.float64)
     edge = np.roll(a, -1, axis=0) - a
     off = points[:, None] - a
-    length = (edge**2).sum(axis=1)
-    along = np.clip((off * edge).sum(axis=2) / np.where(length > 0, length, 1.0), 0.0, 1.0)
-    least = np.sqrt(((off - along[..., None] * edge) ** 2).sum(axis=2)).min(axis=1)
-    b = a + edge
-    y = points[:, 1, None]
-    crossed = (a[:, 1] > y) != (b[:, 1] > y)
-    rise = np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
-    left = points[:, 0, None] < a[:, 0] + (y - a[:, 1]) / rise * edge[:, 0]
+    with np.errstate(over="ignore", invalid="ignore"):  # corners may be anywhere
+        length = (edge**2).sum(axis=1)
+        along = np.clip((off * edge).sum(axis=2) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+        least = np.sqrt(((off - along[..., None] * edge) ** 2).sum(axis=2)).min(axis=1)
+        b = a + edge
+        y = points[:, 1, None]
+        crossed = (a[:, 1] > y) != (b[:, 1] > y)
+        rise = np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
+        left = points[:, 0, None] < a[:, 0] + (y - a[:, 1]) / rise * edge[:, 0]
     inside = np.count_nonzero(crossed & left, axis=1) % 2 == 1
     signed: Floats = np.where(inside, least, -least)
     return signed

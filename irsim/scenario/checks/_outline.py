@@ -45,11 +45,13 @@ def crosses_itself(corners: Sequence[Corner]) -> bool:
 
 def repaired(vertices: Sequence[Sequence[float]]) -> list[list[list[float]]] | None:
     """The area an invalid outline encloses, as outlines of valid polygons; None if it encloses none."""
+    import numpy as np
     from shapely import MultiPolygon, Polygon, make_valid
     from shapely.errors import GEOSException
 
     try:
-        valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
+        with np.errstate(all="ignore"):  # corners may be anywhere
+            valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
     except (GEOSException, ValueError):
         return None
     polygons = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []

@@ -49,7 +49,7 @@ def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Itera
     for record in records:
         drive = getattr(record.kinematics, "name", None)
         behavior = record.behavior or record.group_behavior
-        steers = drive is None or drive not in KINEMATICS.names() or drive == "omni_angular"
+        steers = drive is None or KINEMATICS.get(drive) is None or drive == "omni_angular"
         if record.arrive_mode != "state" or steers or record.static or isinstance(behavior, CustomOptions | None):
             continue
         if any(len(goal) > 2 for goal in record.goals[-1:]):

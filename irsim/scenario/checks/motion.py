@@ -97,8 +97,8 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, written),
             fix="a second number greater than 0 in 'vel_max', and its negative in 'vel_min'",
         )
-    stuck = [i for i in range(moving) if record.acce[i] == 0 and record.velocity[i] == 0]
-    if len(stuck) == moving:
+    begin = list(zip(record.acce, record.velocity, strict=False))[:moving]
+    if len(begin) == moving and all(rate == 0 and speed == 0 for rate, speed in begin):
         yield warning(
             "no-speed",
             context.entry_path(record, "acce"),

@@ -1,0 +1,34 @@
+"""What fuzzing has ever found, and a thousand documents more; `python -m tests.fuzz --documents 20000` tries others."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.grammar import document
+from tests.fuzz.pool import try_all
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes are those of Linux")
+CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
+
+
+def test_what_was_found_once() -> None:
+    texts = [case.read_bytes().decode("utf-8") for case in CASES]
+    tally = try_all(enumerate(texts), workers=1)
+    assert [(CASES[wrong.index].name, wrong.what) for wrong in tally.wrong] == []
+    assert tally.came_to.total() == len(CASES) > 0
+
+
+def test_the_same_documents_every_time() -> None:
+    texts = [document(1, index) for index in range(40)]
+    assert texts == [document(1, index) for index in range(40)]
+    assert len(set(texts)) > 30
+
+
+@pytest.mark.slow
+def test_a_thousand_documents() -> None:
+    tally = try_all((index, document(1, index)) for index in range(1000))
+    assert [(wrong.index, wrong.what) for wrong in tally.wrong] == []
+    assert min(tally.came_to["ran"], tally.came_to["invalid"]) > 100
