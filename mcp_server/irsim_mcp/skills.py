@@ -22,8 +22,15 @@ from irsim.text import clean
 __all__ = ["Skills", "skill_files"]
 
 _MAIN = "SKILL.md"
-_TYPES = {".md": "text/markdown", ".yaml": "application/yaml", ".yml": "application/yaml", ".py": "text/x-python"}
-_TEXT = ("text/", "application/yaml", "application/json")
+_TYPES = {
+    ".hpp": "text/x-c++",
+    ".md": "text/markdown",
+    ".py": "text/x-python",
+    ".toml": "application/toml",
+    ".yaml": "application/yaml",
+    ".yml": "application/yaml",
+}
+_TEXT = ("text/", "application/yaml", "application/json", "application/toml")
 _CACHED: dict[str, Any] = {"ttlMs": 3_600_000, "cacheScope": "public"}
 _HEAD = re.compile(r"---\n(.*?)\n---\n", re.DOTALL)
 _DESCRIPTION = re.compile(r"^description:[ \t]*(?:[>|][-+]?[ \t]*)?((?:.*)(?:\n[ \t]+.*)*)", re.MULTILINE)

@@ -139,7 +139,7 @@ def test_a_behavior_is_two_files_and_its_test(tmp_path: Path) -> None:
     copy_tree(copy)
     put_into(copy, "new-behavior")
     stub = copy / "irsim" / "_core.pyi"
-    part = (EXAMPLES / "new-behavior" / "_core.pyi.part").read_text(encoding="utf-8")
+    [part] = fences((EXAMPLES / "new-behavior" / "elements.md").read_text(encoding="utf-8"), "python")
     stub.write_text(stub.read_text(encoding="utf-8") + "\n" + part, encoding="utf-8")
     venv.create(environment, with_pip=True, symlinks=os.name != "nt")
     scripts = environment / ("Scripts" if os.name == "nt" else "bin")
