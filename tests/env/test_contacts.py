@@ -226,3 +226,33 @@ def test_worlds_of_a_batch_are_single_worlds(tmp_path: Path) -> None:
         for name in ("pose", "control", "twist"):
             assert getattr(many, name)[w * n : (w + 1) * n].tobytes() == getattr(one, name).tobytes()
         assert many.state.contacts(w) == one.state.contacts(0)
+
+
+@pytest.mark.parametrize("rows", [2, 5])
+@pytest.mark.parametrize("mass", [40.0, 5.0])
+def test_a_squeeze_leaves_nobody_inside_another(tmp_path: Path, rows: int, mass: float) -> None:
+    places = [[3.0 + 0.41 * column, 3.2 + 0.41 * row, 0.0] for column in range(4) for row in range(rows)]
+    drivers = [[2.0, 3.2 + 0.41 * row, 0.0] for row in range(3)]
+    path = tmp_path / "squeeze.yaml"
+    path.write_text(
+        "world: {width: 14, height: 14, step_time: 0.1, collision_mode: contact}\n"
+        f"robot: {{number: 3, distribution: {{name: manual}}, state: {drivers}, goal: [[12, 3.2], [12, 3.6], [12, 4]],"
+        f" kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, mass: {mass}, friction: 1.0,"
+        " behavior: {name: dash}}\n"
+        "obstacle:\n"
+        f"  - {{number: {len(places)}, distribution: {{name: manual}}, state: {places}, mass: 1.0, friction: 0.4,"
+        " shape: {name: circle, radius: 0.2}}\n"
+        "  - {shape: {name: rectangle, length: 0.2, width: 8}, state: [5.2, 3.6, 0]}\n"
+    )
+    env = irsim.make(str(path), headless=True, log_level="ERROR")
+    discs = [item for item in env.objects if item.shape == "circle"]
+    touched = 0
+    for _ in range(45):
+        env.step()
+        centers = np.array([item.state[:2, 0] for item in discs])
+        gaps = np.linalg.norm(centers[:, None] - centers[None], axis=2) - 0.4 + 10 * np.eye(len(discs))
+        touched += bool(gaps.min() < 1e-3)
+        assert gaps.min() > -1e-3
+        assert centers[:, 0].max() < 5.1 - 0.2 + 1e-3  # nor in the wall
+    env.end()
+    assert touched > 10

@@ -15,6 +15,7 @@ constexpr double kResting = 1e-5;   // a smaller gap counts as contact [m]
 constexpr double kStraight = 1e-6;  // a push this near to the centroid does not turn [m]
 constexpr double kVisible = 5e-4;   // overlap that is not left while extra sweeps may help [m]
 constexpr double kStill = 1e-12;    // smaller corrections are none [m]
+constexpr int kPatient = 120;       // extra sweeps before drivers stall and wedged bodies stay put
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
@@ -46,7 +47,10 @@ class Solver {
     bool moved = true;
     for (int sweep = 0; moved && sweep < options_.sweeps; ++sweep) moved = sweep_all();
     // Jams of many bodies may need more; nobody may be left visibly inside another.
-    for (int extra = 0; moved && extra < options_.extra_sweeps && deepest() > kVisible; ++extra) moved = sweep_all();
+    for (int extra = 0; moved && extra < options_.extra_sweeps && deepest() > kVisible; ++extra) {
+      careful_ = extra >= kPatient;
+      moved = sweep_all();
+    }
     change_velocities();
     bounce();
     measure_forces();
@@ -308,6 +312,9 @@ class Solver {
       const bool sticks = body.passive && norm(along) <= -into * block.friction;
       free = sticks ? Vec2{} : along;
     }
+    for (const Buffers::Block& block : b_.blocks) {
+      if (careful_ && block.object == object && dot(free, block.normal) < -1e-9) free = {};
+    }
     const double gain = std::max(0.0, dot(free, direction));
     double arm = cross(point - body.centroid, direction);
     if (std::fabs(arm) < kStraight) arm = 0.0;
@@ -364,9 +371,9 @@ class Solver {
   }
 
   /// A driver with too little traction stalls; one with enough keeps its motion while the body can be shifted. A body
-  /// that can only turn and a strong driver both give way.
+  /// that can only turn and a strong driver both give way. In a jam all drivers stall.
   void settle(int driver, Share& to_driver, int body, Share& to_body, Vec2 push) {
-    if (ground_friction(world_, driver) < load(body, push)) {
+    if (careful_ || ground_friction(world_, driver) < load(body, push)) {
       to_body = {};
     } else if (to_body.translation > 1e-9 * bodies_.inverse_mass[body]) {
       to_driver = {};
@@ -458,6 +465,7 @@ class Solver {
   Workspace& work_;
   Buffers& b_;
   int first_;
+  bool careful_ = false;  // in extra sweeps nobody is pushed into anything and drivers stall
 };
 
 /// How long each object touches something, or nothing.
