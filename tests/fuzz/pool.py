@@ -11,6 +11,7 @@ import sys
 import threading
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -62,11 +63,9 @@ def try_all(documents: Iterable[tuple[int, str]], *, workers: int = 2) -> Tally:
                 if answer["wrong"] is not None:
                     tally.wrong.append(Wrong(index, text, str(answer["wrong"])))
 
-    threads = [threading.Thread(target=work) for _ in range(workers)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(workers) as threads:
+        for done in [threads.submit(work) for _ in range(workers)]:
+            done.result()
     tally.wrong.sort(key=lambda wrong: wrong.index)
     return tally
 

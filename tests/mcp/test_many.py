@@ -1,0 +1,82 @@
+"""Many servers on one workspace: every answer is that of the call, every record is there; ``busy`` ones try again."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+from typing import Any
+
+import anyio
+import pytest
+from mcp import Client
+
+from irsim.runs import list_runs
+from tests.mcp.conftest import ROOM, as_process, data_of, error_of, text_of
+
+pytestmark = pytest.mark.anyio
+
+
+async def patiently(client: Client, name: str, arguments: dict[str, Any]) -> Any:
+    """The result of a call, asked for again as long as others are at work."""
+    while True:
+        result = await client.call_tool(name, arguments)
+        if not (result.is_error and text_of(result).startswith("busy: ")):
+            return result
+        await anyio.sleep(0.3)
+
+
+async def talk(client: Client, who: int, calls: int, runs: list[str]) -> None:
+    """Calls of all kinds, each with an answer that only this one can get."""
+    rng = random.Random(who)
+    mine = ROOM.replace("rover", f"rover_{who}")
+    last: str | None = None
+    for number in range(calls):
+        kind = rng.choice(("validate", "run", "run", "inspect", "lookup", "broken", "render", "benchmark"))
+        if kind == "run" or (kind in ("inspect", "render") and last is None):
+            seed = 1000 * who + number
+            found = data_of(await patiently(client, "run_episode", {"scenario_yaml": mine, "seed": seed}))
+            assert (found["seed"], found["robots"][0]["name"], found["outcome"]) == (seed, f"rover_{who}", "success")
+            last = found["run_id"]
+            runs.append(last)
+        elif kind == "validate":
+            assert data_of(await patiently(client, "validate_scenario", {"scenario_yaml": mine}))["valid"]
+        elif kind == "broken":
+            wrong = mine.replace("radius", f"radius_{who}")
+            told = data_of(await patiently(client, "validate_scenario", {"scenario_yaml": wrong}))
+            assert f"radius_{who}" in str(told["issues"])
+        elif kind == "lookup":
+            assert not (await patiently(client, "lookup", {"topic": "crossing"})).is_error
+        elif kind == "render":
+            assert not (await patiently(client, "render_snapshot", {"run_id": last, "step": -1})).is_error
+        elif kind == "inspect":
+            assert f"rover_{who}" in text_of(await patiently(client, "inspect_run", {"run_id": last}))
+        else:
+            arguments = {"scenarios": [mine], "seeds": 2, "wait_s": 50}
+            assert data_of(await patiently(client, "benchmark", arguments))["status"] == "finished"
+    assert error_of(await client.call_tool("inspect_run", {"run_id": "no-000000"})).startswith("unknown-run")
+
+
+async def servers(workspace: Path, count: int, calls: int) -> None:
+    """So many servers, one client each."""
+    runs: list[str] = []
+
+    async def serve(who: int) -> None:
+        async with Client(as_process(workspace)) as client:
+            await talk(client, who, calls, runs)
+
+    async with anyio.create_task_group() as tasks:
+        for who in range(count):
+            tasks.start_soon(serve, who)
+    kept = {run.id: run for run in list_runs(workspace)}
+    assert set(runs) == set(kept)
+    assert {run.status for run in kept.values()} == {"finished"}
+    assert list((workspace / ".irsim").rglob(".new-*")) == []
+
+
+async def test_three_servers(workspace: Path) -> None:
+    await servers(workspace, 3, 4)
+
+
+@pytest.mark.slow
+async def test_eight_servers(workspace: Path) -> None:
+    await servers(workspace, 8, 50)
