@@ -98,4 +98,4 @@ def test_killed_twice(workspace: Path) -> None:
 
 @pytest.mark.slow
 def test_killed_over_and_over(workspace: Path) -> None:
-    live_and_die(workspace, 2, 30)
+    live_and_die(workspace, 2, 15)

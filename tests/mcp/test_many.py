@@ -1,4 +1,4 @@
-"""Many servers on one workspace: every answer is that of the call, every record is there; ``busy`` ones try again."""
+"""Many servers on one workspace, many clients of one server: every answer is that of the call; busy ones try again."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from mcp import Client
 
 from irsim.runs import list_runs
 from tests.mcp.conftest import ROOM, as_process, data_of, error_of, text_of
+from tests.mcp.test_http import served
 
 pytestmark = pytest.mark.anyio
 
@@ -56,12 +57,12 @@ async def talk(client: Client, who: int, calls: int, runs: list[str]) -> None:
     assert error_of(await client.call_tool("inspect_run", {"run_id": "no-000000"})).startswith("unknown-run")
 
 
-async def servers(workspace: Path, count: int, calls: int) -> None:
-    """So many servers, one client each."""
+async def servers(workspace: Path, count: int, calls: int, url: str | None = None) -> None:
+    """So many servers, one client each; or as many clients of the server at an address."""
     runs: list[str] = []
 
     async def serve(who: int) -> None:
-        async with Client(as_process(workspace)) as client:
+        async with Client(url or as_process(workspace)) as client:
             await talk(client, who, calls, runs)
 
     async with anyio.create_task_group() as tasks:
@@ -80,3 +81,14 @@ async def test_three_servers(workspace: Path) -> None:
 @pytest.mark.slow
 async def test_eight_servers(workspace: Path) -> None:
     await servers(workspace, 8, 50)
+
+
+async def test_three_clients(workspace: Path) -> None:
+    with served(workspace, "--http", "0") as (url, _):
+        await servers(workspace, 3, 4, url)
+
+
+@pytest.mark.slow
+async def test_eight_clients(workspace: Path) -> None:
+    with served(workspace, "--http", "0") as (url, _):
+        await servers(workspace, 8, 50, url)
