@@ -40,7 +40,7 @@ def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
         assert found <= 1e-9
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(a=st.lists(shape(), min_size=1, max_size=3), b=st.lists(shape(), min_size=1, max_size=3))
 def test_a_compound_is_as_near_as_its_nearest_part(a, b) -> None:
     gap = min(ga.distance(gb) - ra - rb for _, ga, ra in a for _, gb, rb in b)
