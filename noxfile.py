@@ -1,9 +1,9 @@
 """Tasks of this repository.
 
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
-``nox -s full`` is the whole proof: ``check`` on the newest Python, the quick tests on the oldest with the lower bounds of
-the dependencies, the core under sanitizers, packages built and installed elsewhere, a build without a compiler, fuzzing,
-the replay page in a browser, the checks of others on server, skills and manifests.
+``nox -s full`` is the whole proof: ``check`` on the newest Python, the quick tests on the oldest with the lower bounds
+of the dependencies, the core under sanitizers, packages built and installed elsewhere, a build without a compiler,
+fuzzing, the replay page in a browser, the checks of others on server, skills and manifests.
 """
 
 from __future__ import annotations
