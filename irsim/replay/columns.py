@@ -37,8 +37,14 @@ class Columns:
             name: What it is called in the page.
             values: Integers that fit into 32 bits, of any shape.
             order: How often neighbours along the last axis are subtracted.
+
+        Raises:
+            OverflowError: A number does not fit.
         """
-        array = np.asarray(values, dtype=np.int32)
+        wide = np.asarray(values, dtype=np.int64)
+        if wide.size and not -(2**31) <= wide.min() <= wide.max() < 2**31:
+            raise OverflowError(f"{name} does not fit into 32 bits")
+        array = wide.astype(np.int32)
         self._list.append({"name": name, "shape": list(array.shape), "order": order})
         self._bytes.append(folded(array, order))
 

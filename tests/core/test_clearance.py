@@ -40,12 +40,18 @@ def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
         assert found <= 1e-9
 
 
-@settings(max_examples=40, deadline=None)
-@given(a=st.lists(shape(), min_size=1, max_size=3), b=st.lists(shape(), min_size=1, max_size=3))
-def test_a_compound_is_as_near_as_its_nearest_part(a, b) -> None:
-    gap = min(ga.distance(gb) - ra - rb for _, ga, ra in a for _, gb, rb in b)
+@settings(max_examples=50, deadline=None)
+@given(
+    a=st.lists(shape(), min_size=1, max_size=3),
+    b=st.lists(shape(), min_size=1, max_size=3),
+    way=st.sampled_from([6.0, 8.0, 11.0]),
+    turn=st.floats(-math.pi, math.pi),
+)
+def test_a_compound_is_as_near_as_its_nearest_part(a, b, way, turn) -> None:
+    pose = (way * math.cos(turn), way * math.sin(turn), turn)
+    gap = min(ga.distance(placed(gb, pose)) - ra - rb for _, ga, ra in a for _, gb, rb in b)
     assume(gap > 1e-9)
-    assert between([p for p, *_ in a], ORIGIN, [p for p, *_ in b], ORIGIN) == pytest.approx(gap, abs=1e-9)
+    assert between([p for p, *_ in a], ORIGIN, [p for p, *_ in b], pose) == pytest.approx(gap, abs=1e-9)
 
 
 @settings(max_examples=100, deadline=None)

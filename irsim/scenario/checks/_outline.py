@@ -49,17 +49,14 @@ def repaired(vertices: Sequence[Sequence[float]]) -> list[list[list[float]]] | N
     from shapely import MultiPolygon, Polygon, make_valid
     from shapely.errors import GEOSException
 
-    try:
-        with np.errstate(all="ignore"):  # corners may be anywhere
+    with np.errstate(all="ignore"):  # corners may be anywhere
+        try:
             valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
-    except (GEOSException, ValueError):
-        return None
-    polygons = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
-    outlines = [
-        [[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]]
-        for polygon in sorted(polygons, key=lambda p: p.bounds)
-        if polygon.area > _SMALL_AREA
-    ]
+        except (GEOSException, ValueError):
+            return None
+        found = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
+        polygons = [polygon for polygon in sorted(found, key=lambda p: p.bounds) if polygon.area > _SMALL_AREA]
+    outlines = [[[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]] for polygon in polygons]
     return outlines or None
 
 
