@@ -216,9 +216,6 @@ def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:
 def _twins(a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[str, Pairs]) -> list[tuple[int, int]]:
     """Objects of entries that belong together, by their number in the entry; the map and the walls with their like."""
     places = {f"{role}[{i}]": f"{role}[{j}]" for role, found in pairs.items() for i, j in found if None not in (i, j)}
-    for role, found in pairs.items():
-        if (0, 0) in found:
-            places[role] = f"{role}[0]"
     there = {(_listed(item["entry"]), item["index"]): number for number, item in enumerate(b)}
     found_pairs = []
     for number, item in enumerate(a):

@@ -60,10 +60,7 @@ class Services:
         """
         source = self._source(scenario_path, scenario_yaml)
         answer = await self.workers.call(task, {**source, **arguments}, seconds=seconds, progress=progress)
-        if "error" in answer:
-            raise _as_failure(answer["error"], next(iter(source)))
-        result: dict[str, Any] = answer["result"]
-        return result
+        return _result(answer, next(iter(source)))
 
     async def text_job(
         self, task: str, text: str, argument: str, *, path: str, seconds: float, **arguments: Any
@@ -83,10 +80,7 @@ class Services:
         """
         given = {"text": self._text(text, argument), "path": path, **arguments}
         answer = await self.workers.call(task, given, seconds=seconds)
-        if "error" in answer:
-            raise _as_failure(answer["error"], argument)
-        result: dict[str, Any] = answer["result"]
-        return result
+        return _result(answer, argument)
 
     async def run_job(
         self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
@@ -105,10 +99,7 @@ class Services:
         """
         self.workspace.check_run(run_id)
         answer = await self.workers.call(task, {"run_id": run_id, **arguments}, seconds=seconds, progress=progress)
-        if "error" in answer:
-            raise _as_failure(answer["error"], "run_id")
-        result: dict[str, Any] = answer["result"]
-        return result
+        return _result(answer, "run_id")
 
     def base(self, base: str | None) -> dict[str, Any]:
         """Arguments for the scenario to compare with; none if there is none.
@@ -153,6 +144,14 @@ class Services:
                 fix="write groups of objects with 'number' and 'distribution' instead of one by one",
             )
         return text
+
+
+def _result(answer: dict[str, Any], argument: str) -> dict[str, Any]:
+    """What a worker found out; raises what went wrong, about an argument."""
+    if "error" in answer:
+        raise _as_failure(answer["error"], argument)
+    result: dict[str, Any] = answer["result"]
+    return result
 
 
 def _as_failure(error: dict[str, Any], source: str) -> Exception:
