@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from typing import Any, BinaryIO, Protocol, cast
 from weakref import finalize
 
 import numpy as np
+from isal import isal_zlib
 from PIL import Image
 
 from irsim.render.files import replacing
@@ -149,7 +149,7 @@ class FrameBuffer:
         else:
             change = pixels if self._last is None else pixels ^ self._last
             self._offsets.append(self._file.tell())
-            self._file.write(zlib.compress(change.tobytes(), 1))
+            self._file.write(isal_zlib.compress(change, 1))
             self._last = pixels
         self.counts.append(count)
 
@@ -186,7 +186,8 @@ class FrameBuffer:
         frame: Pixels = np.zeros((self._size[1], self._size[0], 4), np.uint8)
         for start, end in zip(self._offsets, ends, strict=True):
             self._file.seek(start)
-            frame = frame ^ np.frombuffer(zlib.decompress(self._file.read(end - start)), np.uint8).reshape(frame.shape)
+            change = np.frombuffer(isal_zlib.decompress(self._file.read(end - start)), np.uint8)
+            frame = frame ^ change.reshape(frame.shape)
             yield frame
 
     def _finish(self, gif: GifWriter, last_duration: float) -> None:
