@@ -9,7 +9,7 @@ import numpy as np
 
 from irsim.scenario.checks import Context
 from irsim.survey.movers import Mover
-from irsim.survey.room import Gap, Point, Room, gap, plugged, room_of
+from irsim.survey.room import Gap, Point, Room, gap, plugged, reached_place, room_of
 from irsim.survey.scenes import Scene
 from irsim.survey.tally import Tally
 
@@ -181,12 +181,17 @@ def _no_way(
     what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
     if found is None or found.width <= 0:
         why = "nothing is open between them, not even for a thinner one"
-        fix = "an opening in what stands between, or another goal"
+        fix = "an opening in what stands between"
     else:
         x, y = found.place
         wide = f"a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f})" if found.width < need else "too narrow a gap"
         why = f"the widest way has {wide}, and it needs {'' if mover.is_disc else 'at least '}{_metres(need)}"
-        fix = f"widen the gap to {_metres(_TIGHT * need)} or more, or make the robot narrower"
+        fix = f"a gap of more than {_metres(need)} ({_metres(_TIGHT * need)} to pass with ease), or a narrower robot"
+    if hasattr(context.scenario.world.obstacle_map, "fill"):
+        fix += ", or a map with another 'seed' or a lower 'fill'"
+    place = reached_place(room, (goal[0], goal[1]), mover.radius, start, max(need / 2, _TIGHT * need / 2 - room.half))
+    if place is not None:
+        fix += f", or another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"
     if context.scenario.world.boundary == "none":
         wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
         if wider.clearance.widest(start, (goal[0], goal[1]), mover.reach)[0] >= mover.radius - wider.half:

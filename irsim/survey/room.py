@@ -13,7 +13,7 @@ from irsim import _core as core
 from irsim.survey.movers import Mover
 from irsim.survey.scenes import FAR, Scene
 
-__all__ = ["Gap", "Room", "cells_over", "free_place", "gap", "plugged", "room_of"]
+__all__ = ["Gap", "Room", "cells_over", "free_place", "gap", "plugged", "reached_place", "room_of"]
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]
@@ -22,6 +22,8 @@ _PER_RADIUS = 4
 _FINER, _FINE_CELLS = 10.0, (20_000, 60_000)
 """Cells are so much finer in each round of measuring a gap, if there are not more than so many."""
 _MOST_TIGHT = 4
+_MOST_TRIED = 400
+"""Places that are looked at, evenly, before the best of them is refined."""
 _HALF_DIAGONAL = math.sqrt(0.5)
 
 
@@ -164,17 +166,32 @@ def _point(row: Any) -> Point:
 
 def free_place(room: Room, near: Point, radius: float, other: Point | None = None) -> Point | None:
     """The nearest cell with room for a disc, if possible one that ``other`` can be reached from."""
-    fits = room.distance >= radius + 0.5 * room.cell
-    if not fits.any():
-        return None
+    reached = None if other is None else reached_place(room, near, radius, other, radius - room.half)
+    if reached is not None:
+        return reached
+    places = _places(room, near, radius)
+    return _point(places[0]) if len(places) else None
+
+
+def reached_place(room: Room, near: Point, radius: float, other: Point, width: float) -> Point | None:
+    """The nearest cell with room for a disc and a way to ``other`` that keeps ``width`` [m] from everything."""
+    places = _places(room, near, radius)
+    stride = max(1, len(places) // _MOST_TRIED)
+    for k in range(0, len(places), stride):
+        if _leads(room, other, places[k], width):
+            nearer = range(max(0, k - stride + 1), k)
+            return next((_point(places[n]) for n in nearer if _leads(room, other, places[n], width)), _point(places[k]))
+    return None
+
+
+def _leads(room: Room, other: Point, place: NDArray[np.float64], width: float) -> bool:
+    return room.clearance.widest(other, _point(place), 0.0)[0] >= width
+
+
+def _places(room: Room, near: Point, radius: float) -> NDArray[np.float64]:
+    """(K, 2) middles of the cells with room for a disc, the nearest first."""
+    i, j = np.nonzero(room.distance >= radius + 0.5 * room.cell)
     (x0, y0), (dx, dy), _, _ = room.cells
-    i, j = np.nonzero(fits)
-    x, y = x0 + (i + 0.5) * dx, y0 + (j + 0.5) * dy
-    order = np.argsort(np.hypot(x - near[0], y - near[1]), kind="stable")
-    if other is not None:
-        tried = order[:: max(1, len(order) // 400)][:400]
-        for k in [*order[:50], *tried]:
-            if room.clearance.widest(other, (x[k], y[k]), 0.0)[0] >= radius - room.half:
-                return float(x[k]), float(y[k])
-    k = order[0]
-    return float(x[k]), float(y[k])
+    places = np.stack([x0 + (i + 0.5) * dx, y0 + (j + 0.5) * dy], axis=1)
+    nearest: NDArray[np.float64] = places[np.argsort(np.hypot(*(places - np.array(near)).T), kind="stable")]
+    return nearest

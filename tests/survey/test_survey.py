@@ -107,6 +107,28 @@ def test_what_is_unreachable_is_not_reached_and_the_other_is() -> None:
         env.end()
 
 
+@pytest.mark.parametrize("radius", [0.1, 0.3, 0.6])
+def test_a_place_that_can_be_reached_is_offered(radius: float) -> None:
+    data = door(radius, boundary="walls")
+    data["robot"][0]["shape"] = {"name": "circle", "radius": radius}
+    place = [
+        float(number)
+        for number in re.findall(r"get to \(([\d.]+), ([\d.]+)\)", one(data, "goal-unreachable").fix or "")[0]
+    ]
+    assert place[0] < 6  # this side of the door
+    data["robot"][0]["goal"] = place
+    assert codes(data) == []
+
+
+def test_a_generated_map_has_another_fix() -> None:
+    data = scenario({**ROBOT, "state": [2, 2, 0], "goal": [23, 23]}, width=25, height=25)
+    data["world"]["obstacle_map"] = {"name": "perlin", "resolution": 0.2, "fill": 0.25, "seed": 31}
+    fix = one(data, "goal-unreachable").fix or ""
+    assert "'seed'" in fix
+    assert "'fill'" in fix
+    assert "get to (" in fix
+
+
 def test_closed_off() -> None:
     ring = {"shape": {"name": "linestring", "vertices": [[8, 3], [11.5, 3], [11.5, 7], [8, 7], [8, 3]]}}
     item = one(scenario(ROBOT, {**ring, "state": [0, 0, 0]}), "goal-unreachable")
