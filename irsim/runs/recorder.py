@@ -19,7 +19,7 @@ from irsim import _core as core
 from irsim.observers.trace import present_row
 from irsim.runs.chunks import save_chunk
 from irsim.runs.plain import plain_scenario
-from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, written
+from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, tidy, written
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -37,7 +37,7 @@ _PERIOD = 0.5
 _MOST_TRACE = 200_000_000
 """Bytes of the trace of one run; what happens later is told by events and result only."""
 _MOST_SCANS = 64_000_000
-_BETWEEN_PRUNING = 64_000_000
+_BETWEEN_PRUNING = 16_000_000
 
 
 class Recorder:
@@ -70,7 +70,7 @@ class Recorder:
         self._simulation = simulation
         self._runs = None if folder is not None else runs_folder(make=True)
         if self._runs is not None:
-            prune(self._runs)
+            tidy(self._runs)
             self.folder = made_folder(self._runs, "scenario" if scenario is None else Path(scenario).stem)
         else:
             assert folder is not None

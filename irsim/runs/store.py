@@ -35,6 +35,7 @@ __all__ = [
     "run_folders",
     "runs_folder",
     "status_of",
+    "tidy",
     "written",
 ]
 
@@ -49,6 +50,9 @@ _LONGEST_STEM = 24
 _ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
 _TEMPORARY, _TRASH = ".new-", ".gone-"
 _NAMED = 5
+_TIDIED = ".tidied"
+_BETWEEN_TIDYING = 5.0
+"""Seconds: looking at every run before each short one would cost more than the run."""
 _MOST_TEXT = 32 * 1024**2
 _ABANDONED = 60.0
 """Where files cannot be locked: seconds without a sign of life after which nobody writes any more."""
@@ -330,6 +334,17 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
         elif leftovers and not _being_written(folder):
             _sweep_run(leftovers)
     return gone
+
+
+def tidy(runs: Path) -> None:
+    """:func:`prune`, unless somebody did so a moment ago."""
+    mark = runs / _TIDIED
+    with suppress(OSError):
+        if 0 <= time.time() - mark.stat().st_mtime < _BETWEEN_TIDYING:
+            return
+    with suppress(OSError):
+        mark.touch()
+    prune(runs)
 
 
 def _size_of(folder: Path) -> tuple[int, list[str]]:

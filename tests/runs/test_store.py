@@ -17,7 +17,7 @@ import pytest
 
 import irsim
 from irsim.runs import RunError, list_runs, open_run
-from irsim.runs.store import META, claim, find_run, made_folder, mark_cancelled, prune, runs_folder, status_of
+from irsim.runs.store import META, claim, find_run, made_folder, mark_cancelled, prune, runs_folder, status_of, tidy
 
 ENDLESS = """\
 world: {width: 100, height: 100, collision_mode: unobstructed}
@@ -57,6 +57,19 @@ def test_old_ones_are_let_go_unless_they_are_written(workspace: Path) -> None:
     held.release()
     assert prune(runs_folder(workspace)) == [busy.name]
     assert young.exists()
+
+
+def test_looking_after_the_folder_takes_a_rest(workspace: Path) -> None:
+    """However many runs there are, a short one does not wait for a look at all of them."""
+    runs = runs_folder(workspace, make=True)
+    tidy(runs)
+    old = made(workspace, "a", age=90_000)
+    tidy(runs)
+    assert old.exists()
+    mark, before = runs / ".tidied", time.time() - 10
+    os.utime(mark, (before, before))
+    tidy(runs)
+    assert not old.exists()
 
 
 def test_a_run_alone_may_exceed_the_quota_while_it_is_kept(workspace: Path) -> None:
