@@ -15,7 +15,9 @@ from irsim.units import Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second.
+    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. Turns
+    no faster than 1.5 rad/s, whatever `vel_max` allows, and does not know `acce` of the object. It stays caught in dead
+    ends.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {

@@ -29,7 +29,11 @@ def example_of(path: tuple[str, ...], component: str | None = None) -> str | Non
         lines = {yaml_text(value): value for value in values if value not in (None, {}, [])}
         if lines:
             fitting = [line for line in lines if len(line) <= _LONGEST_LINE] or [min(lines, key=len)]
-            best = lines[max(fitting, key=len) if component is not None else fitting[0]]
+            best = lines[
+                max(fitting, key=len)
+                if component is not None
+                else next((line for line in fitting if isinstance(lines[line], dict)), fitting[0])
+            ]
             return _written(names[-1], best, component)
     return None
 

@@ -8,16 +8,16 @@ from irsim import templates
 from irsim.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.gaps import find_gaps
+from irsim.lookup.guides import GUIDES
 from irsim.lookup.tables import key_table, plain_table
 from irsim.lookup.topics import lookup
-from irsim.lookup.walk import Node
+from irsim.lookup.walk import COLOR, Node
 from irsim.registry import KINEMATICS, REGISTRIES
 from irsim.scenario.schema import json_schema
 
 __all__ = ["PAGES", "pages"]
 
 _STAR = "A key with \\* also takes a list with one value for each object of the entry."
-_COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r, g, b]` from 0 to 1."
 _NOT_SIMULATED = " (not simulated by this version)"
 
 
@@ -58,7 +58,7 @@ def _objects(source: _Source) -> str:
         f"obstacle with `kinematics` and `behavior` moves like a robot. {_STAR}"
     )
     pages_of = ", ".join(f"[{name}]({name}.md)" for name in kinds)
-    return f"{intro}\n\n{_keys(source, 'robot')}\n\nComponents: {pages_of}. {_COLOR}"
+    return f"{intro}\n\n{_keys(source, 'robot')}\n\nComponents: {pages_of}. {COLOR}"
 
 
 def _kinematics(source: _Source) -> str:
@@ -99,7 +99,7 @@ def _sensors(source: _Source) -> str:
     return (
         "`sensors: [{name: …}, …]`, a list. Lidars see what is not `unobstructed`, robots and obstacles alike.\n\n"
         + _components(source, "sensor")
-        + f"\n\n{_COLOR}"
+        + f"\n\n{COLOR}"
     )
 
 
@@ -112,7 +112,7 @@ def _distributions(source: _Source) -> str:
 
 def _plot(source: _Source) -> str:
     parts = [
-        f"How things are drawn; nothing here changes the simulation. {_COLOR}",
+        f"How things are drawn; nothing here changes the simulation. {COLOR}",
         "## `plot` of an object\n\n" + _keys(source, "robot.plot"),
         "## `world.plot`\n\n" + _keys(source, "world.plot"),
         "## `world.plot.saved_figure`\n\n" + _keys(source, "world.plot.saved_figure"),
@@ -144,16 +144,21 @@ def _diagnostics(source: _Source) -> str:
 
 
 def _not_simulated(source: _Source) -> str:
+    guide = GUIDES["limits"]
     rows = [
         (f"`{gap.section}`" + (", `obstacle`" if gap.section == "robot" else ""), f"`{gap.example}`", gap.message)
         for gap in source.gaps
     ]
     table = plain_table(("section", "for example", "what the validator says"), rows)
-    return (
+    language = (
         "Valid language that this version does not compute. It never runs a scenario without it: validating, drawing "
         "and running all refuse with the code `not-yet-simulated`. The list was made by asking the validator about "
         "each key and component alone; about combinations, and if the two differ, the validator is right.\n\n" + table
+        if rows
+        else "Every key and component is simulated at present. One that is not would be refused with the code "
+        "`not-yet-simulated`."
     )
+    return f"{language}\n\n## No key at all: {guide.title}\n\n{guide.text}"
 
 
 def _keys(source: _Source, topic: str) -> str:

@@ -9,8 +9,6 @@ from irsim.lookup.answer import Key
 
 __all__ = ["key_table", "plain_table"]
 
-_COLOR = "a color"
-
 
 def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = None) -> str:
     """One row per key: name, what it takes, default, meaning.
@@ -42,8 +40,6 @@ def _row(cells: Iterable[str]) -> str:
 
 def _takes(key: Key) -> str:
     """Type, unit and range in a few words."""
-    if key.name.endswith("color") and key.type != "true or false":
-        return _COLOR + (" or `cycle`" if key.allowed and key.allowed.startswith("cycle") else "")
     if key.type in ("a name", "a value"):
         return ", ".join(f"`{name}`" for name in (key.allowed or "").split(", "))
     if not key.type:  # a parameter of a template: the range names the unit

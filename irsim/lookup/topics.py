@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections import Counter
+from collections.abc import Sequence
 
 from irsim import templates
 from irsim.code_examples import EXAMPLES
 from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.compatibility import DIFFERENCES
+from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.walk import (
+    COLOR,
     Node,
     alternatives,
     component_name,
@@ -41,7 +43,7 @@ _PLACES = {
     "shape": ("robot", "shape"),
 }
 """Where components of a kind stand in a scenario."""
-_MOST_HITS = 20
+_MOST_NAMESAKES = 20
 _NEAR = 0.8
 """How similar a name must be to be suggested, or to end a search."""
 _MOST_CHOICES = 12
@@ -145,9 +147,11 @@ def _part(schema: Node, path: tuple[str, ...], nodes: list[Node]) -> Answer:
     registry, feature_name = _registry_of(path)
     if len(names) > 1 and registry is not None and not feature_name:
         groups = {f"{registry.kind}, one of": [_component_line(registry, name) for name in names]}
+    elif len(names) > 1 and not feature_name:
+        groups = _keys_by_component(schema, names)
     else:
         groups = _keys(schema, node, _siblings(schema, path) if feature_name and registry is not None else [])
-    text, title = about.text, ".".join(path)
+    text, title = about.text + (f" {COLOR}" if about.type.startswith("a color") else ""), ".".join(path)
     if registry is not None and feature_name:
         title = f"{registry.kind} {feature_name}"
         feature = registry.get(feature_name)
@@ -178,6 +182,13 @@ def _keys(schema: Node, node: Node, siblings: list[Node]) -> dict[str, list[Key]
             if name != "name" or component_name(option) is None:
                 (shared if name in common else own).setdefault(name, key(schema, name, child, name in required))
     return {"keys": list(own.values()), "keys it has in common with the others": list(shared.values())}
+
+
+def _keys_by_component(schema: Node, names: dict[str, Node]) -> dict[str, list[Key]]:
+    """The keys of each component that may be chosen; those of all come last."""
+    found = {name: _keys(schema, option, list(names.values())) for name, option in names.items()}
+    own = {f"keys of {name}": groups["keys"] for name, groups in found.items()}
+    return {**own, "keys of all": next(iter(found.values()))["keys it has in common with the others"]}
 
 
 def _siblings(schema: Node, path: tuple[str, ...]) -> list[Node]:
@@ -221,57 +232,63 @@ def _related(path: tuple[str, ...], registry: Registry | None, name: str | None)
 
 
 def _search(schema: Node, topic: str, words: list[str]) -> Answer:
-    """Everything that the words occur in; several keys of one name, too. Without any: whatever some occur in."""
+    """Several keys of one name, else what fits the words best."""
     wanted = " ".join(words).lower()
-    everywhere = [
-        (_hit(path, node), " ".join(map(str, _choices(schema, node))))
-        for path, node in paths(schema)
-        if path[0] != "obstacle"
-    ]  # robots have the same keys
-    everywhere.sort(key=lambda hit: len(hit[0].name))
-    hits = [hit for hit, _ in everywhere if _last(hit) == wanted]
-    if not hits:
-        hits = _matches(everywhere, wanted, [template.name for template in templates.find(words, every=True)])
-    ignored: list[str] = []
-    topics = _topics(schema) if not hits else set()
-    if not hits and len(words) > 1 and not difflib.get_close_matches(".".join(words), topics, 1, _NEAR):
-        found = {word: _matches(everywhere, word.lower(), _templates_about(word)) for word in words if len(word) > 2}
-        ignored = [word for word in words if not found.get(word)]
-        counted = Counter(hit.name for some in found.values() for hit in some)
-        by_name = {hit.name: hit for some in found.values() for hit in some}
-        hits = [by_name[name] for name, _ in counted.most_common()]
-    if not hits:
+    keys = [(_hit(path, node), node) for path, node in paths(schema) if path[0] != "obstacle"]  # robots have the same
+    keys.sort(key=lambda found: len(found[0].name))
+    same = [hit for hit, _ in keys if _last(hit) == wanted]
+    if same:
+        return _hits(wanted, same[:_MOST_NAMESAKES], f"{len(same)} keys are called '{wanted}'")
+    code = next(
+        (name for name in _all_codes() if sorted(name.split("-")) == sorted(re.split(r"[\s_-]+", wanted))), None
+    )
+    if code is not None:
+        return _code(code)
+    topics, (documents, lines) = _topics(schema), _documents(schema, keys)
+    found, unknown = full_text.best(documents, topic)
+    if not found or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _NEAR)):
         raise TopicError(topic, _near(topics, words))
-    more = len(hits) - _MOST_HITS
-    notes = [f"Nothing about {', '.join(map(repr, ignored))}."] if ignored else []
-    notes += [f"The first {_MOST_HITS}; a more special word finds fewer."] if more > 0 else []
-    return Answer(
-        topic=wanted,
-        kind="search",
-        title=f"{len(hits)} topics about '{wanted}'" if len(hits) != 1 else f"1 topic about '{wanted}'",
-        text=" ".join(notes),
-        groups={"topics": hits[:_MOST_HITS]},
+    hits = [lines[name] for name in found]
+    return _hits(
+        wanted, hits, f"{len(hits)} topics fit '{wanted}' best" if len(hits) > 1 else f"About '{wanted}'", unknown
     )
 
 
-def _matches(everywhere: list[tuple[Key, str]], wanted: str, named: list[str]) -> list[Key]:
-    """Templates, guides, codes and keys in which a word begins with what is wanted."""
-    about = re.compile(rf"(?<![a-z0-9]){re.escape(wanted)}").search
-    hits = [Key(name=name, text=templates.load(name).purpose) for name in named]
-    hits += [
-        Key(name=name, text=guide.title)
-        for name, guide in GUIDES.items()
-        if about(f"{name} {guide.title} {guide.text} {' '.join(guide.words)}".lower())
-    ]
-    hits += [
-        Key(name=name, text=code.title) for name, code in _all_codes().items() if about(f"{name} {code.title}".lower())
-    ]
-    hits += [hit for hit, values in everywhere if about(f"{_last(hit)} {hit.text} {values}".lower())]
-    return list({(_last(hit), hit.text): hit for hit in reversed(hits)}.values())[::-1]
+def _hits(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:
+    text = f"Nothing about {', '.join(map(repr, unknown))}." if unknown else ""
+    return Answer(topic=wanted, kind="search", title=title, text=text, groups={"topics": hits})
 
 
-def _templates_about(word: str) -> list[str]:
-    return [template.name for template in templates.find([word], every=True)]
+def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_text.Document], dict[str, Key]]:
+    """All that can be searched, and the line that is shown of each."""
+    documents, lines = [], {}
+
+    def add(name: str, line: str, heads: str, text: str) -> None:
+        documents.append(full_text.Document(name, heads, text))
+        lines[name] = Key(name=name, text=_one_sentence(line))
+
+    for name, guide in GUIDES.items():
+        add(name, guide.title, f"{name} {guide.title} {' '.join(guide.words)}", guide.text)
+    for template in templates.load_all():
+        add(
+            template.name,
+            template.purpose,
+            f"{template.name} {template.title} {' '.join(template.tags)}",
+            template.purpose,
+        )
+    for name, code in _all_codes().items():
+        add(name, code.title, f"{name} {code.title}", code.explanation)
+    known: set[tuple[str, str]] = set()
+    for hit, node in keys:
+        if (_last(hit), hit.text) not in known:
+            known.add((_last(hit), hit.text))
+            choices = " ".join(map(str, _choices(schema, node)))
+            add(hit.name, hit.text, _last(hit), f"{hit.text} {choices} {hit.name}")
+    return documents, lines
+
+
+def _one_sentence(text: str) -> str:
+    return re.split(r"(?<=[.])\s", text, maxsplit=1)[0]
 
 
 def _choices(schema: Node, node: Node) -> list[object]:

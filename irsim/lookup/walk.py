@@ -10,6 +10,7 @@ from typing import Any
 from irsim.lookup.answer import Key
 
 __all__ = [
+    "COLOR",
     "Node",
     "alternatives",
     "component_name",
@@ -31,6 +32,7 @@ _NUMBER_BOUNDS = {
     "maximum": "at most",
     "exclusiveMaximum": "less than",
 }
+COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r, g, b]` from 0 to 1."
 _NO_BOUND = 2.0**53  # bounds beyond are those of the number's storage
 _MOST_NAMES = 24
 _PLAIN = {
@@ -138,6 +140,8 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
     ranges = [text for option in options if (text := _range(option))]
     texts = [str(option["description"]) for option in [node, *options] if option.get("description")]
     kind, per_object = _type(root, options)
+    if len(allowed) > _MOST_NAMES and name.endswith("color"):
+        kind, allowed = "a color" + (" or cycle" if "cycle" in allowed else ""), []
     return Key(
         name=name,
         type=kind,

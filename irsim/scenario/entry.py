@@ -118,7 +118,7 @@ class Entry(Options):
     vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Lower limits of the controls, in the order of `vel_max`; null is -1 each. Beginning with 0: no reverse."""
     vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
-    """Upper limits of the controls; null is 1 each.
+    """Upper limits of the controls, such as top speed and turn rate; null is 1 each.
 
     diff: [m/s, rad/s]; omni: [forward, sideways] m/s; omni_angular: [m/s, m/s, rad/s]; acker: [m/s, steering rad].
     """

@@ -119,13 +119,13 @@ class WorldModel(Options):
     metadata: dict[str, Any] | None = None
     """Free data about the scenario, kept as it is."""
     height: Annotated[Meters, Field(gt=0)] = 10
-    """Extent in y."""
+    """Extent in y, not a vertical height: the world is flat."""
     width: Annotated[Meters, Field(gt=0)] = 10
     """Extent in x."""
     depth: Annotated[Meters, Field(gt=0)] = 10
-    """Extent in z, for the 3D view only."""
+    """Extent in z that the 3D view draws; the world is flat all the same."""
     offset: Annotated[Point, OrNull([0.0, 0.0])] = [0.0, 0.0]
-    """Lower left corner of the world: [x, y]."""
+    """Lower left corner of the world: [x, y]. Objects do not move with it."""
     step_time: Annotated[Seconds, Field(gt=0)] = 0.1
     """Period of one simulation step."""
     sample_time: Annotated[Seconds, Field(gt=0)] | None = None

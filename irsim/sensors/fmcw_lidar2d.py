@@ -20,7 +20,7 @@ class VelocityColors(Options):
     velocity_color: Bool | None = None
     """Colour the beams by radial velocity (default true)."""
     velocity_color_max: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Radial speed of full colour (default 2.0)."""
+    """Radial speed of full colour (default 2.0); 1.0 suits walking people."""
     velocity_linewidth: Annotated[Points, Field(ge=0)] | None = None
     """Width of beams that hit (default 2.5)."""
     no_hit_linewidth: Annotated[Points, Field(ge=0)] | None = None
@@ -50,7 +50,10 @@ class FmcwPlot(VelocityColors, BeamPlot):
 
 
 class FmcwLidar2d(VelocityColors, Lidar2d):
-    """Lidar that measures range and radial velocity (positive: receding) of each beam's hit."""
+    """Lidar that measures range and radial velocity (positive: receding) of each beam's hit.
+
+    Programs find it as `radial_velocity` in the scan.
+    """
 
     DRAWING: ClassVar[dict[str, Any]] = {
         "velocity_color": True,
@@ -74,7 +77,7 @@ class FmcwLidar2d(VelocityColors, Lidar2d):
     motion_compensate: Bool = False
     """Report the target's own radial speed instead of the relative one."""
     velocity_noise_std: Annotated[MetersPerSecond, Field(ge=0)] = 0.0
-    """Standard deviation of the noise on radial velocity."""
+    """Standard deviation of the noise on radial velocity; works without `noise`."""
     plot: FmcwPlot = FmcwPlot()
     """Drawing options; they win over the same keys beside them."""
 

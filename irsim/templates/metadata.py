@@ -69,7 +69,7 @@ class Parameter(_Metadata):
             return ", ".join(self.choices)
         if self.type == "boolean":
             return "true, false"
-        unit = f" {self.unit}" if self.unit else ""
+        unit = f" {self.unit}" if self.unit and self.unit != "1" else ""
         kind = "an integer" if self.type == "integer" else "a number"
         if self.min is not None and self.max is not None:
             return f"{kind} from {self.min:g} to {self.max:g}{unit}"

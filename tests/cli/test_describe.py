@@ -116,6 +116,14 @@ def test_json(irsim: Run) -> None:
         ("pillar", "things: how everyday"),
         ("obstacle avoidance", "avoidance: who avoids"),
         ("radians", "units: metres"),
+        ("altitude", "limits: what cannot be simulated"),
+        ("drone", "limits: what cannot be simulated"),
+        ("3D", "limits: what cannot be simulated"),
+        ("stagger", "limits: what cannot be simulated"),
+        ("delay", "limits: what cannot be simulated"),
+        ("trap", "dead-ends: traps"),
+        ("U-shape", "dead-ends: traps"),
+        ("local minimum", "dead-ends: traps"),
     ],
 )
 def test_guides_about_what_is_no_key(irsim: Run, words: str, title: str) -> None:
@@ -126,3 +134,62 @@ def test_words_are_found_whole_and_one_by_one(irsim: Run) -> None:
     assert "step_mode" in irsim("describe", "external").output
     assert "Nothing about 'quux'" in irsim("describe", "quux beams").output
     assert "interaction" not in irsim("describe", "actio").output
+
+
+@pytest.mark.parametrize(
+    ("words", "among"),
+    [
+        ("acker avoidance footprint circle", "robot.shape"),
+        ("turn_rate", "robot.vel_max"),
+        ("top speed", "robot.vel_max"),
+        ("how high can a drone fly", "limits"),
+        ("person appears after some time", "limits"),
+        ("narrow gap", "narrow-passage"),
+        ("lidar noise", "robot.sensors.lidar2d.noise"),
+        ("car between walls", "avoidance"),
+        ("door", "doorway"),
+    ],
+)
+def test_free_text_finds_the_few_topics_that_fit_best(words: str, among: str) -> None:
+    answer = lookup(words)
+    (hits,) = answer.groups.values()
+    assert answer.kind == "search"
+    assert 1 <= len(hits) <= 5
+    assert among in [hit.name for hit in hits]
+    assert all(len(hit.text) < 200 for hit in hits)
+    for hit in hits:
+        assert lookup(hit.name).topic == hit.name
+
+
+def test_words_of_a_code_in_any_order_find_it() -> None:
+    assert lookup("unreachable-goal").topic == "goal-unreachable"
+    assert lookup("key unknown").topic == "unknown-key"
+
+
+def test_only_what_fits_nothing_is_an_error(irsim: Run) -> None:
+    result = irsim("describe", "xyzzy")
+    assert (result.exit_code, "unknown-topic" in result.stderr) == (2, True)
+
+
+def test_colors_are_not_listed_one_by_one() -> None:
+    (keys,) = [keys for name, keys in lookup("fmcw_lidar2d").groups.items() if name == "keys"]
+    colors = [key for key in keys if key.name.endswith("_color") and key.name != "velocity_color"]
+    assert len(colors) >= 4
+    assert {(key.type, key.allowed) for key in colors} == {("a color", None)}
+    assert "#3366cc" in lookup("robot.color").text
+
+
+def test_the_local_behavior_has_its_keys_by_behavior() -> None:
+    answer = lookup("robot.behavior.follow.local")
+    keys = {name: [key.name for key in keys] for name, keys in answer.groups.items()}
+    assert "timeHorizon" in keys["keys of orca"]
+    assert "timeHorizon" not in keys["keys of rvo"]
+    assert "wander" in keys["keys of all"]
+    assert answer.example is not None
+    assert answer.example.startswith("local: {name: orca")
+
+
+def test_numbers_without_a_unit_are_told_without() -> None:
+    for template in templates.load_all():
+        for parameter in template.parameters.values():
+            assert not parameter.allowed().endswith(" 1") or parameter.max == 1
