@@ -291,7 +291,8 @@ class Estimate(Result):
     std: float | None = None
     """Standard deviation of the sample; None for fewer than two."""
     low: float | None = None
-    """Lower end of the 95 % interval of the mean (bootstrap, 10,000 resamples, always the same draws)."""
+    """Lower end of the 95 % interval of the mean (bootstrap, 10,000 resamples, always the same draws; of paired shares
+    see ``paired``)."""
     high: float | None = None
     """Upper end of it."""
 
@@ -305,9 +306,9 @@ class Proportion(Result):
     """Of how many."""
     rate: float
     """Share."""
-    low: float
-    """Lower end of the 95 % interval (Wilson)."""
-    high: float
+    low: float | None
+    """Lower end of the 95 % interval (Wilson); None where nothing is random: it cannot come out differently."""
+    high: float | None
     """Upper end of it."""
 
 
@@ -315,7 +316,7 @@ class BenchmarkRow(Result):
     """One scenario under one behavior, over all seeds."""
 
     scenario: str
-    """The file; ``(all)`` for all files together."""
+    """The file; ``(all)`` for all files together, where each has as many episodes."""
     behavior: str
     """What the robots followed: a behavior, or ``as-written``."""
     episodes: int
@@ -329,7 +330,14 @@ class BenchmarkRow(Result):
     metrics: dict[str, Estimate]
     """Metrics of the episodes by key: ``time_to_goal`` [s], ``path_length`` [m], ``velocity_avg`` [m/s], …"""
     paired: dict[str, Estimate] = Field(default_factory=dict)
-    """Differences to the first behavior, episode by episode with equal scenario and seed; ``success`` among them."""
+    """Differences to the first behavior, episode by episode with equal scenario and seed; ``success``, ``collision``
+    and ``timeout`` among them. The intervals of such shares are Newcombe's for pairs, which are right also where all
+    pairs agree."""
+    failed: dict[str, list[int]] = Field(default_factory=dict)
+    """Seeds that ended in ``collision`` and in ``timeout``; empty for ``(all)``."""
+    failures: dict[str, int] = Field(default_factory=dict)
+    """In how many episodes a robot failed in which way, the ten most frequent: ``'car': timeout``; empty for
+    ``(all)``."""
 
 
 class EpisodeRow(Result):
@@ -351,6 +359,8 @@ class EpisodeRow(Result):
     """Horizon [s]."""
     unreachable: int
     """Robots for which no way to their goal was found."""
+    failures: dict[str, str]
+    """What became of the first ten robots without success, by name: ``timeout``, or ``collision with 'crate'``."""
     metrics: dict[str, float | None]
     """Metrics of the episode by key; None where undefined."""
 
@@ -369,7 +379,7 @@ class BenchmarkResult(Result):
     random: dict[str, list[str]]
     """What the seed decides in each scenario; one where it decides nothing is run with the first seed only."""
     rows: list[BenchmarkRow]
-    """By scenario, then behavior; then all scenarios together, if there are several."""
+    """By scenario, then behavior; then all scenarios together, if there are several with as many episodes each."""
     episodes: list[EpisodeRow]
     """Every episode."""
     notes: list[str]

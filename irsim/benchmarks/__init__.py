@@ -32,6 +32,7 @@ __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark"]
 
 DEFAULT_SEEDS = 10
 _NAMED = 3
+_TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
 
 
 def benchmark(
@@ -113,7 +114,7 @@ def benchmark(
             behavior=behavior,
             seed=task.seed,
             metrics={key: None if math.isnan(value) else value for key, value in result["metrics"].items()},
-            **{key: result[key] for key in ("outcome", "steps", "sim_time", "time_limit", "unreachable")},
+            **{key: result[key] for key in _TAKEN},
         )
         for (name, behavior, task), result in zip(plan, found, strict=True)
     ]
@@ -125,7 +126,7 @@ def benchmark(
         seeds=chosen,
         step_time=periods,
         random=chances,
-        rows=rows_of(episodes, names, wanted),
+        rows=rows_of(episodes, names, wanted, chances),
         episodes=episodes,
         notes=_notes(episodes, chances, chosen),
         warnings=warnings,
@@ -221,7 +222,7 @@ def _command(
     words: list[Any] = ["irsim", "benchmark", *files]
     if behaviors != [AS_WRITTEN]:
         words += ["--behaviors", ",".join(behaviors)]
-    words += ["--seeds", len(seeds) if seeds == list(range(len(seeds))) else ",".join(map(str, seeds))]
+    words += ["--seeds", _listed(seeds)]
     if steps is not None:
         words += ["--steps", steps]
     if strict:
@@ -229,3 +230,10 @@ def _command(
     for name in imports:
         words += ["--import", name]
     return shlex.join(map(str, words))
+
+
+def _listed(seeds: list[int]) -> str:
+    """Seeds as the command takes them."""
+    if len(seeds) > 1 and seeds == list(range(seeds[0], seeds[0] + len(seeds))):
+        return str(len(seeds)) if seeds[0] == 0 else f"{seeds[0]}-{seeds[-1]}"
+    return ",".join(map(str, seeds)) if seeds != [0] else "1"

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from irsim.benchmarks.variant import behavior_of, with_behavior
 from irsim.env import Env
 from irsim.episode import horizon_of, import_modules
-from irsim.metrics.episode import episode_metrics
+from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.observers.trace import record
 from irsim.scenario.limits import Limits
@@ -19,6 +19,8 @@ from irsim.scenario.objects import ResolvedScenario
 __all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
 
 Outcome = Literal["success", "collision", "timeout"]
+_TOLD = 10
+"""Robots of which an episode tells what became."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,8 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
 
     Returns:
         ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (robots without a way to their
-        goal), and ``metrics`` of the episode by key (NaN where undefined).
+        goal), ``failures`` (what became of robots without success, by name), and ``metrics`` of the episode by key (NaN
+        where undefined).
     """
     job = task.job
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
@@ -108,5 +111,15 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "time_limit": horizon * trace.step_time,
         "robots": len(robots),
         "unreachable": sum(bool(flags) for flags in measured.flags),
+        "failures": _failures(measured),
         "metrics": measured.episode,
     }
+
+
+def _failures(measured: EpisodeMetrics) -> dict[str, str]:
+    """What became of the first robots that had no success."""
+    found: dict[str, str] = {}
+    for name, robot, hit in zip(measured.names, measured.robots, measured.hits, strict=True):
+        if not robot["success"] and len(found) < _TOLD:
+            found[name] = "timeout" if hit is None else f"collision with {hit!r}"
+    return found

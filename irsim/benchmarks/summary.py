@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from irsim.metrics.definitions import METRICS
-from irsim.metrics.statistics import bootstrap, spread, wilson
+from irsim.metrics.definitions import EPISODE_METRICS, METRICS
+from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 from irsim.results import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = ["ALL", "KEYS", "estimate", "proportion", "rows_of"]
 
 ALL = "(all)"
-KEYS = (*(metric.key for metric in METRICS), "aggregated_time")
+KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Metrics of an episode."""
+_SHARES = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
+_MOST = 10
+_TABLE = ((True, True), (True, False), (False, True), (False, False))
 
 
-def proportion(count: int, n: int) -> Proportion:
-    """A share with its interval."""
-    low, high = wilson(count, n)
+def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
+    """A share with its interval; without one if nothing is random, as it cannot come out differently."""
+    low, high = (None, None) if certain else wilson(count, n)
     return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
@@ -31,51 +35,79 @@ def estimate(values: Sequence[float | None]) -> Estimate:
     return Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
 
 
-def rows_of(episodes: Sequence[EpisodeRow], scenarios: Sequence[str], behaviors: Sequence[str]) -> list[BenchmarkRow]:
-    """Rows by scenario, then behavior; then of all scenarios together, if there are several.
+def rows_of(
+    episodes: Sequence[EpisodeRow],
+    scenarios: Sequence[str],
+    behaviors: Sequence[str],
+    random: Mapping[str, Sequence[str]],
+) -> list[BenchmarkRow]:
+    """Rows by scenario, then behavior; then of all scenarios together, if they weigh the same.
 
     Args:
         episodes: All of them.
         scenarios: Their scenarios, in order.
         behaviors: Their behaviors, in order.
+        random: What the seed decides in each scenario.
     """
     groups = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
-    if len(scenarios) > 1:
+    if len(scenarios) > 1 and len({len(group) for group in groups.values()}) == 1:
         groups[ALL] = list(episodes)
     rows = []
     for name, chosen in groups.items():
         first = {_pair(episode): episode for episode in chosen if episode.behavior == behaviors[0]}
+        certain = name != ALL and not random[name]
         for behavior in behaviors:
             mine = [episode for episode in chosen if episode.behavior == behavior]
-            rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}))
+            rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
     return rows
 
 
-def _row(name: str, behavior: str, episodes: list[EpisodeRow], first: dict[Any, EpisodeRow]) -> BenchmarkRow:
+def _row(
+    name: str, behavior: str, episodes: list[EpisodeRow], first: dict[Any, EpisodeRow], certain: bool
+) -> BenchmarkRow:
     outcomes = [episode.outcome for episode in episodes]
     shares: dict[str, Any] = {
-        outcome: proportion(outcomes.count(outcome), len(outcomes)) for outcome in ("success", "collision", "timeout")
+        outcome: proportion(outcomes.count(outcome), len(outcomes), certain=certain)
+        for outcome in ("success", "collision", "timeout")
     }
-    paired = {}
-    if first:
-        pairs = [(episode, first[_pair(episode)]) for episode in episodes]
-        paired = {key: estimate([_difference(a.metrics[key], b.metrics[key]) for a, b in pairs]) for key in KEYS}
+    pairs = [(episode, first[_pair(episode)]) for episode in episodes] if first else []
     return BenchmarkRow(
         scenario=name,
         behavior=behavior,
         episodes=len(episodes),
         metrics={key: estimate([episode.metrics[key] for episode in episodes]) for key in KEYS},
-        paired=paired,
+        paired={
+            key: _compared([(a.metrics[key], b.metrics[key]) for a, b in pairs], key in _SHARES and not certain)
+            for key in KEYS
+            if pairs
+        },
+        failed={
+            outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
+            for outcome in ("collision", "timeout")
+            if outcome in outcomes and name != ALL
+        },
+        failures={} if name == ALL else _counted(episodes),
         **shares,
     )
 
 
+def _counted(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
+    count = Counter(f"{robot!r}: {fate}" for episode in episodes for robot, fate in episode.failures.items())
+    return dict(count.most_common(_MOST))
+
+
+def _compared(pairs: Sequence[tuple[float | None, float | None]], share: bool) -> Estimate:
+    """Differences of pairs; that of shares with an interval that does not vanish where all pairs agree."""
+    known = [(a, b) for a, b in pairs if a is not None and b is not None]
+    found = estimate([a - b for a, b in known])
+    if share and known:
+        count = Counter((a > 0, b > 0) for a, b in known)
+        found.low, found.high = newcombe(*(count[pair] for pair in _TABLE))
+    return found
+
+
 def _pair(episode: EpisodeRow) -> tuple[str, int]:
     return episode.scenario, episode.seed
-
-
-def _difference(a: float | None, b: float | None) -> float | None:
-    return None if a is None or b is None else a - b
 
 
 def _known(value: float) -> float | None:

@@ -24,6 +24,13 @@ _COLUMNS = (
     ("spl", "spl", 2),
     ("distance_to_human_min", "human m", 2),
 )
+_DIFFERENCES = (
+    *((name, name, "") for name in ("success", "collision", "timeout")),
+    ("time_to_goal", "time", " s"),
+    ("path_length", "path", " m"),
+)
+_FAILED, _FAILURES = 10, 3
+"""Seeds told of each way to fail, and robots with what became of them."""
 _WIDE, _NARROW = 112, 96
 """Characters that all columns need, and all but the last three."""
 
@@ -98,6 +105,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from irsim.benchmarks.labels import labels_of, seeds_of
     from irsim.text import clean
 
     if not out.is_terminal:
@@ -111,7 +119,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     table.add_column("behavior", no_wrap=True, overflow="ellipsis")
     for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
         table.add_column(heading, justify="right", no_wrap=True)
-    labels = _labels(result.scenarios)
+    labels, behaviors = _labels(result.scenarios), labels_of(result.behaviors)
     last = None
     for row in result.rows:
         if last not in (None, row.scenario):
@@ -119,7 +127,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         best = row.success.rate == max(r.success.rate for r in result.rows if r.scenario == row.scenario)
         table.add_row(
             clean(labels.get(row.scenario, row.scenario), 20) if row.scenario != last else "",
-            clean(row.behavior, 24),
+            clean(behaviors[row.behavior], 24),
             str(row.episodes),
             Text(_share(row.success), style="bold green" if best and row.success.count else ""),
             Text(_share(row.collision), style="red" if row.collision.count else "dim"),
@@ -129,13 +137,22 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
         )
         last = row.scenario
     out.print(table)
-    told = "95 % intervals, Wilson for shares, bootstrap for times; time s: of those that arrived"
+    for text, label in behaviors.items():
+        if label != text:
+            out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)
+    told = "95 % intervals: Wilson for shares, Newcombe for their differences, bootstrap for the rest"
+    told += "; time s: of those that arrived"
     if any(heading == "human m" for _, heading, _ in columns):
         told += "; human m: least distance"
     out.print(Text(told, "dim"))
     for row in result.rows:
         if row.paired and row.scenario == result.rows[-1].scenario:
-            out.print(_against(row, result.behaviors[0]))
+            out.print(_against(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
+    for row in result.rows:
+        if row.failed:
+            robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in list(row.failures.items())[:_FAILURES]]
+            whose = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+            out.print(f"failed: {whose}: {seeds_of(row.failed, _FAILED)} ({', '.join(robots)})")
     for note in result.notes:
         out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
     periods = sorted(set(result.step_time.values()))
@@ -143,20 +160,22 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     out.print(Text.assemble("again: ", (result.reproduce, "cyan")), soft_wrap=True)
 
 
-def _against(row: BenchmarkRow, first: str) -> str:
+def _against(row: BenchmarkRow, mine: str, first: str) -> str:
     """One line of paired differences."""
     from irsim.text import clean
 
     told = []
-    for key, name, unit in (("success", "success", ""), ("time_to_goal", "time", " s"), ("path_length", "path", " m")):
+    for key, name, unit in _DIFFERENCES:
         found = row.paired[key]
         if found.mean is not None:
             interval = "" if found.low is None else f" [{found.low:+.2f}, {found.high:+.2f}]"
             told.append(f"{name} {found.mean:+.2f}{unit}{interval}")
-    return f"{clean(row.behavior, 40)} - {clean(first, 40)}, same seeds: " + (", ".join(told) or "no common episodes")
+    return f"{clean(mine)} - {clean(first)}, same seeds: " + (", ".join(told) or "no common episodes")
 
 
 def _share(found: Proportion) -> str:
+    if found.low is None or found.high is None:
+        return f"{100 * found.rate:.0f}%"
     return f"{100 * found.rate:.0f}% {100 * found.low:.0f}-{100 * found.high:.0f}"
 
 

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 import irsim
 from irsim import resources
 from irsim.lookup.tables import plain_table
-from irsim.metrics.definitions import METRICS
+from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.registry import REGISTRIES
 
 __all__ = ["PACKS", "written"]
@@ -87,7 +87,8 @@ def comparisons() -> Pages:
             table(canonical),
             "## Widely used extras",
             table(extra),
-            "Beside them an episode has `aggregated_time`, the sum of the robots' times [s].",
+            "## Of episodes only",
+            table(list(EPISODE_METRICS)),
         ),
         "result": written(
             "The result",

@@ -4,11 +4,12 @@ Distances are between true footprints, never centres; what is undefined is NaN, 
 """
 
 from irsim.metrics.clearance import Approach, Clearance, clearance, closest
-from irsim.metrics.definitions import METRICS, Metric
+from irsim.metrics.definitions import EPISODE_METRICS, METRICS, Metric
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics, robot_metrics
-from irsim.metrics.statistics import bootstrap, spread, wilson
+from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 
 __all__ = [
+    "EPISODE_METRICS",
     "METRICS",
     "Approach",
     "Clearance",
@@ -18,6 +19,7 @@ __all__ = [
     "clearance",
     "closest",
     "episode_metrics",
+    "newcombe",
     "robot_metrics",
     "spread",
     "wilson",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-__all__ = ["METRICS", "Metric"]
+__all__ = ["EPISODE_METRICS", "METRICS", "Metric"]
 
 Combined = Literal["mean", "min", "max", "all"]
 
@@ -103,3 +103,9 @@ def _extras() -> tuple[Metric, ...]:
 
 METRICS: tuple[Metric, ...] = _canonical() + _extras()
 """All metrics of a robot, in the order in which they are shown."""
+
+EPISODE_METRICS: tuple[Metric, ...] = (
+    Metric("collision", "0/1", "a robot collided before it arrived", "max", better="less"),
+    Metric("aggregated_time", "s", "when the last robot arrived; undefined if one never did", "max", better="less"),
+)
+"""What only an episode has."""

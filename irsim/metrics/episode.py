@@ -17,7 +17,7 @@ from irsim.metrics.motion import motion
 from irsim.metrics.outcome import outcome
 from irsim.metrics.progress import progress
 from irsim.metrics.space import space
-from irsim.metrics.track import tracks
+from irsim.metrics.track import Track, tracks
 from irsim.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -37,9 +37,9 @@ class EpisodeMetrics:
     Attributes:
         robots: For each robot its metrics by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
         flags: For each robot what is odd: ``unreachable`` (no way to a goal was found).
-        episode: The same keys for the episode, and ``aggregated_time`` [s]: when the last robot arrived, NaN if one
-            never did.
+        episode: The same keys for the episode, and those of :data:`irsim.metrics.definitions.EPISODE_METRICS`.
         names: Names of the robots.
+        hits: For each robot the name of what it touched first before it arrived, None if nothing.
         clearance: Distances of the robots.
     """
 
@@ -47,6 +47,7 @@ class EpisodeMetrics:
     flags: list[list[str]]
     episode: dict[str, float]
     names: list[str]
+    hits: list[str | None]
     clearance: Clearance
 
 
@@ -99,7 +100,8 @@ def episode_metrics(
         values.append({key: _settled(found[key]) for key in order})
         flags.append(odd)
     names = [track.name for track in cut]
-    return EpisodeMetrics(values, flags, _of_episode(values), names, distances)
+    hits = [_partner(track) for track in cut]
+    return EpisodeMetrics(values, flags, _of_episode(values), names, hits, distances)
 
 
 def episode_value(key: str, values: Sequence[float]) -> float:
@@ -116,10 +118,18 @@ def episode_value(key: str, values: Sequence[float]) -> float:
     return max(known) if how == "max" else math.fsum(known) / len(known)
 
 
+def _partner(track: Track) -> str | None:
+    if not track.collisions:
+        return None
+    event, _ = track.collisions[0]
+    return event.partner if event.object == track.name else event.object
+
+
 def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     found = {metric.key: episode_value(metric.key, [robot[metric.key] for robot in robots]) for metric in METRICS}
     collided = any(not robot["success"] and not robot["timeout"] for robot in robots)
     found["timeout"] = float(not collided and not found["success"]) if robots else math.nan
+    found["collision"] = float(collided) if robots else math.nan
     times = [robot["time_to_goal"] for robot in robots]
     found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
     return found

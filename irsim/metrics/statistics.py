@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bootstrap", "spread", "wilson"]
+__all__ = ["bootstrap", "newcombe", "spread", "wilson"]
 
 _Z = 1.959963984540054  # of the normal distribution, 95 % two-sided
 _RESAMPLES = 10_000
@@ -26,6 +26,33 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
     middle = (share + z2 / (2 * count)) / (1 + z2 / count)
     half = _Z / (1 + z2 / count) * math.sqrt(share * (1 - share) / count + z2 / (4 * count**2))
     return (0.0 if successes == 0 else middle - half), (1.0 if successes == count else middle + half)
+
+
+def newcombe(both: int, mine: int, other: int, neither: int) -> tuple[float, float]:
+    """95 % interval of a difference of two paired shares (Newcombe 1998, paired data, method 10); NaN without pairs.
+
+    It has a width also where all pairs agree, which resampling them would not give.
+
+    Args:
+        both: Pairs in which both have it.
+        mine: Pairs in which only the one has it whose share the other's is taken from.
+        other: Pairs in which only the other has it.
+        neither: Pairs in which none has it.
+    """
+    n = both + mine + other + neither
+    if n < 1:
+        return math.nan, math.nan
+    p, q = (both + mine) / n, (both + other) / n
+    (p_low, p_high), (q_low, q_high) = wilson(both + mine, n), wilson(both + other, n)
+    products = (both + mine) * (other + neither) * (both + other) * (mine + neither)
+    excess = both * neither - mine * other
+    corrected = max(excess - n / 2, 0.0) if excess > 0 else float(excess)
+    phi = corrected / math.sqrt(products) if products else 0.0
+
+    def reach(a: float, b: float) -> float:
+        return math.sqrt(max(a * a - 2 * phi * a * b + b * b, 0.0))
+
+    return p - q - reach(p - p_low, q_high - q), p - q + reach(p_high - p, q - q_low)
 
 
 def bootstrap(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, float]:

@@ -146,7 +146,7 @@ def strict(
 
 
 def _slim(schema: Any) -> Any:
-    """A schema without what tells a model nothing: titles, and null beside the type of an optional argument."""
+    """A schema without what tells a model nothing: titles, empty defaults, null beside the type of what is optional."""
     if isinstance(schema, list):
         return [_slim(item) for item in schema]
     if not isinstance(schema, dict):
@@ -155,6 +155,10 @@ def _slim(schema: Any) -> Any:
     for key in ("properties", "$defs"):  # names in here are not keywords
         if key in schema:
             slim[key] = {name: _slim(value) for name, value in schema[key].items()}
+    if slim.get("additionalProperties") is True:
+        del slim["additionalProperties"]
+    if slim.get("default") in ([], {}):
+        del slim["default"]
     if slim.get("default", ...) is None:
         del slim["default"]
         options = [option for option in slim.get("anyOf", []) if option != {"type": "null"}]

@@ -14,6 +14,7 @@ import irsim
 from irsim.benchmarks import AS_WRITTEN, BenchmarkError
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.benchmarks.variant import behavior_of
 from irsim.cli.app import app
 from irsim.errors import OverLimitError, PlacementError, ScenarioError, ScenarioNotFoundError
@@ -82,11 +83,56 @@ def test_what_is_not_random_is_run_once_and_said(files) -> None:
     found = irsim.benchmark(files[1], seeds=20)
     assert len(found.episodes) == 1
     assert "nothing is random" in found.notes[0]
+    [row] = found.rows
+    assert (row.success.rate, row.success.low, row.success.high) == (1.0, None, None)  # it can't come out differently
+    [_, other] = irsim.benchmark(files[1], ["dash", "rvo"], 20).rows
+    assert (other.paired["success"].mean, other.paired["success"].low) == (0.0, None)
 
 
-def test_several_scenarios_are_also_taken_together(files) -> None:
-    found = irsim.benchmark(files, seeds=3)
-    assert [(row.scenario, row.episodes) for row in found.rows] == [(files[0], 3), (files[1], 1), ("(all)", 4)]
+def test_scenarios_that_weigh_the_same_are_also_taken_together(files, tmp_path) -> None:
+    (tmp_path / "other.yaml").write_text(CROWD.replace("number: 3", "number: 2"))
+    both = [files[0], str(tmp_path / "other.yaml")]
+    found = irsim.benchmark(both, seeds=3)
+    assert [(row.scenario, row.episodes) for row in found.rows] == [(both[0], 3), (both[1], 3), ("(all)", 6)]
+    assert [row.scenario for row in irsim.benchmark(files, seeds=3).rows] == files  # three episodes and one
+
+
+def test_seeds_and_robots_that_failed_are_told(files) -> None:
+    found = irsim.benchmark(files[0], seeds=range(100, 110))
+    [row] = found.rows
+    ends = {e.seed: e.outcome for e in found.episodes}
+    for outcome in ("collision", "timeout"):
+        assert row.failed.get(outcome, []) == [seed for seed, end in ends.items() if end == outcome]
+    assert row.collision.count  # dash drives into others
+    for episode in found.episodes:
+        assert bool(episode.failures) == (episode.outcome != "success")
+        told = irsim.run(files[0], seed=episode.seed).robots
+        assert set(episode.failures) == {robot.name for robot in told if robot.outcome != "success"}
+    assert max(row.failures.values()) <= 10
+    assert any(what.startswith("'robot_0': collision with ") for what in row.failures)
+
+
+def test_pairs_that_all_agree_are_no_certainty(files) -> None:
+    found = irsim.benchmark(files[0], ["dash", "{name: dash, wander: false}"], 10)
+    for key in ("success", "collision", "timeout"):
+        both = found.rows[1].paired[key]
+        assert both.mean == 0.0
+        assert both.low < -0.05
+        assert both.high > 0.05
+    assert found.rows[1].paired["path_length"].low == 0.0
+
+
+def test_long_behaviors_have_short_labels() -> None:
+    long = "{name: orca, timeHorizon: 2, timeHorizonObst: 2}"
+    assert labels_of(["rvo", long, long.replace("2", "3")]) == {
+        "rvo": "rvo",
+        long: "orca #2",
+        long.replace("2", "3"): "orca #3",
+    }
+    assert (
+        seeds_of({"collision": [7], "timeout": [18, 23, 32]}, 2)
+        == "collision: seed 7; timeout: seeds 18, 23 and 1 more"
+    )
 
 
 def job(text: str, behavior: str) -> Job:
@@ -162,10 +208,12 @@ def test_the_command(files) -> None:
     assert shown.exit_code == 0, shown.output
     assert "crowd" in shown.output
     assert "same seeds" in shown.output
+    assert "rvo #2" not in shown.output
+    assert "failed: crowd, dash: collision: seed" in shown.output
     told = runner.invoke(app, ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "2-4", "--json"])
     same = irsim.benchmark(files[0], ["dash", "rvo"], [2, 3, 4])
     assert told.stdout.rstrip("\n") == same.model_dump_json(indent=2)
-    assert same.reproduce == f"irsim benchmark {files[0]} --behaviors dash,rvo --seeds 2,3,4"
+    assert same.reproduce == f"irsim benchmark {files[0]} --behaviors dash,rvo --seeds 2-4"
     table = list(
         csv.DictReader(io.StringIO(runner.invoke(app, ["benchmark", *files, "--csv", "--seeds", "1,3"]).stdout))
     )

@@ -60,6 +60,36 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     assert (workspace / ".irsim" / ".gitignore").read_text() == "*\n"
 
 
+async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None:
+    long = "{name: dash, wander: false, loop: false}"
+    arguments = {"scenarios": [RANDOM], "behaviors": ["dash", long], "seeds": 6, "first_seed": 1000}
+    async with connected(workspace) as client:
+        result = await client.call_tool("benchmark", arguments)
+    found = data_of(result)
+    assert "--seeds 1000-1005 " in found["reproduce"]
+    kept = json.loads((workspace / found["artifact"]).read_text())
+    assert kept["seeds"] == list(range(1000, 1006))
+    bad = [e["seed"] for e in kept["episodes"] if e["behavior"] == "dash" and e["outcome"] == "collision"]
+    row, same = found["rows"]
+    assert row["failed"].startswith(f"collision: seed{'s' * (len(bad) > 1)} {', '.join(map(str, bad))}")
+    assert " of 6" in row["failed"]
+    assert same["behavior"] == "dash #2"
+    assert found["notes"][0] == f"dash #2 is {long}"
+    assert set(same["diff"]) >= {"success", "collision", "timeout"}
+    assert same["diff"]["success"][0] == 0
+    assert same["diff"]["success"][1] < 0 < same["diff"]["success"][2]
+    told = text_of(result)
+    assert told.count(long) == 2  # in the note, and in the command that repeats it
+    assert row["failed"] in told
+    assert f"seed={bad[0]}" in found["next"]
+
+
+async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        found = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
+    assert [len(found["rows"][0][key]) for key in ("success", "collision", "timeout")] == [1, 1, 1]
+
+
 async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
     async with connected(workspace) as client:
         begun = data_of(await client.call_tool("benchmark", {"scenarios": [RANDOM], "seeds": 60, "wait_s": 0}))

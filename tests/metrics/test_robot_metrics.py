@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from irsim.episode import read_scenario
-from irsim.metrics import METRICS, episode_metrics, robot_metrics
+from irsim.metrics import EPISODE_METRICS, METRICS, episode_metrics, robot_metrics
 from irsim.metrics.motion import curvatures, runs_of
 from irsim.observers.events import Event
 from irsim.observers.trace import Trace
@@ -92,7 +92,7 @@ def test_every_key_and_no_other() -> None:
     resolved = scenario(([1, 5], [5, 5]))
     found = episode_metrics(trace(resolved, straight(3)[:, None], [[5, 5]]), resolved, [])
     assert list(found.robots[0]) == [metric.key for metric in METRICS]
-    assert list(found.episode) == [*found.robots[0], "aggregated_time"]
+    assert list(found.episode) == [*found.robots[0], *(metric.key for metric in EPISODE_METRICS)]
     assert len({metric.key for metric in METRICS}) == len(METRICS)
 
 

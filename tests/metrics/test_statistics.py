@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from irsim.metrics import bootstrap, spread, wilson
+from irsim.metrics import bootstrap, newcombe, spread, wilson
 
 
 def test_wilson_as_published() -> None:
@@ -18,6 +18,17 @@ def test_wilson_as_published() -> None:
     assert wilson(1, 29) == pytest.approx((0.0061, 0.1718), abs=1e-4)
     assert wilson(20, 20)[1] == 1.0
     assert all(map(math.isnan, wilson(0, 0)))
+
+
+def test_newcombe_for_pairs_as_published() -> None:
+    # Newcombe 1998, paired data, table II, method 10: 36, 12, 2, 0 of 50
+    assert newcombe(36, 12, 2, 0) == pytest.approx((0.0569, 0.3404), abs=1e-4)
+    low, high = newcombe(20, 0, 0, 0)
+    assert (low, high) == pytest.approx((-0.1611, 0.1611), abs=1e-4)
+    low, high = newcombe(10, 0, 0, 10)  # all pairs agree, but that says something
+    assert -0.161 < low < 0 < high < 0.161
+    assert newcombe(1, 5, 0, 2) == tuple(-end for end in reversed(newcombe(1, 0, 5, 2)))
+    assert all(map(math.isnan, newcombe(0, 0, 0, 0)))
 
 
 def test_bootstrap_is_near_the_normal_interval_and_repeatable() -> None:

@@ -10,6 +10,7 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
+from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
@@ -20,19 +21,21 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
-    Compare behaviors fairly: every scenario under every behavior with the same seeds, on all cores. Rows have the
-    shares of success, collision and timeout and the means of metrics as [value, low, high] (95 %); diff is to the first
-    behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job with its job_id, or run_episode
-    with a seed that failed.
+    Compare behaviors fairly: every scenario under every behavior with the same seeds, on all cores. Rows have shares of
+    success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff is
+    to the first behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job, or run_episode with
+    a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
 _METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl")
-_DIFFERENCES = ("success", "time_to_goal")
+_DIFFERENCES = (*_SHARES, "time_to_goal")
 _ROWS, _NOTES, _DECIMALS = 50, 10, 3
+_FAILED, _FAILURES = 10, 3
+"""Seeds told of each way to fail, and robots with what became of them."""
 
 
 class Benchmark(BaseModel):
-    """How far it is, and the table."""
+    """The table."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -63,7 +66,8 @@ def tool(services: Services) -> StrictTool:
                 "Default: as-written, the scenario's own."
             ),
         ] = None,
-        seeds: Annotated[int, Field(description=f"How many, 1-{SEEDS}: 0, 1, 2, …")] = 10,
+        seeds: Annotated[int, Field(description=f"How many, 1-{SEEDS}.")] = 10,
+        first_seed: Annotated[int, Field(ge=0, le=10**9, description="Tune on others than you report.")] = 0,
         max_steps: Annotated[int | None, Field(ge=1, le=STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
@@ -72,7 +76,12 @@ def tool(services: Services) -> StrictTool:
         files = [services.scenario_source(item) for item in scenarios]
         job = services.jobs.start(
             "benchmark",
-            {"files": files, "behaviors": chosen, "seeds": seeds, "steps": max_steps},
+            {
+                "files": files,
+                "behaviors": chosen,
+                "seeds": list(range(first_seed, first_seed + seeds)),
+                "steps": max_steps,
+            },
             len(scenarios) * len(chosen) * seeds,
         )
         try:
@@ -128,10 +137,11 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 
 def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
-    found.rows = [_row(row, [*_METRICS, *extra]) for row in result["rows"][:_ROWS]]
+    labels = labels_of(result["behaviors"])
+    found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_ROWS]]
     found.done = found.total = len(result["episodes"])
-    found.summary = _summary(result)
-    notes = list(result["notes"])
+    found.summary = _summary(result, labels)
+    notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
     if len(result["rows"]) > _ROWS:
         notes.append(f"{len(result['rows']) - _ROWS} more rows are in the artifact")
     for name, warnings in result["warnings"].items():
@@ -152,29 +162,35 @@ def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     )
 
 
-def _summary(result: dict[str, Any]) -> str:
+def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     """Who succeeded how often, over all scenarios."""
-    last = [row for row in result["rows"] if row["scenario"] == result["rows"][-1]["scenario"]]
-    shares = [f"{clean(r['behavior'], 60)} {r['success']['count']}/{r['success']['n']}" for r in last]
+    shares = []
+    for behavior in result["behaviors"]:
+        ends = [episode["outcome"] for episode in result["episodes"] if episode["behavior"] == behavior]
+        shares.append(f"{clean(labels[behavior])} {ends.count('success')}/{len(ends)}")
     return f"{len(result['episodes'])} episodes; success: {', '.join(shares)}"
 
 
-def _row(row: dict[str, Any], metrics: Sequence[str]) -> dict[str, Any]:
-    """One scenario under one behavior; numbers as [value, low, high]."""
+def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) -> dict[str, Any]:
+    """One scenario under one behavior; numbers as [value, low, high], or the value alone."""
     shown: dict[str, Any] = {
         "scenario": clean(row["scenario"], 100),
-        "behavior": clean(row["behavior"], 100),
+        "behavior": clean(labels[row["behavior"]]),
         "episodes": row["episodes"],
     }
-    shown |= {key: [_rounded(row[key][part]) for part in ("rate", "low", "high")] for key in _SHARES}
+    shown |= {key: _numbers(row[key], "rate") for key in _SHARES}
     shown |= {key: _numbers(row["metrics"][key]) for key in metrics if row["metrics"][key]["n"]}
     diff = {key: _numbers(row["paired"][key]) for key in _DIFFERENCES if row["paired"] and row["paired"][key]["n"]}
-    return shown | ({"diff": diff} if diff else {})
+    shown |= {"diff": diff} if diff else {}
+    if failed := seeds_of(row["failed"], _FAILED):
+        robots = [f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_FAILURES]]
+        shown["failed"] = f"{failed} ({', '.join(robots)})"
+    return shown
 
 
-def _numbers(estimate: dict[str, Any]) -> list[float]:
-    """Mean and interval; only the mean where there is no interval."""
-    values = [estimate["mean"], estimate["low"], estimate["high"]]
+def _numbers(estimate: dict[str, Any], value: str = "mean") -> list[float]:
+    """Value and interval; only the value where there is no interval."""
+    values = [estimate[value], estimate["low"], estimate["high"]]
     return [_rounded(value) for value in values if value is not None]
 
 
@@ -189,6 +205,7 @@ def _text(found: Benchmark) -> str:
     for row in found.rows:
         told = [f"{key} {_shown(value)}" for key, value in row.items() if isinstance(value, list)]
         told += [f"difference of {key} {_shown(value)}" for key, value in row.get("diff", {}).items()]
+        told += [f"failed: {row['failed']}"] if "failed" in row else []
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(told)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # /// script
 # requires-python = ">=3.10"
-# dependencies = ["irsim-mcp"]
+# dependencies = []
 # ///
 """Say of each difference in a benchmark whether it is one, and how many seeds would tell. Prints JSON.
 
-Reads what `irsim benchmark --json` wrote: a file, or - for standard input. A difference counts if its 95 % interval
-leaves out zero, from at least ten episodes in which both have a value.
+Reads what `irsim benchmark --json` wrote, or the artifact that the tool `benchmark` names: a file, or - for standard
+input. Needs nothing but Python. A difference counts if its 95 % interval leaves out zero, from at least ten episodes in
+which both have a value.
 
 Exits with 0 if every difference is told, 1 if at least one is open, 2 if the input cannot be used.
 """
@@ -19,29 +20,36 @@ import math
 import sys
 from typing import Any
 
-from irsim.metrics.definitions import METRICS
-
 FEWEST = 10
-BETTER = {metric.key: metric.better for metric in METRICS}
+SHARES = ("success", "collision", "timeout", "goal_reached")
+MORE = """
+    success goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
+    distance_to_human_min stl barn_score
+""".split()  # noqa: SIM905
+LESS = """
+    collision_count collision_steps wall_collisions agent_collisions human_collisions timeout
+    failure_to_progress stalled_time time_to_goal path_length acceleration_avg acceleration_max jerk_avg
+    jerk_max personal_space_intrusion_ratio min_distance_to_goal final_distance_to_goal
+    cumulative_heading_change path_irregularity path_efficiency curvature roughness angle_over_length
+    motion_energy discomfort_ratio near_misses freezing_count freezing_time collision aggregated_time
+""".split()  # noqa: SIM905
+EITHER = """
+    velocity_min velocity_max acceleration_min jerk_min time_to_collision_min proxemics_intimate_ratio
+    proxemics_personal_ratio proxemics_social_ratio proxemics_public_ratio distance_to_human_avg
+    discomfort_min_dist
+""".split()  # noqa: SIM905
+# Which way is better, None if that depends; as in references/metrics.md.
+BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)
 
 
-def newcombe(mine: dict[str, Any], other: dict[str, Any]) -> tuple[float, float]:
-    """95 % interval of a difference of two shares, from their Wilson intervals (Newcombe 1998, method 10)."""
-    p, q = mine["rate"], other["rate"]
-    low = p - q - math.hypot(p - mine["low"], other["high"] - q)
-    return low, p - q + math.hypot(mine["high"] - p, q - other["low"])
-
-
-def told(metric: str, row: dict[str, Any], first: dict[str, Any], detect: float | None) -> dict[str, Any]:
+def told(metric: str, row: dict[str, Any], first: str, detect: float) -> dict[str, Any]:
     """One difference, in words and numbers."""
     found = row["paired"][metric]
     n, mean, low, high = (found[key] for key in ("n", "mean", "low", "high"))
-    if metric == "success" and mean is not None and low == high:  # every pair alike: resampling them says nothing
-        low, high = newcombe(row["success"], first["success"])
     answer = {
         "scenario": row["scenario"],
         "behavior": row["behavior"],
-        "against": first["behavior"],
+        "against": first,
         "metric": metric,
         "n": n,
         "difference": mean,
@@ -50,7 +58,7 @@ def told(metric: str, row: dict[str, Any], first: dict[str, Any], detect: float 
     }
     if mean is None or low is None or n < FEWEST:
         return {**answer, "verdict": "open", "why": f"{n} pairs of episodes have a value; {FEWEST} are the least"}
-    aim = detect if metric == "success" else abs(mean)
+    aim = detect if metric in SHARES else abs(mean)
     half = (high - low) / 2
     needed = math.ceil(n * (half / aim) ** 2) if aim else None
     if low <= 0 <= high:
@@ -67,7 +75,7 @@ def main() -> int:
         "--metric", action="append", choices=sorted(BETTER), metavar="KEY", help="repeatable; default: success"
     )
     parser.add_argument(
-        "--detect", type=float, default=0.1, metavar="SHARE", help="difference in success worth seeing (default: 0.1)"
+        "--detect", type=float, default=0.1, metavar="SHARE", help="difference of shares worth seeing (default: 0.1)"
     )
     given = parser.parse_args()
     try:
@@ -76,9 +84,8 @@ def main() -> int:
         else:
             with open(given.result, encoding="utf-8") as file:
                 result = json.load(file)
-        first = {row["scenario"]: row for row in result["rows"] if row["behavior"] == result["behaviors"][0]}
         answers = [
-            told(metric, row, first[row["scenario"]], given.detect)
+            told(metric, row, result["behaviors"][0], given.detect)
             for row in result["rows"]
             if row["paired"]
             for metric in given.metric or ["success"]
