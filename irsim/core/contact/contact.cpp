@@ -11,11 +11,12 @@
 namespace irsim {
 namespace {
 
-constexpr double kResting = 1e-5;   // a smaller gap counts as contact [m]
-constexpr double kStraight = 1e-6;  // a push this near to the centroid does not turn [m]
-constexpr double kVisible = 5e-4;   // overlap that is not left while extra sweeps may help [m]
-constexpr double kStill = 1e-12;    // smaller corrections are none [m]
-constexpr int kPatient = 120;       // extra sweeps before drivers stall and wedged bodies stay put
+constexpr double kResting = 1e-5;        // a smaller gap counts as contact [m]
+constexpr double kStraight = 1e-6;       // a push this near to the centroid does not turn [m]
+constexpr double kVisible = 5e-4;        // overlap that is not left while extra sweeps may help [m]
+constexpr double kStill = 1e-12;         // smaller corrections are none [m]
+constexpr int kPatient = 120;            // extra sweeps before drivers stall and wedged bodies stay put
+constexpr int kExtraPairs = 10'000'000;  // looked at in extra sweeps: hundreds of bodies in one place part over steps
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
@@ -47,7 +48,8 @@ class Solver {
     bool moved = true;
     for (int sweep = 0; moved && sweep < options_.sweeps; ++sweep) moved = sweep_all();
     // Jams of many bodies may need more; nobody may be left visibly inside another.
-    for (int extra = 0; moved && extra < options_.extra_sweeps && deepest() > kVisible; ++extra) {
+    const int most = std::min(options_.extra_sweeps, kExtraPairs / static_cast<int>(b_.pairs.size()));
+    for (int extra = 0; moved && extra < most && deepest() > kVisible; ++extra) {
       careful_ = extra >= kPatient;
       moved = sweep_all();
     }
@@ -410,11 +412,15 @@ class Solver {
 
   /// Passive bodies get the speed of separation that their bounciness asks for.
   void bounce() {
-    for (const Contact& contact : scene_.contacts) {
+    b_.pair_of.resize(scene_.contacts.size());
+    for (const Buffers::Pair& pair : b_.pairs) {
+      if (pair.contact >= 0) b_.pair_of[pair.contact] = &pair;
+    }
+    for (std::size_t k = 0; k < scene_.contacts.size(); ++k) {
+      const Contact& contact = scene_.contacts[k];
       const double e = 0.5 * (world_.matter[contact.a].restitution + world_.matter[contact.b].restitution);
       if (!(e > 0.0)) continue;
-      const auto pair = std::find_if(b_.pairs.begin(), b_.pairs.end(),
-                                     [&](const Buffers::Pair& p) { return p.a == contact.a && p.b == contact.b; });
+      const Buffers::Pair* pair = b_.pair_of[k];
       const auto weight = [&](int i, bool yields) {
         return yields && b_.bodies[i].passive ? bodies_.inverse_mass[i] : 0.0;
       };

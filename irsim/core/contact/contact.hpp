@@ -58,6 +58,7 @@ struct ContactBuffers {
   std::vector<std::pair<int, int>> found;
   std::vector<int> distance, queue, links, first_link;
   std::vector<Block> blocks;
+  std::vector<const Pair*> pair_of;  // contacts
   std::vector<std::uint8_t> reached;
 };
 
