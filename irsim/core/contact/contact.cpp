@@ -11,12 +11,12 @@
 namespace irsim {
 namespace {
 
-constexpr double kResting = 1e-5;        // a smaller gap counts as contact [m]
-constexpr double kStraight = 1e-6;       // a push this near to the centroid does not turn [m]
-constexpr double kVisible = 5e-4;        // overlap that is not left while extra sweeps may help [m]
-constexpr double kStill = 1e-12;         // smaller corrections are none [m]
-constexpr int kPatient = 120;            // extra sweeps before drivers stall and wedged bodies stay put
-constexpr int kExtraPairs = 10'000'000;  // looked at in extra sweeps: hundreds of bodies in one place part over steps
+constexpr double kResting = 1e-5;      // a smaller gap counts as contact [m]
+constexpr double kStraight = 1e-6;     // a push this near to the centroid does not turn [m]
+constexpr double kVisible = 5e-4;      // overlap that is not left while extra sweeps may help [m]
+constexpr double kStill = 1e-12;       // smaller corrections are none [m]
+constexpr int kPatient = 120;          // extra sweeps before drivers stall and wedged bodies stay put
+constexpr int kMostPairs = 8'000'000;  // looked at in a step: hundreds of bodies in one place part over several steps
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
@@ -46,10 +46,10 @@ class Solver {
     if (b_.pairs.empty()) return;
     order_pairs(given != nullptr);
     bool moved = true;
-    for (int sweep = 0; moved && sweep < options_.sweeps; ++sweep) moved = sweep_all();
+    const int affordable = kMostPairs / static_cast<int>(b_.pairs.size()) + 1;
+    for (int sweep = 0; moved && sweep < std::min(options_.sweeps, affordable); ++sweep) moved = sweep_all();
     // Jams of many bodies may need more; nobody may be left visibly inside another.
-    const int most = std::min(options_.extra_sweeps, kExtraPairs / static_cast<int>(b_.pairs.size()));
-    for (int extra = 0; moved && extra < most && deepest() > kVisible; ++extra) {
+    for (int extra = 0; moved && extra < std::min(options_.extra_sweeps, affordable) && deepest() > kVisible; ++extra) {
       careful_ = extra >= kPatient;
       moved = sweep_all();
     }
