@@ -325,7 +325,7 @@ def _draw(
         pointer = place(arrow(style.arrow_length, style.arrow_width), (pose[0], pose[1], heading))
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
-    if style.show_text:
+    if style.show_text and view.shape != "walls":  # those round the world need no name
         text = view.abbr if view.text is None else view.text
         drawn.labels.append(_label(number, "name", pose[0], pose[1], text, style))
         if style.show_goal and style.show_goal_text and has_goal:

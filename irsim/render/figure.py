@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import compress
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -12,13 +14,15 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.text import Text
 from matplotlib.transforms import Affine2D, Bbox
+from numpy.typing import NDArray
 
 from irsim.render.canvas import Compositor
 from irsim.render.grids import GridLayer
+from irsim.render.labels import free_places
 from irsim.render.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels
-from irsim.render.scene import GridImage, Label, Picture, Scene
+from irsim.render.scene import Bounds, Floats, GridImage, Label, Picture, Scene
 from irsim.render.text import Glyphs, QuickText
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
@@ -28,6 +32,7 @@ _TITLE_SIZE = 12.0
 _SMALLEST_TITLE = 5.0
 _LABEL_MARGIN = 4.0
 _LABEL_RANK = 0.01
+_MOST_EXTENTS = 2000
 _HALO = 2.0
 _HAIR = 0.01
 _ROOM = 8.0
@@ -86,6 +91,7 @@ class SceneFigure:
         self._fog: FogLayer | None = None
         self._grids: dict[int, GridLayer] = {}
         self._labels: dict[tuple[int, str], Text] = {}
+        self._extents: dict[tuple[str, float, float], Bounds] = {}
         self._pictures: dict[int, AxesImage] = {}
         self._extent: tuple[float, float, float, float] | None = None
         self._title: str | None = None
@@ -114,12 +120,13 @@ class SceneFigure:
         self.ax.clear()
         self._start()
 
-    def show(self, scene: Scene, title: str | None) -> None:
+    def show(self, scene: Scene, title: str | None, keep_clear: Sequence[Bounds] = ()) -> None:
         """Bring the artists up to date.
 
         Args:
             scene: What to show.
             title: Text above the axes; None for none.
+            keep_clear: Left, bottom, right, top of what labels had better not cover [m].
         """
         first = self._extent is None
         self._look_at(scene)
@@ -151,7 +158,7 @@ class SceneFigure:
             self._fog.show(scene.fog)
         self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
-        self._show_labels(scene.labels)
+        self._show_labels(scene.labels, keep_clear)
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
@@ -253,20 +260,20 @@ class SceneFigure:
             artist.set_zorder(picture.zorder)
             artist.set_clip_path(self.ax.patch)
 
-    def _show_labels(self, labels: Sequence[Label]) -> None:
+    def _show_labels(self, labels: Sequence[Label], bodies: Sequence[Bounds]) -> None:
+        shown: dict[tuple[int, str], tuple[Label, Text]] = {}
         view, data = self.ax.bbox, self.ax.transData
-        shown = set()
-        for label in labels:
-            ax, ay = data.transform(label.anchor)
-            if not (view.x0 <= ax <= view.x1 and view.y0 <= ay <= view.y1):
-                continue
+        anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
+        inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
+        seen: NDArray[np.bool_] = np.all(inside, axis=1)
+        for label in compress(labels, seen.tolist()):
             key = label.object, label.part
             text = self._labels.get(key)
             if text is None:
                 text = self._labels[key] = QuickText(self._glyphs, parse_math=False, clip_on=False)
                 text.set_path_effects(self._effects)
                 self.ax.add_artist(text)
-            shown.add(key)
+            shown[key] = label, text
             text.set_visible(True)
             text.set_text(_printable(label.text))
             text.set_position((label.x, label.y))
@@ -274,25 +281,38 @@ class SceneFigure:
             text.set_fontsize(label.size)
             text.set_alpha(label.alpha)
             text.set_zorder(label.zorder + _LABEL_RANK)
-            self._keep_inside(text)
         for key, text in self._labels.items():
             if key not in shown:
                 text.set_visible(False)
+        if shown:
+            self._move_labels(list(shown.values()), anchors[seen], bodies)
 
-    def _keep_inside(self, text: Text) -> None:
-        """Shift a label that the edge of the axes would cut."""
+    def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, bodies: Sequence[Bounds]) -> None:
+        """Shift labels that the edge of the axes would cut, and those that would cover another; names come first."""
+        order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
+        texts, anchors = [shown[i][1] for i in order], anchors[order]
         view, data = self.ax.bbox, self.ax.transData
-        x, y = data.transform(text.get_position())
-        size = float(text.get_fontsize()) * self.figure.dpi / _POINTS_PER_INCH
-        reach = size * (len(text.get_text()) + 1)
-        if view.x0 < x < view.x1 - reach and view.y0 + size < y < view.y1 - 2 * size:
-            return
-        box = text.get_window_extent(self._renderer())
-        dx = max(view.x0 + _LABEL_MARGIN - box.x0, 0.0) + min(view.x1 - _LABEL_MARGIN - box.x1, 0.0)
-        dy = max(view.y0 + _LABEL_MARGIN - box.y0, 0.0) + min(view.y1 - _LABEL_MARGIN - box.y1, 0.0)
-        if dx or dy:
-            moved = data.inverted().transform((x + dx, y + dy))
-            text.set_position((float(moved[0]), float(moved[1])))
+        starts = data.transform([text.get_position() for text in texts])
+        boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
+        margin = np.array([_LABEL_MARGIN, _LABEL_MARGIN, -_LABEL_MARGIN, -_LABEL_MARGIN])
+        covered = data.transform(np.array(bodies, dtype=np.float64).reshape(-1, 2)).reshape(-1, 4)
+        moves = free_places(boxes, anchors, np.array(view.extents) + margin, covered)
+        moved = data.inverted().transform(starts + moves)
+        for text, move, (x, y) in zip(texts, moves.tolist(), moved.tolist(), strict=True):
+            if move != [0.0, 0.0]:
+                text.set_position((x, y))
+
+    def _extent_of(self, text: Text) -> Bounds:
+        """Left, bottom, right and top of a label, seen from where it begins [px]."""
+        key = text.get_text(), float(text.get_fontsize()), float(self.figure.dpi)
+        extent = self._extents.get(key)
+        if extent is None:
+            if len(self._extents) >= _MOST_EXTENTS:
+                self._extents.clear()
+            box = text.get_window_extent(self._renderer())
+            x, y = self.ax.transData.transform(text.get_position())
+            extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
+        return extent
 
 
 def _printable(text: str) -> str:

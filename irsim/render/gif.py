@@ -12,7 +12,7 @@ from PIL import GifImagePlugin, Image, ImageChops
 
 from irsim.render.pixels import Pixels, changed_box, differing, to_image
 
-__all__ = ["GifWriter"]
+__all__ = ["GifWriter", "reduce_colors"]
 
 _COLORS = 255
 _TRANSPARENT = 255
@@ -58,7 +58,7 @@ class GifWriter:
         """Append a frame; all have the size of the first."""
         if self._last is None:
             image = to_image(pixels)
-            self._choose_palette(image)
+            self.__palette(image)
             self._start(pixels.shape[1], pixels.shape[0])
             self._local = False
             self._frame(image, (0, 0, *image.size), None)
@@ -87,7 +87,7 @@ class GifWriter:
         if self._loop is not None:
             self._file.write(b"!\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<H", self._loop) + b"\x00")
 
-    def _choose_palette(self, image: Image.Image) -> None:
+    def __palette(self, image: Image.Image) -> None:
         """Colours for this frame and those that look like it."""
         self._palette = _palette(image, self._hints)
         indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
@@ -96,7 +96,7 @@ class GifWriter:
     def _frame(self, image: Image.Image, box: tuple[int, int, int, int], changed: NDArray[np.bool_] | None) -> None:
         indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
         if changed is not None and _wrong(image, indexed) > self._accepted + _WRONG_SHARE * changed.size + 1:
-            self._choose_palette(image)
+            self.__palette(image)
             self._local = True
             indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
         if changed is not None:
@@ -123,21 +123,33 @@ def _table(palette: Image.Image) -> bytes:
     return bytes(palette.getpalette() or []).ljust(3 * 256, b"\0")[: 3 * 256]
 
 
-def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]]) -> Image.Image:
-    """At most 255 colours: those asked for, then the image's own that differ from them."""
+def reduce_colors(image: Image.Image, hints: Sequence[tuple[int, int, int]], most: int) -> Image.Image:
+    """An image of at most so many colours; pixels of those asked for keep them exactly."""
+    palette = _palette(image, hints, most)
+    indexed = np.array(image.quantize(palette=palette, dither=Image.Dither.NONE))
+    levels = np.asarray(image).astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
+    for index, (r, g, b) in enumerate(list(dict.fromkeys(hints))[:_MAX_HINTS]):
+        indexed[levels == (r << 16) + (g << 8) + b] = index
+    reduced = Image.fromarray(indexed)
+    reduced.putpalette(palette.getpalette() or [])
+    return reduced
+
+
+def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]], most: int = _COLORS) -> Image.Image:
+    """At most so many colours: those asked for, then the image's own that differ from them."""
     sample = image
     if image.width * image.height > _SAMPLED:
         sample = image.resize((image.width // 2, image.height // 2), Image.Resampling.NEAREST)
-    found = sample.quantize(_COLORS, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    found = sample.quantize(most, method=Image.Quantize.MEDIANCUT).getpalette() or []
     own = [(found[i], found[i + 1], found[i + 2]) for i in range(0, len(found), 3)]
     chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:_MAX_HINTS]
     fixed = np.array(chosen or [(0, 0, 0)], dtype=np.int16)
     for color in own:
         near = (np.abs(fixed - np.array(color, dtype=np.int16)) < _CLOSE).all(axis=1).any() if chosen else False
-        if not near and len(chosen) < _COLORS:
+        if not near and len(chosen) < most:
             chosen.append(color)
     flat = [level for color in chosen for level in color]
-    flat += flat[:3] * (_COLORS - len(chosen))
+    flat += flat[:3] * (most - len(chosen))
     palette = Image.new("P", (1, 1))
     palette.putpalette(flat)
     return palette

@@ -15,9 +15,9 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from irsim.render.palette import Color
-from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Sector
+from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Scene, Sector
 
-__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "rgba"]
+__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 
 _PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow", "contact")
 """Order of drawing within one zorder."""
@@ -189,6 +189,13 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
     given: Any = color
     red, green, blue, opacity = to_rgba(given)
     return red, green, blue, opacity * float(alpha)
+
+
+def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
+    """Colours that a reduced palette must keep (0..255): paper, ink, and opaque bodies and arrows."""
+    colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
+    levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
+    return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
 
 
 def _shared(values: list[Any]) -> list[Any]:

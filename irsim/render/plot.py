@@ -17,7 +17,7 @@ from irsim.diagnostics import nearest
 from irsim.render.builder import MODES, SceneBuilder
 from irsim.render.figure import SceneFigure, fitting_size, inches
 from irsim.render.files import picture_path, replacing
-from irsim.render.layers import rgba
+from irsim.render.layers import opaque_colors
 from irsim.render.live import LiveCanvas, LiveFigure
 from irsim.render.overlay import Overlay
 from irsim.render.palette import Palette
@@ -419,10 +419,7 @@ class EnvPlot(PlotSteps):
 
     def _colors(self) -> list[tuple[int, int, int]]:
         """Colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
-        scene = self.scene()
-        colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
-        levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
-        return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
+        return opaque_colors(self.scene())
 
     # life ------------------------------------------------------------------------------------------------------------
     def reset(self) -> None:

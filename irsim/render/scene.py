@@ -18,6 +18,7 @@ from irsim.render.palette import Color
 
 __all__ = [
     "Beams",
+    "Bounds",
     "Circle",
     "Dots",
     "Fog",
@@ -34,6 +35,9 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+
+Bounds = tuple[float, float, float, float]
+"""Left, bottom, right, top."""
 
 
 @dataclass(slots=True, eq=False)

@@ -7,10 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from PIL import Image
 
-from irsim.render import render_scene
+from irsim.render import Scene, SceneBuilder, render_scene
+from irsim.render.legible import make_legible
+from irsim.render.scene import Line, Region, Sector
 
 ROOMS = {
     "square": "world: {width: 10, height: 10}",
@@ -60,3 +63,102 @@ def test_crowds_are_not_labelled(make: Callable[..., Any]) -> None:
     few, many = (make("world: {width: 40, height: 40}\n" + crowd % number) for number in (20, 70))
     assert render_scene(few.simulation) != render_scene(few.simulation, overrides={"show_text": False})
     assert render_scene(many.simulation) == render_scene(many.simulation, overrides={"show_text": False})
+
+
+def look(env: Any) -> Scene:
+    """The scene of a snapshot."""
+    keys = {"show_text": True, "show_goal": True, "show_goal_text": True, "show_trajectory": True}
+    scene = SceneBuilder(env.simulation).build(overrides=keys)
+    make_legible(scene, env.simulation, 0)
+    return scene
+
+
+def pointing(scene: Scene, number: int) -> tuple[float, float]:
+    """Where the arrow of an object points: from its start to its tip [m]."""
+    (mark,) = scene.of(number, "arrow")
+    assert isinstance(mark.geometry, Region)
+    ring = mark.geometry.rings[0]
+    x, y = ring[3] - (ring[0] + ring[-1]) / 2
+    return float(x), float(y)
+
+
+def test_one_label_for_a_robot_that_has_arrived(make: Callable[..., Any]) -> None:
+    env = make(
+        "robot: {kinematics: {name: diff}, number: 2, state: [[1, 1, 0], [3, 3, 0]], goal: [[1, 1, 0], [8, 8, 0]]}"
+    )
+    env.step()
+    assert [label.text for label in look(env).labels] == ["r0 at goal", "r1", "G-r1"]
+    hidden = SceneBuilder(env.simulation).build(overrides={"show_text": True})
+    make_legible(hidden, env.simulation, 0)
+    assert [label.text for label in hidden.labels] == ["r0", "r1"]
+
+
+WALKERS = """
+robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [9, 9, 0], shape: {name: circle, radius: 0.3}}
+obstacle:
+  - {kinematics: {name: omni}, state: [5, 5, 0], goal: [5, 1, 0], behavior: {name: dash}, shape: {name: circle}}
+  - {state: [8, 2, 0], goal: [8, 8, 0], shape: {name: circle, radius: 0.3}}
+"""
+
+
+def test_walkers_show_where_they_go(make: Callable[..., Any]) -> None:
+    env = make(WALKERS)
+    scene = look(env)
+    along, up = pointing(scene, 1)
+    assert abs(along) < 1e-9
+    assert up < 0
+    (of_robot,), (of_walker,) = scene.of(0, "goal"), scene.of(1, "goal")
+    assert 0 < of_walker.alpha < of_robot.alpha
+    assert not list(scene.of(2, "goal")), "what stands still goes nowhere"
+    assert not list(scene.of(2, "arrow"))
+    assert "G-o1" in [label.text for label in scene.labels]
+    for _ in range(60):
+        env.step()
+    assert not list(look(env).of(1, "arrow")), "it has arrived"
+
+
+def test_arrows_are_never_tiny(make: Callable[..., Any]) -> None:
+    far = make("world: {width: 200, height: 50}\n" + WALKERS)
+    assert np.hypot(*pointing(look(far), 0)) == pytest.approx(5.0)
+    near = make(WALKERS)
+    assert np.hypot(*pointing(look(near), 0)) == pytest.approx(0.4)
+
+
+def test_paths_are_lines_that_can_be_seen_through(make: Callable[..., Any]) -> None:
+    env = make(ENTRY)
+    for _ in range(5):
+        env.step()
+    (path,) = look(env).of(0, "trajectory")
+    assert isinstance(path.geometry, Line)
+    assert not path.stroke.metric
+    assert path.stroke.width < 4
+    assert path.alpha < 1
+    wide = make(ENTRY.replace("robot: {", "robot: {plot: {traj_width: 0.2}, "))
+    wide.step()
+    wide.step()
+    (path,) = look(wide).of(0, "trajectory")
+    assert (path.stroke.width, path.stroke.metric) == (0.2, True)
+
+
+@pytest.mark.parametrize(
+    ("kind", "turn", "outlines"), [("lidar2d", 1.5, 1), ("fmcw_lidar2d", 1.5, 1), ("lidar2d", 6.2832, 0)]
+)
+def test_what_a_sensor_can_see_has_an_outline(make: Callable[..., Any], kind: str, turn: float, outlines: int) -> None:
+    sensor = f"{{type: {kind}, number: 9, range_max: 4, angle_range: {turn}}}"
+    env = make(f"robot: {{kinematics: {{name: diff}}, state: [5, 5, 1], sensors: [{sensor}]}}")
+    sectors = [mark.geometry for mark in look(env).marks if isinstance(mark.geometry, Sector)]
+    assert len(sectors) == outlines
+    for sector in sectors:
+        assert (sector.x, sector.y, sector.radius) == pytest.approx((5, 5, 4))
+        assert (sector.start, sector.end) == pytest.approx((0.25, 1.75))
+
+
+def test_colors_of_arrows_survive_many_beams(make: Callable[..., Any]) -> None:
+    lidar = "sensors: [{type: lidar2d, number: 360, range_max: 8, angle_range: 6.2832}]"
+    env = make(
+        f"robot: {{kinematics: {{name: diff}}, state: [5, 5, 0], {lidar}, shape: {{name: circle, radius: 0.3}}}}"
+    )
+    with Image.open(io.BytesIO(render_scene(env.simulation))) as image:
+        colors = {color: count for count, color in image.convert("RGB").getcolors(100_000) or []}
+    assert colors[0xF0, 0xE4, 0x42] > 20
+    assert max(colors, key=lambda color: colors[color]) == (255, 255, 255)

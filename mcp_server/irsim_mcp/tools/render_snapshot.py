@@ -19,7 +19,7 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Draw one moment of a scenario as a PNG and look at it: bodies, headings (yellow arrows, none for omni), goals
+    Draw one moment of a scenario as a PNG and look at it: bodies, yellow arrows (heading; omni: where it moves), goals
     (pale), names, lidar beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0
     is the start: do things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated
     first (of a run_id too, the same again); -1 is the end of the episode, with the path of every robot. Returns one

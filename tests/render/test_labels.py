@@ -1,0 +1,104 @@
+"""Labels do not cover each other, in any picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.transforms import Bbox
+
+from irsim.render.labels import free_places
+
+Make = Callable[..., Any]
+VIEW = np.array([0.0, 0.0, 600.0, 600.0])
+NOTHING = np.empty((0, 4))
+WIDTH, HEIGHT = 30.0, 12.0
+
+
+def boxes_of(points: Any) -> np.ndarray:
+    low = np.asarray(points, dtype=float).reshape(-1, 2) + np.array([-10.0, 10.0])
+    return np.concatenate([low, low + np.array([WIDTH, HEIGHT])], axis=1)
+
+
+def overlapping(boxes: Any) -> list[tuple[int, int]]:
+    pairs = combinations(range(len(boxes)), 2)
+    return [(i, j) for i, j in pairs if (boxes[i][:2] < boxes[j][2:]).all() and (boxes[j][:2] < boxes[i][2:]).all()]
+
+
+def placed(points: Any, bodies: Any = NOTHING) -> np.ndarray:
+    boxes = boxes_of(points)
+    moves = free_places(boxes, np.asarray(points, dtype=float).reshape(-1, 2), VIEW, np.asarray(bodies, dtype=float))
+    return boxes + np.concatenate([moves, moves], axis=1)
+
+
+def test_labels_that_cover_nothing_stay() -> None:
+    points = [(100, 100), (200, 100), (100, 200)]
+    assert (placed(points) == boxes_of(points)).all()
+
+
+def test_the_second_of_two_at_one_place_moves_aside() -> None:
+    found = placed([(100, 100), (100, 100)])
+    assert (found[0] == boxes_of([(100, 100)])[0]).all()
+    assert not overlapping(found)
+
+
+def test_labels_keep_off_bodies_where_they_can() -> None:
+    body = [90.0, 105.0, 130.0, 125.0]
+    found = placed([(100, 100)], [body])
+    assert not overlapping([found[0], np.array(body)])
+
+
+def test_labels_stay_inside_of_the_picture() -> None:
+    found = placed([(0, 0), (600, 600), (0, 600), (600, 0), (600, 600)])
+    assert (found[:, :2] >= 0).all()
+    assert (found[:, 2:] <= 600).all()
+    assert not overlapping(found)
+
+
+@given(st.lists(st.tuples(st.integers(50, 550), st.integers(50, 550)), min_size=1, max_size=12))
+def test_a_dozen_labels_always_find_room(points: list[tuple[int, int]]) -> None:
+    found = placed(points)
+    assert len(overlapping(found)) <= max(0, len(points) - 6)  # many at one place
+    assert (placed(points) == found).all()
+
+
+CLOSE = """
+robot:
+  number: 3
+  kinematics: {name: diff}
+  state: [[3, 3, 0], [6, 6, 0], [6.2, 6.1, 0]]
+  goal: [[3, 3, 0], [6.1, 6, 0], [6.3, 6.2, 0]]
+  shape: {name: circle, radius: 0.3}
+  plot: {show_text: true, show_goal: true, show_goal_text: true}
+"""
+
+
+def shown_boxes(env: Any) -> dict[str, Bbox]:
+    plot = env._env_plot
+    plot.frame()
+    renderer = plot.fig.canvas.get_renderer()
+    return {text.get_text(): text.get_window_extent(renderer) for text in plot.ax.texts if text.get_visible()}
+
+
+def test_a_robot_on_its_goal_can_be_read(make: Make) -> None:
+    boxes = shown_boxes(make(CLOSE))
+    assert set(boxes) == {"r0", "r1", "r2", "G-r0", "G-r1", "G-r2"}
+    for one, other in combinations(boxes.values(), 2):
+        assert Bbox.intersection(one, other) is None or min(Bbox.intersection(one, other).size) < 1.0
+
+
+def test_labels_are_where_they_were_asked_for(make: Make) -> None:
+    env = make("robot: {kinematics: {name: diff}, state: [3, 3, 0], plot: {show_text: true, text_position: [1, 0.5]}}")
+    box = shown_boxes(env)["r0"]
+    assert box.x0 == pytest.approx(env._env_plot.ax.transData.transform((4, 3.5))[0], abs=2.0)
+
+
+def test_walls_round_the_world_have_no_label(make: Make) -> None:
+    env = make("world: {boundary: walls}\nobstacle: {state: [5, 5, 0], shape: {name: circle, radius: 0.3}}")
+    env.render(mode="all", show_text=True)
+    assert set(shown_boxes(env)) == {"o0"}
