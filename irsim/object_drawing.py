@@ -67,6 +67,7 @@ class ObjectDrawing:
         kinematics: Any
         sensors: list[Any]
         description: Any
+        record: Any
         trajectory: Any
 
     object_patch: Any = None
@@ -178,6 +179,7 @@ class ObjectDrawing:
         from irsim.render.bodies import read_body
         from irsim.render.scene import Picture
         from irsim.render.single import add_picture
+        from irsim.render.style import tint_of
 
         axes, name = self._on(ax), self.description if description is None else description
         images = self._images()
@@ -186,7 +188,9 @@ class ObjectDrawing:
         style = self._builder().style(self, kwargs)  # type: ignore[arg-type]
         body, pose = read_body(self._simulation.state, self.row), self._pose_of(state)
         box = (*body.low, body.length, body.width)
-        self.object_img = add_picture(axes, Picture(0, name, box, pose, style.obj_alpha, style.image_zorder), images)
+        tint = tint_of(self.record, name, style.obj_color)
+        picture = Picture(0, name, box, pose, style.obj_alpha, style.image_zorder, tint)
+        self.object_img = add_picture(axes, picture, images)
         self.plot_patch_list.append(self.object_img)
         return True
 

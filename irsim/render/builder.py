@@ -28,7 +28,7 @@ from irsim.render.scene import (
     Sector,
     Stroke,
 )
-from irsim.render.style import ObjectStyle, resolve_style
+from irsim.render.style import ObjectStyle, resolve_style, tint_of
 from irsim.scans import Lidar2D
 from irsim.views import views
 from irsim.world.fog import FOG_COLOR
@@ -316,7 +316,15 @@ def _draw(
         )  # fmt: skip
     if view.description is not None and body.kind != "compound" and has_picture(view.description):
         area = (*body.low, body.length, body.width)
-        drawn.picture = Picture(number, view.description, area, pose, style.obj_alpha, style.image_zorder)
+        drawn.picture = Picture(
+            number,
+            view.description,
+            area,
+            pose,
+            style.obj_alpha,
+            style.image_zorder,
+            tint_of(view.record, view.description, style.obj_color),
+        )
     else:
         stroke = Stroke(style.obj_color, style.obj_linewidth, style=style.obj_linestyle)
         body_now = place(body.geometry, pose)

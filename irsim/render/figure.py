@@ -245,11 +245,12 @@ class SceneFigure:
             image.set_visible(number in shown)
         for picture in pictures:
             artist = self._pictures.get(picture.object)
-            if artist is None or artist.get_label() != picture.name:
+            label = f"{picture.name} {picture.tint}"
+            if artist is None or artist.get_label() != label:
                 if artist is not None:
                     artist.remove()
-                artist = AxesImage(self.ax, interpolation="antialiased", label=picture.name)
-                artist.set_data(self._images.get(picture.name))
+                artist = AxesImage(self.ax, interpolation="antialiased", label=label)
+                artist.set_data(self._images.tinted(picture.name, picture.tint))
                 self.ax.add_image(artist)
                 self._pictures[picture.object] = artist
             x, y, length, width = picture.box

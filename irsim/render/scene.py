@@ -172,7 +172,10 @@ class Fog:
 
 @dataclass(slots=True, eq=False)
 class Picture:
-    """An image in place of a body: ``box`` (x, y, length, width) in the body frame, moved to the pose."""
+    """An image in place of a body: ``box`` (x, y, length, width) in the body frame, moved to the pose.
+
+    What is colourful in it is drawn in the hue ``tint``, unless that is None.
+    """
 
     object: int
     name: str
@@ -180,6 +183,7 @@ class Picture:
     pose: tuple[float, float, float]
     alpha: float
     zorder: float
+    tint: Color | None = None
 
 
 @dataclass(slots=True, eq=False)

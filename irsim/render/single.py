@@ -76,7 +76,7 @@ def add_label(ax: Axes, label: Label) -> Text:
 def add_picture(ax: Axes, picture: Picture, images: Pictures) -> AxesImage:
     """An image in place of a body."""
     image = AxesImage(ax, interpolation="antialiased", label=picture.name, zorder=picture.zorder, alpha=picture.alpha)
-    image.set_data(images.get(picture.name))
+    image.set_data(images.tinted(picture.name, picture.tint))
     x, y, length, width = picture.box
     image.set_extent((x, x + length, y, y + width))
     px, py, theta = picture.pose

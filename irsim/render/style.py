@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from irsim.colors import ACKER_COLOR, OBSTACLE_COLOR
 from irsim.render.palette import Color, Palette
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
 
-__all__ = ["STYLE_KEYS", "ObjectStyle", "resolve_style"]
+__all__ = ["STYLE_KEYS", "ObjectStyle", "resolve_style", "tint_of"]
 
 
 @dataclass(slots=True)
@@ -122,3 +123,15 @@ def resolve_style(
     }
     values.update((key, value) for key, value in own.items() if values.get(key) is None)
     return ObjectStyle(**values)
+
+
+def tint_of(record: ObjectRecord, image: str, color: Color) -> Color | None:
+    """The colour that the image of a drive takes on: that of the object, if somebody chose one.
+
+    An image that the scenario names is drawn as it is.
+    """
+    drive = record.kinematics
+    if drive is None or image != getattr(drive, "picture", None) or color == "none":
+        return None
+    usual = getattr(drive, "usual_colors", None) or (ACKER_COLOR, OBSTACLE_COLOR)
+    return None if color == usual[record.role == "obstacle"] else color

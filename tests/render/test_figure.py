@@ -319,3 +319,20 @@ def test_a_colour_that_is_none_says_so(make: Make) -> None:
     env.render(obj_color="greenish")
     with pytest.raises(ValueError, match="greenish"):
         env.save_figure()
+
+
+@pytest.mark.parametrize(
+    ("keys", "want"),
+    [
+        ("", (0, 158, 115)),
+        ("color: red", (255, 0, 0)),
+        ("plot: {obj_color: '#0000ff'}", (0, 0, 255)),
+        ("color: red, description: car_blue.png", (0, 114, 178)),
+    ],
+)
+def test_cars_have_the_color_that_was_asked_for(make: Make, color_at: Look, keys: str, want: tuple[int, ...]) -> None:
+    car = "kinematics: {name: acker, wheelbase: 2}, shape: {name: rectangle, length: 4, width: 2}, state: [5, 5, 0, 0]"
+    env = make(f"robot: {{{car}, {keys}}}")
+    env.render(show_arrow=False)
+    near = [color_at(env, float(x), float(y)) for x in np.linspace(4, 7.5, 30) for y in (4.9, 5.4, 5.6)]
+    assert any(sum(abs(a - b) for a, b in zip(color, want, strict=True)) < 40 for color in near)
