@@ -65,9 +65,18 @@ def test_commands_work_as_written(tmp_path: Path) -> None:
 
 def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> None:
     tools = asyncio.run(tool_arguments(tmp_path))
-    assert {"scenarios", "behaviors", "seeds"} <= tools["benchmark"]
+    assert {"scenarios", "behaviors", "seeds", "max_steps"} <= tools["benchmark"]
     assert "job_id" in tools["get_job"]
     assert "seed" in tools["run_episode"]
+
+
+def test_a_seed_begins_alike_with_more_people() -> None:
+    few, many = (
+        irsim.batch(SKILL / "examples" / "density" / f"crowd-{count}.yaml", 1, seeds=[3]).pose[0].copy()
+        for count in (10, 20)
+    )
+    assert len(many) == len(few) + 10
+    assert (few == many[: len(few)]).all()
 
 
 def test_metrics_it_names_are_defined() -> None:

@@ -193,3 +193,44 @@ def test_what_it_says_about_loops_and_headings_is_so(tmp_path: Path) -> None:
         text = text.replace("{name: diff}", f"{{name: {drive}}}").replace("vel_max: [1.0, 1.5]", f"vel_max: {limits}")
         path.write_text(text.replace("    vel_min: [-1.0, -1.5]\n", ""), encoding="utf-8")
         assert irsim.run(path).outcome == outcome, drive
+
+
+def test_a_robot_that_only_watches_is_valid_as_told_and_waits_for_the_time_limit(tmp_path: Path) -> None:
+    data = yaml.safe_load(SKELETON)
+    [robot] = data["robot"]
+    data["robot"] = [{key: robot[key] for key in ("shape", "state")}]
+    data["world"]["time_limit"] = 2
+    text = yaml.safe_dump(data)
+    assert found(text) == set()
+    path = tmp_path / "watch.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert (irsim.run(path).outcome, irsim.run(path).sim_time) == ("timeout", pytest.approx(2.0))
+
+
+def test_what_it_says_about_horizons_near_walls_is_so(tmp_path: Path) -> None:
+    path = tmp_path / "wall.yaml"
+    data = yaml.safe_load(SKELETON)
+    data["obstacle"] = [{"shape": {"name": "rectangle", "length": 0.3, "width": 6}, "state": [11.2, 4, 0]}]
+    times = []
+    for horizon in (10, 1.5):
+        data["robot"][0]["behavior"] = {"name": "orca", "timeHorizonObst": horizon}
+        path.write_text(yaml.safe_dump(data), encoding="utf-8")
+        times.append(irsim.run(path).sim_time)
+    assert times[0] > 1.5 * times[1]
+
+
+@pytest.mark.parametrize(("behavior", "fastest"), [("rvo", 1.5), ("orca", 4.0)])
+def test_what_the_behaviors_say_about_turning_is_so(behavior: str, fastest: float, tmp_path: Path) -> None:
+    data = yaml.safe_load(SKELETON)
+    data["robot"][0].update(
+        state=[6, 4, 0], goal=[1, 4.5], vel_max=[1, 4], vel_min=[-1, -4], behavior={"name": behavior}
+    )
+    path = tmp_path / "turn.yaml"
+    path.write_text(yaml.safe_dump(data), encoding="utf-8")
+    env = irsim.make(path, display=False, headless=True)
+    rates = []
+    for _ in range(20):
+        env.step()
+        rates.append(abs(float(env.robot.velocity[1, 0])))
+    env.end(ending_time=0)
+    assert max(rates) == pytest.approx(fastest)
