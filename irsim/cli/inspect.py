@@ -27,7 +27,8 @@ def inspect(
     view: Annotated[
         str,
         typer.Option(
-            help="rows: step by step; collisions: who touched whom; closest: nearest approach; speeds: way and speed."
+            help="rows: step by step; collisions: who touched whom; closest: who came near whom, edge to edge; speeds: "
+            "way, speed (forward below 0: backwards), turn rate."
         ),
     ] = "rows",
     robot: Annotated[str | None, typer.Option(help="Only this robot or object.", show_default=False)] = None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -9,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim import _core as core
-from irsim.metrics.company import KINDS, company_of
+from irsim.metrics.company import KINDS, NOBODY, company_of
 from irsim.simulation import Simulation
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["Approach", "Clearance", "clearance", "closest"]
+__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest"]
+
+_MOST_WORK = 20_000_000
+"""Bodies placed at most to tell more than the nearest of each kind."""
 
 
 class Posed(Protocol):
@@ -62,7 +66,7 @@ class Clearance:
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """The moment at which a robot was closest to something.
+    """The moment at which an object was closest to another.
 
     Attributes:
         row: Row of the trace.
@@ -119,4 +123,44 @@ def closest(distances: Clearance) -> list[Approach | None]:
         row, kind = np.unravel_index(np.nanargmin(table), table.shape)
         partner = distances.names[distances.partner[row, robot, kind]]
         found.append(Approach(int(row), float(table[row, kind]), partner, KINDS[kind]))
+    return found
+
+
+def approaches(
+    trace: Posed | NDArray[np.float64],
+    scenario: ResolvedScenario | Simulation,
+    objects: Sequence[int],
+    most: int,
+    *,
+    seed: int = 0,
+) -> list[list[Approach]]:
+    """For each of some objects the nearest others, each at its closest moment, the nearest first.
+
+    Args:
+        trace: As in :func:`clearance`.
+        scenario: As there.
+        objects: Whose, as indices: robots or others.
+        most: Others at most of each kind (robots, humans, static things); only one where there are very many objects
+            and rows.
+        seed: With a scenario: the seed of the run, which decides random shapes.
+    """
+    simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
+    records = simulation.scenario.objects
+    poses = np.ascontiguousarray(trace if isinstance(trace, np.ndarray) else trace.pose, dtype=np.float64)
+    rounds = max(1, min(most, _MOST_WORK // max(1, len(poses) * len(records) * len(objects))))
+    found = []
+    for index in objects:
+        company, mine = company_of(records), list[Approach]()
+        for _ in range(rounds):
+            distance, partner = core.clearances(simulation.world, simulation.state, 0, poses, [index], company)
+            known = len(mine)
+            for kind, table in enumerate(distance[:, 0].T):
+                if np.isfinite(table).any():
+                    row = int(np.nanargmin(table))
+                    other = int(partner[row, 0, kind])
+                    mine.append(Approach(row, float(table[row]), records[other].name, KINDS[kind]))
+                    company[other] = NOBODY  # the next round finds the next
+            if len(mine) == known:
+                break
+        found.append(sorted(mine, key=lambda approach: approach.distance))
     return found

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.diagnostics import nearest
-from irsim.metrics import clearance
-from irsim.metrics.company import KINDS
+from irsim.metrics import approaches
 from irsim.observers.trace import Trace
 from irsim.results import RunTable
 from irsim.runs.reading import Run, open_run
@@ -31,6 +30,8 @@ _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "sta
 _STANDING = 1e-3
 """Slower than this is standing still [m/s]."""
 _DECIMALS = 4
+_PARTNERS = 5
+"""Of each kind, whom an object is told to have come near."""
 Cell = float | int | str | bool | None
 Floats = NDArray[np.float64]
 
@@ -78,9 +79,11 @@ def inspect_run(
     Args:
         run: Its id, its folder, or ``last``.
         view: ``rows``: positions and more, step by step; ``collisions``: who touched whom, where and how fast;
-            ``closest``: for each robot the moment at which it was nearest to another robot, a human, something that
-            stands still (distances between footprints; negative: overlap);
-            ``speeds``: for each robot how far and fast it went, and where it stood still longest.
+            ``closest``: for each robot whom it came how near and when, the nearest five robots, humans and things that
+            stand still, edge to edge (between footprints; negative: overlap);
+            ``speeds``: for each robot how far and fast it went, and where it stood still longest. ``speed`` is a
+            magnitude everywhere, never negative; ``min_forward_speed`` is that along the heading and negative where it
+            drove backwards (None for omnidirectional drives); ``max_turn_rate`` is a magnitude, too.
         robot: Name of one robot, or of another object; by default all robots.
         from_step: First step.
         to_step: Last step; by default the last there is.
@@ -178,23 +181,29 @@ def _rows(asked: _Question) -> _Found:
         picked = np.append(picked, asked.last)
     total = len(picked) * count
     stop = total if asked.limit is None else min(total, asked.start + asked.limit)
-    columns = [name for field in asked.fields for name in _COLUMNS.get(field, (field,))]
+    controls = _controls(asked)
+    names = {"control": tuple(f"control_{number}" for number in range(controls)), "goal": ("goal_x", "goal_y")}
+    columns = [name for field in asked.fields for name in names.get(field, (field,))]
     rows: list[list[Cell]] = []
     for number in range(asked.start, stop):
         row, index = int(picked[number // count]), asked.objects[number % count]
-        cells = [cell for field in asked.fields for cell in _cells(asked.trace, field, row, index)]
+        cells = [cell for field in asked.fields for cell in _cells(asked.trace, field, row, index, controls)]
         rows.append([int(asked.trace.step[row]), _number(asked.trace.time[row]), asked.trace.names[index], *cells])
     return _Found(["step", "time", "robot", *columns], rows, total, every)
 
 
-_COLUMNS = {"control": ("control_0", "control_1", "control_2"), "goal": ("goal_x", "goal_y")}
+def _controls(asked: _Question) -> int:
+    """How many numbers a control of the chosen objects has at most."""
+    objects = asked.run.resolved["objects"]
+    chosen = [objects[index].get("vel_dim") for index in asked.objects if objects[index].get("kinematics") is not None]
+    return max((count for count in chosen if isinstance(count, int) and 0 < count <= 3), default=2)
 
 
-def _cells(trace: Trace, field: Field, row: int, index: int) -> list[Cell]:
+def _cells(trace: Trace, field: Field, row: int, index: int, controls: int) -> list[Cell]:
     x, y, heading = trace.pose[row, index].tolist()
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
     if field == "control":
-        return [_number(value) for value in trace.control[row, index]]
+        return [_number(value) for value in trace.control[row, index, :controls]]
     if field == "goal":
         return [_number(goal_x), _number(goal_y)]
     if field == "status":
@@ -240,27 +249,19 @@ def _collisions(asked: _Question) -> _Found:
 
 
 def _closest(asked: _Question) -> _Found:
-    """The nearest approach of each robot to each kind of neighbor, the closest first."""
+    """Whom each robot came how near, the nearest first."""
     scenario = scenario_of(asked.run, asked.limits)
-    part = asked.trace.pose[asked.first : asked.last + 1]
-    near = clearance(part, scenario, seed=int(asked.run.meta["seed"]))
-    found = []
-    for column, index in enumerate(near.robots.tolist()):
-        if index not in asked.objects:
-            continue
-        for kind, distances in zip(KINDS, near.distance[:, column].T, strict=True):
-            if np.isfinite(distances).any():
-                row = int(np.nanargmin(distances))
-                partner = near.names[near.partner[row, column, KINDS.index(kind)]]
-                found.append((float(distances[row]), index, partner, kind, asked.first + row))
-    trace = asked.trace
+    part, trace = asked.trace.pose[asked.first : asked.last + 1], asked.trace
+    near = approaches(part, scenario, asked.objects, _PARTNERS, seed=int(asked.run.meta["seed"]))
+    found = [(each, index) for index, some in zip(asked.objects, near, strict=True) for each in some]
     rows: list[list[Cell]] = []
-    for distance, index, partner, kind, row in sorted(found, key=lambda item: (item[0], item[1])):
+    for each, index in sorted(found, key=lambda item: (item[0].distance, item[1])):
+        row = asked.first + each.row
         moment: list[Cell] = [int(trace.step[row]), _number(trace.time[row])]
         place: list[Cell] = [_number(value) for value in trace.pose[row, index, :2]]
         speed = _number(float(_speeds(trace, index, row, row)[0]))
-        rows.append([trace.names[index], _number(distance), partner, kind, *moment, *place, speed])
-    return _paged(asked, ["robot", "distance", "to", "kind", "step", "time", "x", "y", "speed"], rows)
+        rows.append([trace.names[index], _precise(each.distance), each.partner, each.kind, *moment, *place, speed])
+    return _paged(asked, ["robot", "edge_distance", "to", "kind", "step", "time", "x", "y", "speed"], rows)
 
 
 def _speeds_of_robots(asked: _Question) -> _Found:
@@ -276,10 +277,14 @@ def _speeds_of_robots(asked: _Question) -> _Found:
         if length:
             stand[1] = int(trace.step[asked.first + begin])
         mean = way / (max(1, len(speeds) - 1) * trace.step_time)
-        rows.append(
-            [trace.names[index], _number(way), _number(mean), _number(float(speeds.max())), *stand, bool(arrived.any())]
-        )
-    columns = ["robot", "path_length", "mean_speed", "max_speed", "stood", "stood_from_step", "arrived"]
+        fast: list[Cell] = [_number(mean), _number(float(speeds.max()))]
+        turning = max((abs(_turn_rate(trace, index, row)) for row in range(asked.first, asked.last + 1)), default=0.0)
+        extremes: list[Cell] = [_least_forward(asked, index), _number(turning)]
+        rows.append([trace.names[index], _number(way), *fast, *extremes, *stand, bool(arrived.any())])
+    columns = [
+        *("robot", "path_length", "mean_speed", "max_speed", "min_forward_speed", "max_turn_rate"),
+        *("stood", "stood_from_step", "arrived"),
+    ]
     return _paged(asked, columns, rows)
 
 
@@ -307,6 +312,18 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
         before = np.concatenate([here[:1], before])
     speeds: Floats = np.linalg.norm(here - before, axis=1) / trace.step_time
     return speeds
+
+
+def _least_forward(asked: _Question, index: int) -> Cell:
+    """Least velocity along the heading [m/s]; None for drives whose heading is not where they go, and without steps."""
+    drive = asked.run.resolved["objects"][index].get("kinematics")
+    name = drive.get("name") if isinstance(drive, dict) else None
+    pose = asked.trace.pose[max(0, asked.first - 1) : asked.last + 1, index]
+    if len(pose) < 2 or not isinstance(name, str) or name.startswith("omni"):
+        return None
+    moved, heading = np.diff(pose[:, :2], axis=0), pose[:-1, 2]
+    forward = moved[:, 0] * np.cos(heading) + moved[:, 1] * np.sin(heading)
+    return _number(float(forward.min()) / asked.trace.step_time)
 
 
 def _turn_rate(trace: Trace, index: int, row: int) -> float:
@@ -337,3 +354,9 @@ def _longest_stand(speeds: Floats) -> tuple[int, int]:
 def _number(value: float) -> float | None:
     """To a tenth of a millimetre; None for what is no number."""
     return round(float(value), _DECIMALS) if math.isfinite(value) else None
+
+
+def _precise(value: float) -> float:
+    """The same, but what is not 0 is not told as 0."""
+    rounded = round(value, _DECIMALS)
+    return rounded if rounded or not value else float(f"{value:.2g}")

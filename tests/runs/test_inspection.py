@@ -14,9 +14,11 @@ from typer.testing import CliRunner
 
 import irsim
 from irsim.cli.app import app
-from irsim.runs import Run, RunError, open_run
+from irsim.metrics import Approach
+from irsim.runs import Run, RunError, inspection, open_run
 from irsim.runs.artifacts import ARTIFACTS, artifact
 from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
+from irsim.runs.recorder import Recorder
 from irsim.runs.replaying import replayed
 
 PAIR = """\
@@ -58,8 +60,8 @@ def test_rows_say_what_the_trace_says(pair: Run) -> None:
     trace = pair.trace()
     table = inspect_run(pair, robot="right", every=7, fields=FIELDS, limit=None)
     assert table.columns == [
-        "step", "time", "robot", "x", "y", "heading", "speed", "turn_rate", "control_0", "control_1", "control_2",
-        "goal_x", "goal_y", "goal_distance", "nearest_hit", "status",
+        "step", "time", "robot", "x", "y", "heading", "speed", "turn_rate", "control_0", "control_1", "goal_x",
+        "goal_y", "goal_distance", "nearest_hit", "status",
     ]  # fmt: skip
     assert [row[0] for row in table.rows] == list(range(0, len(trace), 7))
     for row in table.rows:
@@ -108,15 +110,58 @@ def test_collisions_say_who_where_and_how_fast(crashed: Run) -> None:
 
 def test_closest_is_between_footprints(pair: Run) -> None:
     table = inspect_run(pair, view="closest")
-    rows = {(row[0], row[3]): dict(zip(table.columns, row, strict=True)) for row in table.rows}
-    robot, human_free = rows["left", "robot"], {kind for _, kind in rows}
-    assert (robot["to"], robot["distance"]) == ("right", pytest.approx(0.4, abs=0.01))
-    assert rows["right", "robot"]["distance"] == robot["distance"]
-    assert rows["left", "static"]["distance"] == pytest.approx(1.3, abs=0.01)
-    assert table.rows[0][1] == min(row[1] for row in table.rows if isinstance(row[1], float))
-    assert "robot" in human_free
+    rows = {(row[0], row[2]): dict(zip(table.columns, row, strict=True)) for row in table.rows}
+    assert set(rows) == {(a, b) for a in ("left", "right") for b in ("left", "right", "crate", "walker") if a != b}
+    assert rows["left", "right"]["edge_distance"] == pytest.approx(0.4, abs=0.01)
+    assert rows["right", "left"]["edge_distance"] == rows["left", "right"]["edge_distance"]
+    assert rows["left", "crate"]["edge_distance"] == pytest.approx(1.3, abs=0.01)
+    assert [rows["left", name]["kind"] for name in ("right", "walker", "crate")] == ["robot", "human", "static"]
+    distances = [row[1] for row in table.rows]
+    assert distances == sorted(distances)
     part = inspect_run(pair, view="closest", to_step=5)
     assert all(int(str(row[4])) <= 5 for row in part.rows)
+    walker = inspect_run(pair, view="closest", robot="walker")  # an obstacle that moves
+    assert {row[2]: row[1] for row in walker.rows}["left"] == rows["left", "walker"]["edge_distance"]
+
+
+def test_closest_tells_each_at_its_own_moment(workspace: Path) -> None:
+    posts = "".join(
+        f"  - {{name: post_{x}, shape: {{name: circle, radius: 0.2}}, state: [{x}, {2.0 + 0.1 * x:.1f}, 0]}}\n"
+        for x in range(2, 9)
+    )
+    text = "world: {width: 10, height: 6, time_limit: 9}\nrobot: {kinematics: {name: omni}, vel_max: [1, 1], shape: "
+    text += "{name: circle, radius: 0.2}, state: [1, 1, 0], goal: [9, 1, 0], behavior: {name: dash}}\n"
+    run = open_run(str(irsim.run(text=f"{text}obstacle:\n{posts}", seed=0, record=True).run_id))
+    table = inspect_run(run, view="closest", limit=None)
+    assert [row[2] for row in table.rows] == [f"post_{x}" for x in range(2, 7)]  # five of a kind
+    for x, row in enumerate(table.rows, start=2):
+        assert row[1] == pytest.approx(1.0 + 0.1 * x - 0.4, abs=0.01)
+        assert row[6] == pytest.approx(x, abs=0.06)
+
+
+def test_a_distance_that_is_no_touch_is_not_told_as_zero(pair: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    near = [Approach(3, 0.000012345, "crate", "static"), Approach(4, 0.0, "right", "robot")]
+    monkeypatch.setattr(inspection, "approaches", lambda *given, **more: [near, []])
+    assert [row[1] for row in inspect_run(pair, view="closest").rows] == [0.0, 1.2e-05]
+
+
+def test_speeds_tell_reversing_and_turning(workspace: Path) -> None:
+    text = (
+        "world: {width: 10, height: 6, time_limit: 2}\nrobot: {name: r, kinematics: {name: diff}, state: [5, 3, 0]}\n"
+    )
+    (workspace / "plain.yaml").write_text(text)
+    env = irsim.make(workspace / "plain.yaml", headless=True, display=False, log_level="ERROR")
+    recorder = Recorder(env.simulation, horizon=20, scenario=None, options={})
+    for speed, turn in [(0.5, 0.25)] * 5 + [(-0.25, -1.0)] * 5:
+        env.step(np.array([[speed], [turn]]))
+        recorder.look()
+    recorder.close()
+    env.end()
+    table = inspect_run(recorder.folder, view="speeds")
+    cells = dict(zip(table.columns, table.rows[0], strict=True))
+    assert (cells["max_speed"], cells["min_forward_speed"], cells["max_turn_rate"]) == (0.5, -0.25, 1.0)
+    forward = inspect_run(recorder.folder, view="speeds", to_step=5)
+    assert dict(zip(forward.columns, forward.rows[0], strict=True))["min_forward_speed"] == 0.5
 
 
 def test_speeds(pair: Run) -> None:
@@ -126,6 +171,7 @@ def test_speeds(pair: Run) -> None:
     way = float(np.linalg.norm(np.diff(trace.pose[:, 0, :2], axis=0), axis=1).sum())
     assert cells["path_length"] == pytest.approx(way, abs=1e-3)
     assert cells["max_speed"] == pytest.approx(1.0, abs=1e-3)
+    assert cells["min_forward_speed"] is None  # an omnidirectional drive has no forwards
     assert cells["mean_speed"] == pytest.approx(way / trace.time[-1], abs=1e-3)
     standing = inspect_run(pair, view="speeds", robot="walker")
     cells = dict(zip(standing.columns, standing.rows[0], strict=True))

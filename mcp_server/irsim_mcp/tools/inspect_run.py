@@ -16,10 +16,10 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
-    Look into a run to tell why it failed. view=collisions: who touched whom, where, how fast; closest: nearest
-    approaches of each robot; speeds: path, speed, longest stand; rows: `fields` step by step, spread over the run
-    unless `every` is given. Returns a table, in pages (next_cursor). Next: draw the moment with render_snapshot
-    run_id step.
+    Look into a run to tell why it failed. view=collisions: who touched whom, where, how fast; closest: whom each robot
+    came near, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest stand; rows:
+    `fields` step by step, spread over the run unless `every` is given. Returns a table, in pages (next_cursor). Next:
+    draw the moment with render_snapshot run_id step.
 """
 _LONGEST_CELL = 60
 _OTHER_TEXT = 2000
@@ -35,16 +35,14 @@ Column = Literal[
 
 
 class Table(BaseModel):
-    """Part of a run: m, s, rad."""
+    """m, s, rad."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="allow")  # what else `irsim inspect --json` has
 
     summary: str
     columns: list[str]
     rows: list[list[Cell]]
     total: int
-    every: int
-    next_cursor: str | None = None
     next: str
 
 
@@ -75,9 +73,10 @@ def tool(services: Services) -> StrictTool:
             limit=limit,
             cursor=cursor,
         )
-        table = _table(_fitting(found, cursor, services.limits.text), view)
-        text = TextContent(type="text", text=_text(table))
-        return CallToolResult(content=[text], structured_content=table.model_dump(exclude_none=True))
+        found = _fitting(found, cursor, services.limits.text)
+        table = _table(found, view)
+        text = TextContent(type="text", text=_text(table, found))
+        return CallToolResult(content=[text], structured_content=table.model_dump())
 
     return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
 
@@ -92,17 +91,9 @@ def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, 
 
 
 def _table(found: dict[str, Any], view: str) -> Table:
-    ended = found["status"] if found["outcome"] is None else found["outcome"]
     rows = [[clean(cell, _LONGEST_CELL) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
-    return Table(
-        summary=f"{ended}: {clean(found['summary'], 300)}",
-        columns=found["columns"],
-        rows=rows,
-        total=found["total"],
-        every=found["every"],
-        next_cursor=found["next_cursor"],
-        next=_advice(found, view, rows),
-    )
+    changed = {"summary": clean(found["summary"], 300), "rows": rows, "next": _advice(found, view, rows)}
+    return Table(**{**found, **changed})
 
 
 def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
@@ -116,9 +107,10 @@ def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
     return f"Look at a moment with render_snapshot run_id={found['run_id']} step=N, then change the scenario."
 
 
-def _text(table: Table) -> str:
+def _text(table: Table, found: dict[str, Any]) -> str:
     """The table in words; it says all that the structure says."""
-    lines = [table.summary, ", ".join(table.columns)]
+    ended = found["status"] if found["outcome"] is None else found["outcome"]
+    lines = [f"{ended}: {table.summary}", ", ".join(table.columns)]
     lines += [", ".join("-" if cell is None else str(cell) for cell in row) for row in table.rows]
-    spread = f", every {table.every} steps" if table.every > 1 else ""
+    spread = f", every {found['every']} steps" if found["every"] > 1 else ""
     return "\n".join([*lines, f"{len(table.rows)} of {table.total} rows{spread}", f"Next: {table.next}"])
