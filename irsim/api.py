@@ -19,7 +19,7 @@ from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.snapshot import snapshot
 from irsim.validation import diff, fix, validate
-from irsim.verdict import command, run_result
+from irsim.verdict import command, region_words, run_result
 
 __all__ = [
     "default_time_limit",
@@ -103,6 +103,7 @@ def render(
     seed: int | None = None,
     steps: int | None = None,
     size: int | None = None,
+    region: Sequence[float] | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
     limits: Limits | None = None,
@@ -116,19 +117,22 @@ def render(
         seed: Over the file's.
         steps: Steps before the picture (default 0: the start), or the longest an animation goes on.
         size: Longer side of the picture [px]; default from ``world.plot``.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.
         limits: Limits of the loader.
         progress: Told how far it is.
 
     Raises:
-        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes.
+        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes, a region that is none.
     """
     target = Path(out)
     import_modules(imports)
     scenario, warnings = read_scenario(path, strict=strict, limits=limits)
     animated = target.suffix.lower() in VIDEO_SUFFIXES
     env = Env(scenario, seed=seed, display=False, log_level="ERROR")
+    if region is not None:
+        env._env_plot.set_region(region)
     if size is not None:
         env._env_plot.set_size(size)
     if animated:
@@ -138,7 +142,7 @@ def render(
     else:
         advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
-    sized = [] if size is None else ["--size", str(size)]
+    sized = [*([] if size is None else ["--size", str(size)]), *region_words(region)]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,

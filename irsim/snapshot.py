@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -13,7 +13,7 @@ from irsim.results import Finding, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
-from irsim.verdict import command
+from irsim.verdict import command, region_words
 
 __all__ = ["OVERLAYS", "Overlay", "drawn", "snapshot", "snapshot_of"]
 
@@ -35,6 +35,7 @@ def snapshot(
     steps: int | None = 0,
     size: int = 600,
     overlays: Iterable[Overlay] | None = None,
+    region: Sequence[float] | None = None,
     draw: bool = True,
     strict: bool = False,
     limits: Limits | None = None,
@@ -50,6 +51,7 @@ def snapshot(
         size: Longer side of the picture [px].
         overlays: What to show besides bodies, see :data:`OVERLAYS`; by default names, goals and paths, and of sensors
             what the scenario says.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         draw: Make the picture too.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader and of the run.
@@ -58,7 +60,7 @@ def snapshot(
     Raises:
         ScenarioError: The scenario cannot be used; ScenarioNotFoundError: there is none.
         OverLimitError: More steps are asked for than the limits allow.
-        ValueError: Neither or both of ``path`` and ``text``.
+        ValueError: Neither or both of ``path`` and ``text``; a region that is none.
     """
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
     return snapshot_of(
@@ -69,6 +71,7 @@ def snapshot(
         steps=steps,
         size=size,
         overlays=overlays,
+        region=region,
         draw=draw,
         strict=strict,
         limits=limits,
@@ -85,18 +88,26 @@ def snapshot_of(
     steps: int | None = 0,
     size: int = 600,
     overlays: Iterable[Overlay] | None = None,
+    region: Sequence[float] | None = None,
     draw: bool = True,
     strict: bool = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> SnapshotResult:
     """The same of a scenario that has been read, with what was odd about it; ``path`` is only told."""
+    if region is not None:
+        from irsim.render.scene import region_extent
+
+        region_extent(region)  # before much work is done
     env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
     horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     advance(env, horizon, progress, until_done=steps is None)
     count = int(env.simulation.count[0])
-    again = command("render", path, env.seed, count, strict, extra=["--size", str(size), "-o", "snapshot.png"])
-    result = drawn(env, path, size=size, overlays=overlays, draw=draw, warnings=warnings, reproduce=again)
+    extra = ["--size", str(size), *region_words(region), "-o", "snapshot.png"]
+    again = command("render", path, env.seed, count, strict, extra=extra)
+    result = drawn(
+        env, path, size=size, overlays=overlays, region=region, draw=draw, warnings=warnings, reproduce=again
+    )
     env.end(ending_time=0.0)
     return result
 
@@ -107,6 +118,7 @@ def drawn(
     *,
     size: int,
     overlays: Iterable[Overlay] | None,
+    region: Sequence[float] | None = None,
     draw: bool,
     warnings: list[Finding],
     reproduce: str,
@@ -119,7 +131,7 @@ def drawn(
 
         shown = None if overlays is None else set(overlays)
         keys = {} if shown is None else {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
-        png = render_scene(env.simulation, size_px=size, overrides=keys)
+        png = render_scene(env.simulation, size_px=size, region=region, overrides=keys)
         pixels = _size_of(png)
     x, y, right, top = scenario.world.bounds
     return SnapshotResult(

@@ -114,6 +114,11 @@ def command(
     return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
 
 
+def region_words(region: Sequence[float] | None) -> list[str]:
+    """The option of ``irsim render`` for the part of the world that is shown."""
+    return [] if region is None else ["--region", *(f"{float(value):g}" for value in region)]
+
+
 def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotResult]:
     outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")

@@ -27,6 +27,10 @@ def render(
         ),
     ] = None,
     size: Annotated[int | None, typer.Option(min=64, max=8192, help="Longer side of the picture in pixels.")] = None,
+    region: Annotated[
+        tuple[float, float, float, float] | None,
+        typer.Option(metavar="X_MIN Y_MIN X_MAX Y_MAX", help="The part of the world to show, in metres."),
+    ] = None,
     json_output: Json = False,
     strict: Strict = False,
     imports: Imports = None,
@@ -51,6 +55,7 @@ def render(
             seed=seed,
             steps=steps,
             size=size,
+            region=region,
             strict=strict,
             imports=imports or (),
             limits=limits_for(max_objects),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ from irsim.render.plot_steps import PlotSteps
 from irsim.render.png import png_bytes
 from irsim.render.pyplot_entry import PyplotEntry, activate, active
 from irsim.render.recording import Pictured, Recording
-from irsim.render.scene import Scene
+from irsim.render.scene import Scene, region_extent
 from irsim.render.style import STYLE_KEYS
 from irsim.render.user_sensors import UserSensors
 from irsim.views import views
@@ -105,6 +105,7 @@ class EnvPlot(PlotSteps):
         self._recording = Recording(env)
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
+        self._region: tuple[float, float, float, float] | None = None
         self._saved_size: tuple[int, int] | None = None
         self._entry: PyplotEntry | None = None
         self._frame = 0
@@ -152,9 +153,18 @@ class EnvPlot(PlotSteps):
             raise ValueError(f"the size must be positive, not {longer_side}")
         if self._figure is not None:
             raise ValueError("the size can only be set before the first drawing")
-        world, axis = self.env.simulation.scenario.world, not self._options.no_axis
-        self._size = fitting_size(world.width, world.height, longer_side, self._dpi, axis=axis)
+        world = self.env.simulation.scenario.world
+        x0, x1, y0, y1 = self._region or (0.0, world.width, 0.0, world.height)
+        self._size = fitting_size(x1 - x0, y1 - y0, longer_side, self._dpi, axis=not self._options.no_axis)
         self.saved_figure_kwargs["bbox_inches"] = None
+
+    def set_region(self, region: Sequence[float]) -> None:
+        """Show only a part of the world: x_min, y_min, x_max, y_max [m]; call it before ``set_size``.
+
+        Raises:
+            ValueError: It is none.
+        """
+        self._region = region_extent(region)
 
     def _made(self) -> SceneFigure:
         if self._figure is None:
@@ -253,6 +263,8 @@ class EnvPlot(PlotSteps):
         scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
+        if self._region is not None:
+            scene.look_at(self._region)
         return self._without_hidden(scene)
 
     def _title(self) -> str | None:

@@ -7,13 +7,14 @@ radians, colours as the user wrote them; ``zorder`` is the layer, higher ones co
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.errors import IrsimError
 from irsim.render.palette import Color
 
 __all__ = [
@@ -29,9 +30,11 @@ __all__ = [
     "Mark",
     "Picture",
     "Region",
+    "RegionError",
     "Scene",
     "Sector",
     "Stroke",
+    "region_extent",
 ]
 
 Floats = NDArray[np.float64]
@@ -77,6 +80,27 @@ class Sector:
 Geometry = Circle | Region | Line | Sector
 
 _OCCUPIED = 50
+_CORNERS, _FARTHEST, _SMALLEST = 4, 1e7, 1e-3
+
+
+class RegionError(IrsimError, ValueError):
+    """What was given is no part of a world to look at.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
+        fix: What to give instead.
+    """
+
+    code = "bad-argument"
+
+    def __init__(self, corners: Sequence[float]) -> None:
+        given = ", ".join(f"{value:g}" for value in corners)
+        self.message, self.fix = (
+            f"there is no region {given}",
+            "give x_min, y_min, x_max, y_max in metres, in this order",
+        )
+        super().__init__(f"{self.code}: {self.message}. Fix: {self.fix}.")
 
 
 @dataclass(slots=True, eq=False)
@@ -219,6 +243,10 @@ class Scene:
     fog: Fog | None = None
     grids: list[GridImage] = field(default_factory=list)
 
+    def look_at(self, extent: tuple[float, float, float, float]) -> None:
+        """Show this instead: x from, x to, y from, y to."""
+        self.extent, self.center = extent, None
+
     def of(self, object_id: int, part: str) -> Iterator[Mark]:
         """The marks that show ``part`` of one object."""
         return (mark for mark in self.marks if mark.object == object_id and mark.part == part)
@@ -227,6 +255,20 @@ class Scene:
         """The scene as lists, mappings, numbers and text; geometries carry their kind."""
         plain: dict[str, Any] = _plain(self)
         return plain
+
+
+def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
+    """X from, x to, y from, y to of a part of a world given as x_min, y_min, x_max, y_max [m].
+
+    Raises:
+        ValueError: It is none.
+    """
+    corners = [float(value) for value in region]
+    if len(corners) == _CORNERS and all(abs(value) <= _FARTHEST for value in corners):
+        x0, y0, x1, y1 = corners
+        if x1 - x0 >= _SMALLEST and y1 - y0 >= _SMALLEST:
+            return x0, x1, y0, y1
+    raise RegionError(corners)
 
 
 def _plain(value: Any) -> Any:

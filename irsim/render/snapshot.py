@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from irsim.render.layers import opaque_colors
 from irsim.render.legible import make_legible, small_bodies
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import to_image
+from irsim.render.scene import region_extent
 
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
@@ -34,6 +35,7 @@ def render_scene(
     labels: bool = True,
     title: str | None = None,
     viewpoint: Any = None,
+    region: Sequence[float] | None = None,
     overrides: Mapping[str, Any] | None = None,
 ) -> bytes:
     """Draw one world as a PNG of few colours (some 20 kB).
@@ -46,25 +48,28 @@ def render_scene(
         labels: Name objects (robots first, where there are many), and draw paths and goals.
         title: Text above; default: the time.
         viewpoint: Point or object name to centre on; default: what the scenario says.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         overrides: Object plot keys.
 
     Returns:
         The PNG file.
     """
-    options, extent = simulation.scenario.world.plot, simulation.scenario.world
-    source = simulation.scenario.source
+    options, source = simulation.scenario.world.plot, simulation.scenario.source
     pictures = Pictures(Path(source).parent if source else None)
     builder = SceneBuilder(simulation, world=world, has_picture=pictures.has)
     chosen = {"show_text": True, "show_goal": True, "show_goal_text": True, "show_trajectory": True} if labels else {}
     scene = builder.build(
         viewpoint=options.viewpoint if viewpoint is None else viewpoint, overrides={**chosen, **(overrides or {})}
     )
-    if scene.center is not None:
-        (x, y), (x0, x1, y0, y1) = scene.center, scene.extent
-        scene.extent = x - (x1 - x0) / 2, x + (x1 - x0) / 2, y - (y1 - y0) / 2, y + (y1 - y0) / 2
-        scene.center = None
+    if region is not None:
+        scene.look_at(region_extent(region))
+    elif scene.center is not None:
+        x0, x1, y0, y1 = scene.extent
+        (x, y), right, up = scene.center, (x1 - x0) / 2, (y1 - y0) / 2
+        scene.look_at((x - right, x + right, y - up, y + up))
     make_legible(scene, simulation, world)
-    size = fitting_size(extent.width, extent.height, size_px, _DPI)
+    x0, x1, y0, y1 = scene.extent
+    size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
     figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
     figure.show(scene, f"{scene.time:.2f} s" if title is None else title, small_bodies(scene))
     pixels, _ = figure.pixels(tight=False)

@@ -168,6 +168,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
         run.meta.get("scenario"),
         size=arguments["size"],
         overlays=arguments["overlays"],
+        region=arguments["region"],
         draw=arguments["draw"],
         warnings=[],
         reproduce="",

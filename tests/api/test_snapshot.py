@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from irsim.api import snapshot
-from irsim.errors import OverLimitError
+from irsim.errors import IrsimError, OverLimitError
 from irsim.scenario.limits import Limits
 
 SCENE = """\
@@ -49,6 +49,22 @@ def test_later_and_to_the_end() -> None:
     end = snapshot(text=SCENE, steps=None, draw=False)
     assert end.robots[0].status == "arrived"
     assert end.png == b""
+
+
+def test_a_part_of_the_world() -> None:
+    part = snapshot(text=SCENE, region=[4, 1, 7, 4], size=400, seed=1)
+    assert "--size 400 --region 4 1 7 4 -o" in part.reproduce
+    assert part.size[0] == pytest.approx(part.size[1], abs=60)
+    assert part.extent == snapshot(text=SCENE, draw=False).extent, "the world stays the same"
+    with Image.open(io.BytesIO(part.png)) as image:
+        black = sum(count for count, color in image.convert("RGB").getcolors() or [] if color == (0, 0, 0))
+        assert black > 2 * 50 * 25, "the crate is three times as large"
+
+
+@pytest.mark.parametrize("region", [[0, 0, 1], [2, 0, 1, 1], [0, 0, 0, 1], [0, 0, float("inf"), 1], [float("nan")] * 4])
+def test_no_part_of_any_world(region: list[float]) -> None:
+    with pytest.raises(IrsimError, match="x_min, y_min, x_max, y_max"):
+        snapshot(text=SCENE, region=region)
 
 
 def test_overlays_can_be_left_out() -> None:

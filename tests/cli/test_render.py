@@ -29,6 +29,23 @@ def test_size_is_the_longer_side(irsim: Run, room: Path) -> None:
     assert "--size 400" in data["reproduce"]
 
 
+@pytest.mark.parametrize("suffix", ["png", "gif"])
+def test_a_part_of_the_world(irsim: Run, room: Path, suffix: str) -> None:
+    region = ["--region", "-1", "0.5", "1", "1.5", "--size", "400", "--steps", "2"]
+    data = parsed(irsim("render", "room.yaml", "-o", f"part.{suffix}", *region, "--json"))
+    width, height = data["size"]
+    assert width == 400
+    assert height < 300
+    assert "--region -1 0.5 1 1.5" in data["reproduce"]
+
+
+def test_no_part_of_any_world(irsim: Run, room: Path) -> None:
+    result = irsim("render", "room.yaml", "-o", "part.png", "--region", "1", "0", "1", "5")
+    assert result.exit_code == 2
+    assert "bad-argument" in result.output
+    assert "x_min, y_min, x_max, y_max" in result.output
+
+
 def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Path, tmp_path: Path) -> None:
     assert irsim("render", "room.yaml", "-o", "room.mp4", "--steps", "5").exit_code == 0
     assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"

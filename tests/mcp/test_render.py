@@ -53,6 +53,18 @@ async def test_overlays(empty: Path) -> None:
     assert "names, goals, paths, sensors" in error_of(bad)
 
 
+async def test_region(empty: Path) -> None:
+    async with connected(empty) as client:
+        whole, part = [
+            image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, **keys})).data
+            for keys in ({}, {"region": [0, 0, 2, 2]})
+        ]
+        bad = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "region": [2, 0, 1, 1]})
+    assert whole != part
+    assert "bad-argument" in error_of(bad)
+    assert "x_min, y_min, x_max, y_max" in error_of(bad)
+
+
 async def test_settings_of_the_workspace_have_no_effect(workspace: Path) -> None:
     """A matplotlibrc could switch on LaTeX, which runs programs."""
     (workspace / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: 123456\n", encoding="utf-8")

@@ -20,11 +20,10 @@ __all__ = ["tool"]
 
 _DESCRIPTION = """
     Draw one moment of a scenario as a PNG and look at it: bodies, yellow arrows (heading; omni: where it moves), goals
-    (pale), names, lidar beams, paths driven. Use it once a scenario is valid, and after a run that failed. Step 0
-    is the start: do things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated
-    first (of a run_id too, the same again); -1 is the end of the episode, with the path of every robot. Returns one
-    line of text, which says what the labels r0, G-r0 (its goal) stand for and where the robots are, and the image;
-    writes no file. Next: edit and validate again, or run_episode.
+    (pale), names, lidar beams, paths. Use it once a scenario is valid, and after a failed run. Step 0 is the start: do
+    things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first. Returns one line
+    of text (what the labels r0, G-r0 (its goal) stand for, where the robots are) and the image; writes no file.
+    Next: edit and validate again, or run_episode.
 """
 _NAMED = 10
 
@@ -46,9 +45,11 @@ def tool(services: Services) -> StrictTool:
         ] = 600,
         overlays: Annotated[
             list[Literal["names", "goals", "paths", "sensors"]] | None,
-            Field(
-                description="What to draw besides bodies. Default: names, goals, paths; sensors as the scenario says."
-            ),
+            Field(description="Besides bodies. Default: names, goals, paths; sensors as the scenario says."),
+        ] = None,
+        region: Annotated[
+            list[float] | None,
+            Field(min_length=4, max_length=4, description="Zoom in: [x_min, y_min, x_max, y_max] in m."),
         ] = None,
         return_image: Annotated[bool, Field(description="false: only the line of text.")] = True,
     ) -> list[TextContent | ImageContent]:
@@ -58,6 +59,7 @@ def tool(services: Services) -> StrictTool:
             "steps": None if step == -1 else step,
             "size": size_px,
             "overlays": overlays,
+            "region": region,
             "draw": return_image,
         }
         if run_id is None:
