@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from irsim.env import Env
 from irsim.episode import (
@@ -13,10 +14,12 @@ from irsim.episode import (
     horizon_of,
     import_modules,
     read_scenario,
+    seed_of,
 )
 from irsim.results import RenderResult, RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.rewrite import yaml_flow
 from irsim.snapshot import snapshot
 from irsim.validation import diff, fix, validate
 from irsim.verdict import command, region_words, run_result
@@ -43,6 +46,7 @@ def run(
     seed: int | None = None,
     steps: int | None = None,
     strict: bool = False,
+    behavior: str | Mapping[str, Any] | None = None,
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,
@@ -56,9 +60,11 @@ def run(
     Args:
         path: Scenario file.
         text: Or its text.
-        seed: Over the file's; with neither, fresh entropy (reported).
+        seed: Over the file's; with neither, fresh entropy (reported), or 0 where nothing is random.
         steps: Horizon in steps, over ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
+        behavior: What every robot follows instead of its own: a name, or a mapping with options (in Python or as YAML
+            text, such as ``{name: orca, timeHorizon: 5}``).
         imports: Modules to import first, for behaviors they register.
         save: Also write an animation here (gif, mp4, apng, …).
         show: Also show it live in a window.
@@ -72,14 +78,18 @@ def run(
     Raises:
         ScenarioError: The file cannot be used; ScenarioNotFoundError: there is none.
         OverLimitError: More steps are asked for than the limits allow.
+        BenchmarkError: There is no such behavior.
         RunError: The folder to record into holds something already.
         ValueError: Neither or both of ``path`` and ``text``.
     """
     import_modules(imports)
-    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
-    env = Env(scenario, seed=seed, display=show, headless=save is None and not show, log_level="ERROR")
+    told = _as_text(behavior)
+    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=told)
+    chosen = seed_of(scenario, seed)
+    env = Env(scenario, seed=chosen, display=show, headless=save is None and not show, log_level="ERROR")
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    with recording(env, path, record, horizon=horizon, strict=strict, imports=imports) as recorder:
+    options = {"strict": strict, "imports": list(imports), **({} if told is None else {"behavior": told})}
+    with recording(env, path, record, horizon=horizon, options=options) as recorder:
         if recorder is not None and recorded is not None:
             recorded(recorder.folder.name)
         if save is None and not show:
@@ -88,12 +98,30 @@ def run(
         else:
             files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
         result = run_result(
-            env, path, horizon=horizon, source=source, warnings=warnings, files=files, imports=imports, strict=strict
+            env,
+            path,
+            horizon=horizon,
+            source=source,
+            warnings=warnings,
+            files=files,
+            imports=imports,
+            strict=strict,
+            behavior=told,
         )
         if recorder is not None:
             recorder.finish(result)
     env.end(ending_time=0.0)
     return result
+
+
+def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
+    """A behavior for all robots as a command line has it; None for their own."""
+    if behavior is None:
+        return None
+    from irsim.benchmarks.variant import AS_WRITTEN
+
+    text = behavior.strip() if isinstance(behavior, str) else yaml_flow(behavior)
+    return None if text == AS_WRITTEN else text
 
 
 def render(
@@ -130,7 +158,7 @@ def render(
     import_modules(imports)
     scenario, warnings = read_scenario(path, strict=strict, limits=limits)
     animated = target.suffix.lower() in VIDEO_SUFFIXES
-    env = Env(scenario, seed=seed, display=False, log_level="ERROR")
+    env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
         env._env_plot.set_region(region)
     if size is not None:
@@ -151,7 +179,7 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
-        reproduce=command("render", path, env.seed, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        reproduce=command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result

@@ -11,7 +11,7 @@ from irsim.description import describe_world
 from irsim.diagnostics import Path, format_path
 from irsim.env import Env
 from irsim.errors import PlacementError
-from irsim.results import KeyChange, ScenarioDiff, WorldChange
+from irsim.results import CommentChange, KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.load import Document
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.read import Reading
@@ -25,6 +25,19 @@ _SHIFTING = ("name", "entry", "index", "group")
 """Of an object's description: numbers and names that shift when others come or go."""
 _NUMBERED = re.compile(r"(robot|obstacle)_\d+\Z")
 _NAMED = 6
+_EDITED = 0.5
+"""Comments that are more alike than that are one that was edited."""
+_BEHAVIORS = ("behavior", "group_behavior")
+_WRITTEN = {
+    "pose": ("state",),
+    "goals": ("goal",),
+    "wheelbase": ("wheelbase", "kinematics.wheelbase", "shape.wheelbase"),
+    **{
+        key: tuple(f"{behavior}.{key}" for behavior in _BEHAVIORS)
+        for key in ("wander", "loop", "range_low", "range_high", "target_roles")
+    },
+}
+"""Keys that a fact is written with, where they are called otherwise."""
 
 Pairs = list[tuple[int | None, int | None]]
 
@@ -41,19 +54,21 @@ def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
     worlds, why = None, "one of the scenarios is invalid"
     if a.scenario is not None and b.scenario is not None:
         try:
-            worlds = _worlds(a.scenario, b.scenario, _entry_pairs(a.document, b.document), seed)
+            worlds = _worlds(a.scenario, b.scenario, _entry_pairs(a.document, b.document), seed, keys)
         except PlacementError as error:
             why = error.diagnostics[0].message
     lines = _lines(a.document.text, b.document.text)
-    lost = _lost_comments(a.document.text, b.document.text)
+    lost, edited = _comments_gone(a.document.text, b.document.text)
+    comments = bool(_comments(a.document.text or ""))
     return ScenarioDiff(
         before=a.document.name or "(text)",
         after=b.document.name or "(text)",
         same=not keys and not worlds,
-        summary=_summary(keys, worlds, why, lost),
+        summary=_summary(keys, worlds, why, _comments_told(comments, lost, edited)),
         keys=keys,
         world=worlds,
         comments_lost=lost,
+        comments_changed=edited,
         lines_removed=lines[0],
         lines_added=lines[1],
     )
@@ -180,27 +195,77 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 
 def _worlds(
-    a: ResolvedScenario, b: ResolvedScenario, pairs: Mapping[str, Pairs], seed: int | None
+    a: ResolvedScenario,
+    b: ResolvedScenario,
+    pairs: Mapping[str, Pairs],
+    seed: int | None,
+    keys: Sequence[KeyChange],
 ) -> list[WorldChange]:
     old, new = _described(a, seed), _described(b, seed)
     changes = [
-        WorldChange(object=None, change="changed", key=key, before=before, after=after)
-        for key, before, after in _facts(old["world"], new["world"], "")
+        WorldChange(object=None, change="changed", key=k, before=was, after=now, direct=_direct("world", k, now, keys))
+        for k, was, now in _facts(old["world"], new["world"], "")
     ]
     twins = _twins(old["objects"], new["objects"], pairs)
     gone = set(range(len(old["objects"]))) - {i for i, _ in twins}
     come = set(range(len(new["objects"]))) - {j for _, j in twins}
     for i in sorted(gone):
-        changes.append(
-            WorldChange(object=old["objects"][i]["name"], change="removed", before=_brief(old["objects"][i]))
-        )
+        item = old["objects"][i]
+        direct = _alone(item, "removed", old["objects"], keys)
+        changes.append(WorldChange(object=item["name"], change="removed", before=_brief(item), direct=direct))
     for j in sorted(come):
-        changes.append(WorldChange(object=new["objects"][j]["name"], change="added", after=_brief(new["objects"][j])))
+        item = new["objects"][j]
+        direct = _alone(item, "added", new["objects"], keys)
+        changes.append(WorldChange(object=item["name"], change="added", after=_brief(item), direct=direct))
     for i, j in sorted(twins, key=lambda pair: pair[1]):
-        name = new["objects"][j]["name"]
-        facts = list(_object_facts(old["objects"][i], new["objects"][j]))
-        changes += [WorldChange(object=name, change="changed", key=k, before=was, after=now) for k, was, now in facts]
+        name, entry = new["objects"][j]["name"], _listed(new["objects"][j]["entry"])
+        changes += [
+            WorldChange(
+                object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, keys)
+            )
+            for k, was, now in _object_facts(old["objects"][i], new["objects"][j])
+        ]
     return changes
+
+
+def _direct(entry: str, fact: str, now: Any, keys: Sequence[KeyChange]) -> bool:
+    """Whether a fact only repeats a key that was written."""
+    root = re.split(r"[.\[]", fact, maxsplit=1)[0]
+    for written in _WRITTEN.get(root, (root,)):
+        place = f"{entry}.{written}{fact[len(root) :]}"
+        for key in keys:
+            if key.change != "removed" and key.path == place:
+                return _says(key.after, now)
+            if key.path.startswith((f"{place}.", f"{place}[")):  # a part of what is told as a whole
+                return True
+            if key.change != "removed" and place.startswith((f"{key.path}.", f"{key.path}[")):
+                return True
+    return False
+
+
+def _says(written: Any, fact: Any) -> bool:
+    """Whether a fact has the numbers that were written first; other things are what was written."""
+    if isinstance(written, list) and written and all(isinstance(item, list) for item in written):
+        return isinstance(fact, list) and len(fact) == len(written) and all(map(_says, written, fact))
+    ours, theirs = list(_numbers(written)), list(_numbers(fact))
+    if not ours or not theirs:
+        return True
+    return len(ours) <= len(theirs) and all(abs(x - y) <= 1e-6 for x, y in zip(ours, theirs, strict=False))
+
+
+def _numbers(value: Any) -> Iterator[float]:
+    if isinstance(value, list):
+        for item in value:
+            yield from _numbers(item)
+    elif isinstance(value, (int, float)) and not isinstance(value, bool):
+        yield float(value)
+
+
+def _alone(item: Mapping[str, Any], change: str, objects: Sequence[Any], keys: Sequence[KeyChange]) -> bool:
+    """Whether an object that came or went is all that an entry stands for."""
+    entry = _listed(item["entry"])
+    told = any((key.change, key.path) == (change, entry) for key in keys)
+    return told and sum(_listed(other["entry"]) == entry for other in objects) == 1
 
 
 def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:
@@ -280,17 +345,40 @@ def _lines(a: str | None, b: str | None) -> tuple[int, int]:
     return sum(line.startswith("-") for line in found), sum(line.startswith("+") for line in found)
 
 
-def _lost_comments(a: str | None, b: str | None) -> list[str]:
+def _comments_gone(a: str | None, b: str | None) -> tuple[list[str], list[CommentChange]]:
+    """Comments that are gone, and those that say something else now."""
     if a is None or b is None:
-        return []
+        return [], []
     left = _comments(b)
-    lost = []
+    gone = []
     for comment in _comments(a):
         if comment in left:
             left.remove(comment)
         else:
+            gone.append(comment)
+    lost, edited = [], []
+    few = len(gone) * len(left) <= 1_000
+    for comment in gone:
+        alike = {new: difflib.SequenceMatcher(None, comment, new, False).ratio() for new in left} if few else {}
+        twin = max(alike, key=lambda new: alike[new], default=None)
+        if twin is None or alike[twin] <= _EDITED:
             lost.append(comment)
-    return lost
+        else:
+            left.remove(twin)
+            edited.append(CommentChange(before=comment, after=twin))
+    return lost, edited
+
+
+def _comments_told(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:
+    """What became of the comments, in words; empty if there were none."""
+    told = [
+        f"{len(found)} comment{'s' * (len(found) != 1)} {what}"
+        for what, found in (("lost", lost), ("changed", edited))
+        if found
+    ]
+    if there and not lost:
+        told.insert(0, "no comment lost")
+    return ", ".join(told)
 
 
 def _comments(text: str) -> list[str]:
@@ -299,7 +387,7 @@ def _comments(text: str) -> list[str]:
     return [text[m.start() : m.end()].strip() for m in re.finditer(r"(?:(?<=\s)|^)#.*", bare, re.MULTILINE)]
 
 
-def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why: str, lost: Sequence[str]) -> str:
+def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why: str, comments: str) -> str:
     if not keys:
         text = "no key differs"
     else:
@@ -309,9 +397,10 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
     if world is None:
         text += f"; the worlds are not compared: {why}"
     else:
-        objects = list(dict.fromkeys(change.object or "the world" for change in world))
-        named = ", ".join(objects[:_NAMED]) + (f" and {len(objects) - _NAMED} more" if len(objects) > _NAMED else "")
-        text += f"; in the world: {named}" if objects else "; the worlds are the same"
-    if lost:
-        text += f"; {len(lost)} comment{'s' * (len(lost) != 1)} lost"
-    return text
+        further = list(dict.fromkeys(change.object or "the world" for change in world if not change.direct))
+        named = ", ".join(further[:_NAMED]) + (f" and {len(further) - _NAMED} more" if len(further) > _NAMED else "")
+        if further:
+            text += f"; which also changes {named}" if keys else f"; in the world: {named}"
+        elif not world:
+            text += "; the worlds are the same"
+    return text + (f"; {comments}" if comments else "")

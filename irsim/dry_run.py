@@ -16,6 +16,9 @@ from irsim.observers.trace import Trace, record
 from irsim.results import DryRun, EventRecord, Left, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
+from irsim.scenario.randomness import random_parts
+from irsim.text import seconds
+from irsim.verdict import others_arrived
 
 __all__ = ["BUDGET", "dry_run"]
 
@@ -81,10 +84,11 @@ def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon
         ended = "horizon"
     return DryRun(
         seed=seed,
+        random=random_parts(scenario),
         steps=steps,
         sim_time=float(trace.time[-1]),
         ended=ended,
-        summary=_summary(trace, len(robots), arrived, hits, stuck, left, ended),
+        summary=_summary(trace, len(robots), arrived, hits, stuck, left, others_arrived(scenario, events), ended),
         arrived=arrived,
         collisions=[EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MOST]],
         stuck=stuck,
@@ -122,11 +126,11 @@ def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]
         hit = next((e for e in events if e.kind == "collision" and record.name in (e.object, e.partner)), None)
         if hit is not None:
             other = hit.partner if hit.object == record.name else hit.object
-            return f"it hit '{other}' at {hit.time:.1f} s"
+            return f"it hit '{other}' at {seconds(hit.time)}"
     if record.kinematics is None or record.static:
         return "it is static" if record.kinematics is not None else "it has no kinematics"
     if record.behavior is None and record.group_behavior is None:
-        return "it has no behavior: a program has to drive it"
+        return "it has no behavior (none needed if it is meant to stand or a program drives it)"
     if not any(record.vel_max):
         return "its vel_max is zero"
     if any(e.kind == "no_path" and e.object == record.name for e in events):
@@ -172,21 +176,25 @@ def _summary(
     hits: Sequence[Event],
     stuck: Sequence[Stuck],
     left: Sequence[Left],
+    others: str | None,
     ended: str,
 ) -> str:
     more = ", more was not tried" if ended == "budget" else ""
     parts = [
-        f"in {trace.time[-1]:.1f} s{more}: " + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots")
+        f"in {seconds(trace.time[-1])}{more}: "
+        + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots")
     ]
     if hits:
         first = hits[0]
         count = f"{len(hits)} collisions, the first of " if len(hits) > 1 else "collision of "
-        place = f"at {first.time:.1f} s near ({first.x:.2f}, {first.y:.2f})"
+        place = f"at {seconds(first.time)} near ({first.x:.2f}, {first.y:.2f})"
         parts.append(f"{count}'{first.object}' with '{first.partner}' {place}")
     if stuck:
-        parts.append(f"'{stuck[0].name}' stands since {stuck[0].since:.1f} s: {stuck[0].why}")
+        parts.append(f"'{stuck[0].name}' stands since {seconds(stuck[0].since)}: {stuck[0].why}")
     if len(stuck) > 1:
         parts.append(f"{len(stuck) - 1} more stand still")
+    if others:
+        parts.append(others)
     if left:
-        parts.append(f"'{left[0].name}' left the world at {left[0].time:.1f} s")
+        parts.append(f"'{left[0].name}' left the world at {seconds(left[0].time)}")
     return "; ".join(parts)

@@ -16,10 +16,11 @@ from irsim.errors import OverLimitError
 from irsim.results import Edit as EditRecord
 from irsim.results import Finding, HorizonSource
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.load import Document, load_text
+from irsim.scenario.load import Document, load_path, load_text
 from irsim.scenario.locate import locate
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
+from irsim.scenario.randomness import random_parts
 from irsim.scenario.read import read
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ __all__ = [
     "horizon_of",
     "import_modules",
     "read_scenario",
+    "seed_of",
     "source_of",
 ]
 
@@ -59,17 +61,48 @@ def import_modules(names: Iterable[str]) -> None:
 
 
 def read_scenario(
-    path: str | Path | None = None, *, text: str | None = None, strict: bool, limits: Limits | None = None
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    strict: bool,
+    limits: Limits | None = None,
+    behavior: str | None = None,
 ) -> tuple[ResolvedScenario, list[Finding]]:
     """A scenario ready to build, with what is odd about it; from a file or a text.
 
+    Args:
+        path: The file.
+        text: Or the text.
+        strict: Refuse what IR-SIM would ignore.
+        limits: Limits of the loader.
+        behavior: What every robot is to follow instead of its own, see :func:`irsim.benchmarks.variant.behavior_of`.
+
     Raises:
         ScenarioError: It cannot be used.
+        BenchmarkError: There is no such behavior.
         ValueError: Neither or both of ``path`` and ``text``.
     """
     source = source_of(path, text, limits)
+    if behavior is not None:
+        from irsim.benchmarks.variant import BenchmarkError, behavior_of, check_known, read_with_behavior
+
+        try:
+            check_known(behavior)
+        except BenchmarkError as error:
+            error.where = "behavior"
+            raise
+        document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
+        scenario, diagnostics = read_with_behavior(document, behavior_of(behavior), strict=strict)
+        scenario.text = document.text  # what was given, for the record of a run
+        return scenario, [as_finding(d) for d in diagnostics]
     scenario, diagnostics = or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))
     return scenario, [as_finding(d) for d in diagnostics]
+
+
+def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
+    """The seed to run with: the one given, the scenario's, 0 where it decides nothing; else None, one is drawn."""
+    chosen = scenario.world.seed if seed is None else seed
+    return 0 if chosen is None and not random_parts(scenario) else chosen
 
 
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 __all__ = [
     "BenchmarkResult",
     "BenchmarkRow",
+    "CommentChange",
     "DryRun",
     "Edit",
     "EpisodeRow",
@@ -19,6 +20,7 @@ __all__ = [
     "HorizonSource",
     "KeyChange",
     "Left",
+    "MovingPose",
     "Proportion",
     "RenderResult",
     "ReplayResult",
@@ -81,6 +83,8 @@ class Finding(Result):
     """The same for programs, where nothing has to be guessed; ``irsim validate --fix`` makes it."""
     tolerated: bool = False
     """Whether ``irsim run`` goes on in spite of it, as IR-SIM does."""
+    in_base: bool | None = None
+    """Whether the scenario it was compared with has it too; None without one."""
 
 
 class EventRecord(Result):
@@ -132,6 +136,15 @@ class WorldChange(Result):
     """Which fact of it: ``pose``, ``sensors[0].number``."""
     before: Any = None
     after: Any = None
+    direct: bool = False
+    """It is what a changed key says, no more; lists for people have only the key."""
+
+
+class CommentChange(Result):
+    """A comment that was edited."""
+
+    before: str
+    after: str
 
 
 class ScenarioDiff(Result):
@@ -147,6 +160,9 @@ class ScenarioDiff(Result):
     world: list[WorldChange] | None
     """Changes of the worlds, both built with one seed; None if one of the scenarios is invalid."""
     comments_lost: list[str]
+    """Comments that are gone; one that says something else now is not among them."""
+    comments_changed: list[CommentChange]
+    """Comments that were edited."""
     lines_removed: int
     lines_added: int
 
@@ -176,6 +192,8 @@ class DryRun(Result):
     """What happened in a first look: some steps, nothing kept."""
 
     seed: int
+    random: list[str]
+    """What the seed decides; empty if every seed gives the same."""
     steps: int
     sim_time: float
     """Simulated time [s]."""
@@ -208,7 +226,8 @@ class ValidationReport(Result):
     findings: list[Finding]
     """All findings, errors first."""
     counts: dict[str, int] = Field(default_factory=dict)
-    """Robots, obstacles and sensors of a valid scenario."""
+    """Robots, obstacles (those of entries) and sensors of a valid scenario; ``boundary`` if there are walls round it;
+    of a map ``map_columns``, ``map_rows`` and, unless the seed decides, ``map_occupied`` cells."""
     fixes: list[Fix] = Field(default_factory=list)
     """Repairs that were made; the findings are those that are left."""
     changes: ScenarioDiff | None = None
@@ -247,6 +266,8 @@ class RunResult(Result):
     """Seed that was used."""
     random: list[str]
     """What the seed decides; empty if every seed gives the same run."""
+    behavior: str | None = None
+    """What every robot followed instead of its own behavior; None: the scenario as written."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
@@ -264,9 +285,9 @@ class RunResult(Result):
     robots: list[RobotResult]
     """One entry per robot."""
     events: list[EventRecord]
-    """The first events in order."""
+    """The first events in order; of the arrivals of an object at the same goal only the first."""
     event_count: int
-    """How many events there were."""
+    """How many such events there were."""
     warnings: list[Finding]
     """What is odd about the scenario."""
     files: list[str] = Field(default_factory=list)
@@ -475,6 +496,14 @@ class RobotPose(Result):
     """What became of it so far."""
 
 
+class MovingPose(Result):
+    """Where a moving obstacle is in a snapshot."""
+
+    name: str
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad]."""
+
+
 class SnapshotResult(Result):
     """What ``irsim.api.snapshot`` drew."""
 
@@ -491,9 +520,13 @@ class SnapshotResult(Result):
     extent: tuple[float, float, float, float]
     """The world: least and greatest x, least and greatest y [m]."""
     obstacles: int
-    """How many obstacles there are."""
+    """How many obstacles there are: those of entries."""
+    contents: str
+    """The obstacles in words: with the boundary and the map."""
     robots: list[RobotPose]
     """One entry per robot."""
+    moving: list[MovingPose]
+    """One entry per obstacle that can move."""
     size: tuple[int, int]
     """Width and height [px]."""
     warnings: list[Finding]

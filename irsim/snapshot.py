@@ -6,10 +6,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Literal
 
+from irsim.contents import counts_of, in_words
 from irsim.env import Env
-from irsim.episode import Progress, advance, horizon_of, read_scenario
+from irsim.episode import Progress, advance, horizon_of, read_scenario, seed_of
 from irsim.observers.outcome import robot_outcomes
-from irsim.results import Finding, RobotPose, SnapshotResult
+from irsim.results import Finding, MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
@@ -99,12 +100,12 @@ def snapshot_of(
         from irsim.render.scene import region_extent
 
         region_extent(region)  # before much work is done
-    env = Env(scenario, seed=seed, headless=True, log_level="ERROR")
+    env = Env(scenario, seed=seed_of(scenario, seed), headless=True, log_level="ERROR")
     horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     advance(env, horizon, progress, until_done=steps is None)
     count = int(env.simulation.count[0])
     extra = ["--size", str(size), *region_words(region), "-o", "snapshot.png"]
-    again = command("render", path, env.seed, count, strict, extra=extra)
+    again = command("render", path, env, count, strict, extra=extra)
     result = drawn(
         env, path, size=size, overlays=overlays, region=region, draw=draw, warnings=warnings, reproduce=again
     )
@@ -134,6 +135,7 @@ def drawn(
         png = render_scene(env.simulation, size_px=size, region=region, overrides=keys)
         pixels = _size_of(png)
     x, y, right, top = scenario.world.bounds
+    counts = counts_of(scenario)
     return SnapshotResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
@@ -141,8 +143,14 @@ def drawn(
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         extent=(x, right, y, top),
-        obstacles=len(scenario.objects) - len(env.robot_list),
+        obstacles=counts["obstacles"],
+        contents=in_words(counts, robots=False, sensors=False),
         robots=_poses(env),
+        moving=[
+            MovingPose(name=view.name, pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])))
+            for view in env.obstacle_list
+            if not view.record.static
+        ],
         size=pixels,
         warnings=warnings,
         reproduce=reproduce,

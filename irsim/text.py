@@ -2,7 +2,36 @@
 
 from __future__ import annotations
 
-__all__ = ["clean"]
+__all__ = ["clean", "pair", "seconds"]
+
+
+def pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
+    """Two values on a line each, long ones cut so that what differs is seen.
+
+    Args:
+        before: One.
+        after: The other.
+        longest: Characters to keep of each.
+    """
+    first, second = (clean(value, 10**6) for value in (before, after))
+    if max(len(first), len(second)) <= longest:
+        return first, second
+    same = next(
+        (i for i, (x, y) in enumerate(zip(first, second, strict=False)) if x != y), min(len(first), len(second))
+    )
+    start = max(0, same - longest // 4)
+    if start > 3:
+        first, second = "..." + first[start:], "..." + second[start:]
+    return clean(first, longest), clean(second, longest)
+
+
+def seconds(time: float) -> str:
+    """A time in words, the same one everywhere: ``14.95 s``.
+
+    Args:
+        time: It [s].
+    """
+    return f"{round(time, 2):.10g} s"
 
 
 def clean(text: object, longest: int = 80) -> str:

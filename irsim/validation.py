@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from irsim.contents import counts_of, in_words
 from irsim.diagnostics import format_path
 from irsim.episode import as_finding, source_of
 from irsim.errors import PlacementError
-from irsim.results import DryRun, Fix, ScenarioDiff, ValidationReport
+from irsim.results import DryRun, Finding, Fix, ScenarioDiff, ValidationReport
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_path
 from irsim.scenario.mend import mend
@@ -50,8 +51,9 @@ def validate(
     if base is not None or base_text is not None:
         from irsim.comparison import compare
 
-        other = read(source_of(base, base_text, limits), strict=strict, limits=most)
+        other = read(source_of(base, base_text, limits), strict=strict, limits=most, survey=survey)
         report.changes = compare(other, reading, seed=seed)
+        _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:
         report.dry_run = _tried(report, reading, seed, limits)
     return report
@@ -126,13 +128,8 @@ def report_of(reading: Reading, file: str) -> ValidationReport:
     count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
     scenario, counts = reading.scenario, dict[str, int]()
     if scenario is not None:
-        robots = len(scenario.robots())
-        counts = {
-            "robots": robots,
-            "obstacles": len(scenario.objects) - robots,
-            "sensors": sum(len(o.sensors) for o in scenario.objects),
-        }
-        summary = "valid: " + ", ".join(f"{n} {word if n != 1 else word[:-1]}" for word, n in counts.items())
+        counts = counts_of(scenario)
+        summary = f"valid: {in_words(counts)}"
         if count["warning"]:
             summary += f"; {count['warning']} warning{'s' * (count['warning'] != 1)}"
     else:
@@ -147,6 +144,13 @@ def report_of(reading: Reading, file: str) -> ValidationReport:
         findings=findings,
         counts=counts,
     )
+
+
+def _mark_old(findings: list[Finding], base: Reading) -> None:
+    """Note which findings the scenario that was compared with has too: same code, and same place or words."""
+    known = {(item.code, told) for item in base.diagnostics for told in (format_path(item.path), item.message)}
+    for finding in findings:
+        finding.in_base = bool({(finding.code, finding.path), (finding.code, finding.message)} & known)
 
 
 def _tried(report: ValidationReport, reading: Reading, seed: int | None, limits: Limits | None) -> DryRun | None:

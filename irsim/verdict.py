@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from irsim.episode import seed_of
 from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
 from irsim.scenario.randomness import random_parts
-from irsim.text import clean
+from irsim.text import clean, seconds
 
 if TYPE_CHECKING:
     from irsim.env import Env
+    from irsim.scenario.objects import ObjectRecord, ResolvedScenario
     from irsim.views import ObjectView
 
-__all__ = ["command", "run_result"]
+__all__ = ["command", "others_arrived", "run_result"]
 
 _MAX_EVENTS = 100
 _NAMED = 3
@@ -47,6 +49,7 @@ def run_result(
     files: list[str],
     imports: Sequence[str] = (),
     strict: bool = False,
+    behavior: str | None = None,
 ) -> RunResult:
     """What an episode came to.
 
@@ -59,11 +62,13 @@ def run_result(
         files: Files written.
         imports: Modules that were imported for it.
         strict: Whether it was read strictly.
+        behavior: What every robot followed instead of its own.
     """
     from irsim import __version__
 
     events = env.events
     hits, counts = _collisions(env, events)
+    told = _without_repeats(env.scenario, events)
     robots = _robots(env, events, counts)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
@@ -71,39 +76,46 @@ def run_result(
         outcome = "success"
     elif "collision" in ends:
         outcome = "collision"
+    extra = () if behavior is None else ("--behavior", behavior)
     given = horizon if source in ("argument", "limits") else None
     return RunResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
         random=random_parts(env.scenario),
+        behavior=behavior,
         outcome=outcome,
-        summary=_summary(robots, hits, env.sim_time),
+        summary=_summary(env, robots, hits, behavior),
         reason=None if outcome == "success" else _reason(env, robots, hits, events[-_MAX_EVENTS:], source),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,
         time_limit_from=source,
         robots=robots,
-        events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in events[:_MAX_EVENTS]],
-        event_count=len(events),
+        events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in told[:_MAX_EVENTS]],
+        event_count=len(told),
         warnings=warnings,
         files=files,
         version=__version__,
-        reproduce=command("run", path, env.seed, given, strict, imports),
+        reproduce=command("run", path, env, given, strict, imports, extra),
     )
 
 
 def command(
     verb: str,
     path: str | Path | None,
-    seed: int,
+    env: Env,
     steps: int | None,
     strict: bool,
     imports: Sequence[str] = (),
     extra: Sequence[str] = (),
 ) -> str:
-    """The command line that does the same again; for a scenario without a file it says how to name one."""
-    words = ["irsim", verb, _NO_FILE if path is None else str(path), "--seed", str(seed)]
+    """The command line that does the same again; for a scenario without a file it says how to name one.
+
+    It names the seed unless that decides nothing and is the one that the command takes by itself.
+    """
+    words = ["irsim", verb, _NO_FILE if path is None else str(path)]
+    if random_parts(env.scenario) or env.seed != seed_of(env.scenario, None):
+        words += ["--seed", str(env.seed)]
     if steps is not None:
         words += ["--steps", str(steps)]
     if strict:
@@ -166,20 +178,82 @@ def _path_length(env: Env, row: int) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _summary(robots: list[RobotResult], events: Sequence[Event], sim_time: float) -> str:
+def _summary(env: Env, robots: list[RobotResult], hits: Sequence[Event], behavior: str | None) -> str:
+    told = [_arrivals(robots, env.sim_time)]
+    if hit := _first_hit({robot.name for robot in robots}, hits):
+        told.append(hit)
+    if gone := _gone_again(env, robots):
+        told.append(gone)
+    if others := others_arrived(env.scenario, env.events):
+        told.append(others)
+    changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
+    return changed + "; ".join(told)
+
+
+def _arrivals(robots: list[RobotResult], sim_time: float) -> str:
+    """How many robots arrived, and by when."""
     if not robots:
-        return f"no robots; {sim_time:.1f} s simulated"
-    arrived = sum(robot.outcome == "success" for robot in robots)
-    text = f"{arrived} of {len(robots)} robots arrived" if len(robots) > 1 else ""
-    if len(robots) == 1:
-        text = {
-            "success": "the robot arrived",
-            "collision": "the robot collided",
-            "timeout": "the robot did not arrive",
-        }[robots[0].outcome]
-    text += f" within {sim_time:.1f} s"
-    hit = _first_hit({robot.name for robot in robots}, events)
-    return f"{text}; {hit}" if hit else text
+        return f"no robots; {seconds(sim_time)} simulated"
+    arrived = [robot.time_to_goal or 0.0 for robot in robots if robot.outcome == "success"]
+    if len(robots) > 1:
+        count = f"{len(arrived)} of {len(robots)} robots arrived"
+        everybody = len(arrived) == len(robots)
+        return count + (f", the last at {seconds(max(arrived))}" if everybody else f" within {seconds(sim_time)}")
+    if arrived:
+        return f"the robot arrived at {seconds(arrived[0])}"
+    told = "collided" if robots[0].outcome == "collision" else "did not arrive"
+    return f"the robot {told} within {seconds(sim_time)}"
+
+
+def _gone_again(env: Env, robots: list[RobotResult]) -> str | None:
+    """Who had arrived and is not at its goal at the end."""
+    views = {view.name: view for view in env.robot_list}
+    gone = [
+        _quoted(robot.name)
+        for robot in robots
+        if robot.outcome == "success" and not views[robot.name].arrive and _has_one_end(views[robot.name].record)
+    ]
+    if len(gone) < 2:
+        return f"{gone[0]} left its goal again" if gone else None
+    more = f" and {len(gone) - _NAMED} more" if len(gone) > _NAMED else ""
+    return f"{', '.join(gone[:_NAMED])}{more} left their goals again"
+
+
+def _has_one_end(record: ObjectRecord) -> bool:
+    """Whether it has a last goal that stays."""
+    return not (record.wander or record.loop)
+
+
+def others_arrived(scenario: ResolvedScenario, events: Sequence[Event]) -> str | None:
+    """How many of the moving obstacles that have a goal arrived, in words; None if there are none.
+
+    Args:
+        scenario: Whose obstacles.
+        events: What happened.
+    """
+    walking = {
+        record.name
+        for record in scenario.objects
+        if record.role == "obstacle" and not record.static and record.goals and _has_one_end(record)
+        if record.behavior is not None or record.group_behavior is not None
+    }
+    if not walking:
+        return None
+    arrived = walking & {event.object for event in events if event.kind == "arrival"}
+    return f"{len(arrived)} of {len(walking)} moving obstacle{'s' * (len(walking) != 1)} arrived"
+
+
+def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> list[Event]:
+    """Of the arrivals of an object at a goal that stays only the first: swinging about it gives many."""
+    staying = {record.name for record in scenario.objects if _has_one_end(record)}
+    seen, kept = set[str](), []
+    for event in events:
+        if event.kind == "arrival" and event.object in staying:
+            if event.object in seen:
+                continue
+            seen.add(event.object)
+        kept.append(event)
+    return kept
 
 
 def _reason(
@@ -198,7 +272,7 @@ def _reason(
     if late:
         named = [f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot, last)}" for robot in late[:_NAMED]]
         more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
-        reasons.append(f"at {env.sim_time:.1f} s ({_LIMITS[source]}) {', '.join(named)}{more}")
+        reasons.append(f"at {seconds(env.sim_time)} ({_LIMITS[source]}) {', '.join(named)}{more}")
     return "; ".join(reasons)
 
 
@@ -207,7 +281,7 @@ def _first_hit(names: set[str], events: Sequence[Event]) -> str | None:
     if first is None:
         return None
     place = f"({first.x:.2f}, {first.y:.2f})"
-    return f"{_quoted(first.object)} hit {_quoted(first.partner)} at {first.time:.1f} s near {place}"
+    return f"{_quoted(first.object)} hit {_quoted(first.partner)} at {seconds(first.time)} near {place}"
 
 
 def _quoted(name: object) -> str:

@@ -17,16 +17,13 @@ from typing import Any
 from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.summary import rows_of
-from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of
-from irsim.diagnostics import nearest
+from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of, check_known
 from irsim.episode import Progress, import_modules, read_scenario, source_of
 from irsim.errors import OverLimitError
-from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.results import BenchmarkResult, EpisodeRow, Finding
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_path, load_text
 from irsim.scenario.randomness import random_parts
-from irsim.text import clean
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark"]
 
@@ -77,7 +74,8 @@ def benchmark(
     _check(names, wanted, chosen, most_episodes)
     limits = limits or DEFAULT_LIMITS
     import_modules(imports)
-    _check_names(wanted)
+    for behavior in wanted:
+        check_known(behavior)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances = dict[str, float](), dict[str, list[str]]()
@@ -173,16 +171,6 @@ def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int |
     if most is not None and total > most:
         product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
         raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
-
-
-def _check_names(behaviors: list[str]) -> None:
-    known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
-    for behavior in behaviors:
-        name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
-        if name not in known:
-            near = nearest(name, known)
-            fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
-            raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
 
 
 def _notes(episodes: list[EpisodeRow], chances: dict[str, list[str]], seeds: list[int]) -> list[str]:

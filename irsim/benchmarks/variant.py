@@ -7,13 +7,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from irsim.diagnostics import Diagnostic, nearest
 from irsim.errors import IrsimError
+from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.load import Document
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.read import read
+from irsim.text import clean
 
-__all__ = ["AS_WRITTEN", "BenchmarkError", "behavior_of", "with_behavior"]
+__all__ = ["AS_WRITTEN", "BenchmarkError", "behavior_of", "check_known", "read_with_behavior", "with_behavior"]
 
 AS_WRITTEN = "as-written"
 """Stands for the behaviors that the scenario itself gives its robots."""
@@ -22,18 +25,19 @@ _KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
 
 
 class BenchmarkError(IrsimError, ValueError):
-    """A benchmark that cannot be run as asked.
+    """A benchmark, or an episode with another behavior, that cannot be run as asked.
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.codes`.
         message: What is wrong.
         fix: What to ask for instead.
+        where: Which argument it is about; None if there may be several.
     """
 
     code = "bad-argument"
 
-    def __init__(self, message: str, fix: str) -> None:
-        self.message, self.fix = message, fix
+    def __init__(self, message: str, fix: str, where: str | None = None) -> None:
+        self.message, self.fix, self.where = message, fix, where
         super().__init__(f"{self.code}: {message}. Fix: {fix}{'' if fix.endswith('?') else '.'}")
 
 
@@ -65,7 +69,28 @@ def behavior_of(text: str) -> dict[str, Any] | None:
     return dict(document.data)
 
 
+def check_known(behavior: str) -> None:
+    """Refuse a behavior that nobody has.
+
+    Raises:
+        BenchmarkError: There is none of that name.
+    """
+    known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
+    name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
+    if name not in known:
+        near = nearest(name, known)
+        fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
+        raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
+
+
 def with_behavior(document: Document, behavior: Mapping[str, Any] | None, *, strict: bool) -> ResolvedScenario:
+    """The scenario in which every robot that can move follows one behavior, see :func:`read_with_behavior`."""
+    return read_with_behavior(document, behavior, strict=strict)[0]
+
+
+def read_with_behavior(
+    document: Document, behavior: Mapping[str, Any] | None, *, strict: bool
+) -> tuple[ResolvedScenario, list[Diagnostic]]:
     """The scenario in which every robot that can move follows one behavior, on its own.
 
     Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``); one that
@@ -76,18 +101,21 @@ def with_behavior(document: Document, behavior: Mapping[str, Any] | None, *, str
         behavior: What to write under ``behavior`` of every robot; None leaves everything as it is.
         strict: Refuse what IR-SIM would ignore.
 
+    Returns:
+        The scenario, and warnings and hints about it.
+
     Raises:
         ScenarioError: It cannot be used.
     """
     if behavior is None or not isinstance(document.data, Mapping):
-        return or_raise(read(document, strict=strict, limits=document.limits))[0]
+        return or_raise(read(document, strict=strict, limits=document.limits))
     data = copy.deepcopy(dict(document.data))
     entries = data.get("robot")
     for entry in entries if isinstance(entries, list) else [entries]:
         if isinstance(entry, dict) and entry.get("kinematics") is not None:
             _give(entry, behavior)
     changed = replace(document, data=data, text=None, _root=None)
-    return or_raise(read(changed, strict=strict, limits=document.limits))[0]
+    return or_raise(read(changed, strict=strict, limits=document.limits))
 
 
 def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:

@@ -57,33 +57,33 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from rich.text import Text
 
     from irsim.cli.output import console
-    from irsim.text import clean
+    from irsim.scenario.rewrite import yaml_flow
+    from irsim.text import clean, pair
 
     out = console()
 
     def line(kind: str, where: str, before: Any, after: Any) -> None:
         sign, color = _SIGNS[kind]
-        values = [_shown(value) for value in (before, after)]
-        change = {"added": values[1], "removed": values[0], "changed": f"{values[0]} -> {values[1]}"}[kind]
+        was, now = yaml_flow(before), yaml_flow(after)
+        if kind == "changed":
+            was, now = pair(was, now, _LONGEST)
+        was, now = clean(was, _LONGEST), clean(now, _LONGEST)
+        change = {"added": now, "removed": was, "changed": f"{was} -> {now}"}[kind]
         out.print(Text.assemble((f"{sign} {clean(where, 120)}", color), f"  {change}"), soft_wrap=True)
 
     if found.keys:
         out.print("in the file", style="bold")
     for change in found.keys:
         line(change.change, change.path, change.before, change.after)
-    if found.world:
+    facts = [fact for fact in found.world or [] if not fact.direct]
+    if facts:
         out.print("in the world", style="bold")
-    for fact in found.world or []:
+    for fact in facts:
         line(fact.change, " ".join(filter(None, (fact.object or "world", fact.key))), fact.before, fact.after)
     for comment in found.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, _LONGEST)}"), soft_wrap=True)
+    for edited in found.comments_changed:
+        line("changed", "comment", edited.before, edited.after)
     out.print(clean(found.summary, 600), soft_wrap=True)
     if extra:
         out.print(Text(f"not asked for: {clean(', '.join(extra), 400)}", style="bold red"), soft_wrap=True)
-
-
-def _shown(value: Any) -> str:
-    from irsim.scenario.rewrite import yaml_flow
-    from irsim.text import clean
-
-    return clean(yaml_flow(value), _LONGEST)

@@ -32,6 +32,14 @@ def run(
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Watch it live in a window.")] = False,
     strict: Strict = False,
+    behavior: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Replace every robot's behavior: rvo, or '{name: orca, timeHorizon: 5}'.",
+            show_default=False,
+        ),
+    ] = None,
     imports: Imports = None,
     require_success: Annotated[
         bool, typer.Option("--require-success", help="Exit with 1 unless every robot reaches its goal.")
@@ -69,6 +77,7 @@ def run(
             seed=seed,
             steps=steps,
             strict=strict,
+            behavior=behavior,
             imports=imports or (),
             save=save_gif,
             show=show,
@@ -95,7 +104,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     """
     from rich.text import Text
 
-    from irsim.text import clean
+    from irsim.text import clean, seconds
 
     if result.robots:
         out.print(_table(result))
@@ -110,8 +119,8 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
         "default": "default: set world.time_limit",
         "limits": "the most steps of one run",
     }
-    horizon = f"{result.time_limit:.1f} s ({limit[result.time_limit_from]})"
-    out.print(f"{result.steps} steps, {result.sim_time:.1f} s of at most {horizon}")
+    horizon = f"{seconds(result.time_limit)} ({limit[result.time_limit_from]})"
+    out.print(f"{result.steps} steps, {seconds(result.sim_time)} of at most {horizon}")
     for written in result.files:
         out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
     if result.run_id is not None:
@@ -135,7 +144,7 @@ def _table(result: RunResult) -> object:
     from rich.table import Table
     from rich.text import Text
 
-    from irsim.text import clean
+    from irsim.text import clean, seconds
 
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):
@@ -146,7 +155,7 @@ def _table(result: RunResult) -> object:
         table.add_row(
             clean(robot.name, 24),
             Text(robot.outcome, style=_COLORS[robot.outcome]),
-            "-" if robot.time_to_goal is None else f"{robot.time_to_goal:.1f} s",
+            "-" if robot.time_to_goal is None else seconds(robot.time_to_goal),
             f"{robot.path_length:.1f} m",
             "-" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m",
             str(robot.collision_count),

@@ -113,11 +113,14 @@ def show_dry_run(found: DryRun, out: Console) -> None:
     """
     from rich.text import Text
 
-    from irsim.text import clean
+    from irsim.text import clean, seconds
 
-    lines = [f"'{e.object}' with '{e.partner}' at {e.time:.1f} s, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]]
-    lines += [f"'{s.name}' stands since {s.since:.1f} s at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]]
-    lines += [f"'{gone.name}' left the world at {gone.time:.1f} s" for gone in found.left[1:]]
-    out.print(Text.assemble(("tried", "bold"), f" (seed {found.seed}): {clean(found.summary, 600)}"), soft_wrap=True)
+    seed = f" (seed {found.seed})" if found.random else ""
+    lines = [
+        f"'{e.object}' with '{e.partner}' at {seconds(e.time)}, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]
+    ]
+    lines += [f"'{s.name}' stands since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]]
+    lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in found.left[1:]]
+    out.print(Text.assemble(("tried", "bold"), f"{seed}: {clean(found.summary, 600)}"), soft_wrap=True)
     for line in lines:
         out.print(f"  {clean(line, 200)}", soft_wrap=True)

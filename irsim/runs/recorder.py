@@ -6,7 +6,7 @@ import hashlib
 import json
 import platform
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime, timezone
 from pathlib import Path
@@ -185,7 +185,7 @@ class Recorder:
 
 @contextmanager
 def recording(
-    env: Env, path: str | Path | None, record: bool | str | Path, *, horizon: int, strict: bool, imports: Sequence[str]
+    env: Env, path: str | Path | None, record: bool | str | Path, *, horizon: int, options: Mapping[str, Any]
 ) -> Iterator[Recorder | None]:
     """A recorder for the episode of an environment, None if it is not to be recorded; closed whatever happens.
 
@@ -194,8 +194,7 @@ def recording(
         path: Scenario file, None for a text.
         record: Whether, or where to.
         horizon: Steps at most.
-        strict: Whether it was read strictly.
-        imports: Modules that were imported for it.
+        options: What else decides how it goes: ``strict``, ``imports``, and ``behavior`` if the robots' was replaced.
     """
     if record is False:
         yield None
@@ -204,7 +203,7 @@ def recording(
         env.simulation,
         horizon=horizon,
         scenario=None if path is None else str(path),
-        options={"strict": strict, "imports": list(imports)},
+        options=options,
         folder=None if record is True else Path(record),
     )
     try:

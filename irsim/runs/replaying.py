@@ -37,7 +37,12 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     if limits.root is None:
         import_modules(str(name) for name in options.get("imports", []))
     document = load_text(run.scenario_text, path=_place(run, limits), limits=limits)
-    return or_raise(read(document, strict=bool(options.get("strict")), limits=limits))[0]
+    strict, behavior = bool(options.get("strict")), options.get("behavior")
+    if isinstance(behavior, str):
+        from irsim.benchmarks.variant import behavior_of, with_behavior
+
+        return with_behavior(document, behavior_of(behavior), strict=strict)
+    return or_raise(read(document, strict=strict, limits=limits))[0]
 
 
 def replayed(

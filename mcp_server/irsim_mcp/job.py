@@ -104,6 +104,7 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 
 def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
     """The text of a file that is not there yet; what it names is looked for beside that."""
+    from irsim.contents import counts_of, in_words
     from irsim.scenario.load import load_text
     from irsim.scenario.opening import or_raise
     from irsim.scenario.read import read
@@ -112,9 +113,8 @@ def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
     scenario, found = or_raise(read(document, strict=True, limits=limits, survey=survey))
-    robots, objects = len(scenario.robots()), len(scenario.objects)
     warnings = sum(item.severity == "warning" for item in found)
-    return json.dumps({"robots": robots, "obstacles": objects - robots, "warnings": warnings})
+    return json.dumps({"contents": in_words(counts_of(scenario), sensors=False), "warnings": warnings})
 
 
 def _run(job: dict[str, Any], progress: _Progress) -> str:
@@ -244,7 +244,8 @@ def _described(error: Exception) -> dict[str, Any]:
     if isinstance(error, IrsimError):
         code = getattr(error, "code", "invalid-input")
         what = getattr(error, "message", str(error))
-        return {"code": code, "what": what, "fix": getattr(error, "fix", None)}
+        where = getattr(error, "where", None)
+        return {"code": code, "what": what, "fix": getattr(error, "fix", None), "where": where}
     if isinstance(error, MemoryError):
         return {
             "code": "out-of-memory",

@@ -140,7 +140,9 @@ def strict(
     tool.fn_metadata = _AsGiven(**{name: getattr(meta, name) for name in type(meta).model_fields})
     tool.parameters = {**_slim(tool.parameters), "additionalProperties": False}
     if tool.fn_metadata.output_schema is not None:
-        tool.fn_metadata.output_schema = _slim(tool.fn_metadata.output_schema)
+        output = _slim(tool.fn_metadata.output_schema)
+        output.pop("description", None)  # the tool's own says more
+        tool.fn_metadata.output_schema = output
     assert isinstance(tool, StrictTool)
     return tool
 

@@ -8,6 +8,7 @@ import pytest
 
 import irsim
 from irsim import templates
+from irsim.text import pair
 
 BASE = """\
 world: {width: 10, height: 8, seed: 3}   # the hall
@@ -91,6 +92,45 @@ def test_with_an_invalid_file_only_the_keys_are_compared() -> None:
     assert keys(found) == [("changed", "robot[0].shape.radius")]
     assert found.world is None
     assert "invalid" in found.summary
+
+
+def test_facts_that_only_repeat_a_key_are_marked() -> None:
+    moved = diff(
+        BASE, BASE.replace("[9, 4]", "[9, 5]").replace("[1, 4, 0]", "[1, 5, 0]").replace("radius: 0.3", "radius: 0.4")
+    )
+    assert {fact.key for fact in moved.world or []} == {"goals", "pose", "shape.radius"}
+    assert all(fact.direct for fact in moved.world or [])
+    assert "which also changes" not in moved.summary
+    entry = "  - {shape: {name: circle, radius: 0.2}, state: [8, 2, 0]}\n"
+    one = diff(BASE, BASE + entry).world or []
+    assert [fact.direct for fact in one] == [True]
+    several = diff(BASE, BASE + entry.replace("{shape", "{number: 3, shape")).world or []
+    assert [fact.direct for fact in several] == [False] * 3
+
+
+def test_what_follows_from_a_key_is_not_marked() -> None:
+    unlimited = BASE.replace("    vel_max: [1.0, 1.5]\n", "").replace("    vel_min: [-1.0, -1.5]\n", "")
+    default = [fact for fact in diff(BASE, unlimited).world or [] if fact.key == "vel_max"]
+    assert [fact.direct for fact in default] == [False]  # the key says only that it is gone
+    found = diff(unlimited, unlimited.replace("{name: diff}", "{name: acker, wheelbase: 1}"))
+    told = {fact.key: fact.direct for fact in found.world or []}
+    assert told["kinematics"]
+    assert not all(told.values())
+    assert "which also changes scout" in found.summary
+
+
+def test_an_edited_comment_is_not_lost() -> None:
+    found = diff(BASE, BASE.replace("# by the door", "# by the back door"))
+    assert found.comments_lost == []
+    assert [(item.before, item.after) for item in found.comments_changed] == [("# by the door", "# by the back door")]
+    assert found.summary.endswith("no comment lost, 1 comment changed")
+
+
+def test_long_values_are_cut_where_they_differ() -> None:
+    before, after = pair("a" * 200 + "1" + "b" * 200, "a" * 200 + "2" + "b" * 200, 60)
+    assert max(len(before), len(after)) == 60
+    assert before.replace("1", "2") == after != before
+    assert pair("short", "shorter") == ("short", "shorter")
 
 
 def test_validation_can_say_what_changed(tmp_path: Path) -> None:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import irsim
+from irsim.benchmarks import BenchmarkError
+from irsim.cli.app import app
 from irsim.errors import OverLimitError, ScenarioError
+from irsim.runs import open_run
+from irsim.runs.replaying import replayed
 from irsim.scenario.limits import Limits
 
 ROBOT = """\
@@ -47,7 +54,7 @@ def test_success_needs_no_reason() -> None:
     ("scenario", "reason"),
     [
         (text(extra=""), "'rover' has no behavior, so it stands still 3.00 m from its goal"),
-        (text(19, world=", time_limit: 5"), "at 5.0 s (world.time_limit) 'rover' still moved at 1 m/s, 13.00 m from"),
+        (text(19, world=", time_limit: 5"), "at 5 s (world.time_limit) 'rover' still moved at 1 m/s, 13.00 m from"),
         (text() + "obstacle:\n  - {name: crate, state: [2.5, 3], shape: {name: circle}}\n", "'rover' hit 'crate' at "),
         ("world: {width: 5}\n", "there are no robots"),
     ],
@@ -87,3 +94,79 @@ def test_a_robot_that_left_the_world_is_said_to_be_outside() -> None:
         text(4, DASH, ", time_limit: 3").replace("goal: [4, 3]", "goal: [-9, 3]").replace("[1, 3]", "[1, 3, 3.14159]")
     )
     assert "from its goal, outside the world at (-2.00, 3.00)" in str(irsim.run(text=away).reason)
+
+
+def test_another_behavior_for_all_robots(tmp_path: Path) -> None:
+    path = tmp_path / "room.yaml"
+    path.write_text(text(extra=""), encoding="utf-8")
+    assert irsim.run(path).outcome == "timeout"
+    result = irsim.run(path, behavior="dash")
+    assert (result.outcome, result.behavior) == ("success", "dash")
+    assert result.summary.startswith("with behavior dash for all robots: ")
+    assert result.reproduce == f"irsim run {path} --behavior dash"
+    again = CliRunner().invoke(app, [*shlex.split(result.reproduce)[1:], "--json"])
+    assert json.loads(again.stdout) == result.model_dump(mode="json")
+    assert not [item for item in result.warnings if item.code == "no-behavior"]
+
+
+def test_a_behavior_with_options_and_one_that_nobody_has() -> None:
+    result = irsim.run(text=text(), behavior={"name": "orca", "timeHorizon": 3})
+    assert result.behavior == "{name: orca, timeHorizon: 3}"
+    assert "--behavior '{name: orca, timeHorizon: 3}'" in result.reproduce
+    assert irsim.run(text=text(), behavior="as-written") == irsim.run(text=text())
+    with pytest.raises(BenchmarkError, match=r"there is no behavior 'orcaa'\. Fix: did you mean orca\?"):
+        irsim.run(text=text(), behavior="orcaa")
+
+
+def test_a_record_of_a_run_with_another_behavior_is_shown_as_it_was(tmp_path: Path) -> None:
+    result = irsim.run(text=text(extra=""), behavior="dash", record=tmp_path / "run")
+    run = open_run(tmp_path / "run")
+    assert run.scenario_text == text(extra="")
+    env = replayed(run)
+    try:
+        assert env.robot.state[0, 0] == pytest.approx(result.robots[0].pose[0], abs=1e-12)
+        assert env.robot.arrive
+    finally:
+        env.end(ending_time=0.0)
+
+
+def test_no_seed_is_drawn_where_nothing_is_random() -> None:
+    first, second = irsim.run(text=text()), irsim.run(text=text())
+    assert first == second
+    assert (first.seed, first.random) == (0, [])
+    assert "--seed" not in first.reproduce
+    noisy = text().replace("{name: diff}", "{name: diff, noise: true}")
+    assert irsim.run(text=noisy).seed != irsim.run(text=noisy).seed
+    assert "--seed" in irsim.run(text=noisy).reproduce
+
+
+def test_success_says_when_the_last_one_arrived() -> None:
+    result = irsim.run(text=text())
+    assert result.summary == f"the robot arrived at {result.robots[0].time_to_goal:.10g} s"
+
+
+def test_who_was_pushed_off_its_goal_is_said() -> None:
+    aside = """\
+world: {width: 10, height: 6, time_limit: 12}
+robot:
+  - {name: first, kinematics: {name: omni}, shape: {name: circle, radius: 0.4}, state: [5, 3.05], goal: [5, 3.05],
+     behavior: {name: orca}, goal_threshold: 0.2}
+  - {name: second, kinematics: {name: omni}, shape: {name: circle, radius: 0.4}, state: [1, 3], goal: [4.9, 3],
+     behavior: {name: dash}}
+"""
+    result = irsim.run(text=aside)
+    arrivals = [event.object for event in result.events if event.kind == "arrival"]
+    assert arrivals == ["first", "second"]
+    assert "2 of 2 robots arrived, the last at " in result.summary
+    assert result.summary.endswith("; 'first' left its goal again")
+
+
+def test_moving_obstacles_that_have_goals_are_counted() -> None:
+    walkers = text(18) + "".join(
+        f"  - {{kinematics: {{name: omni}}, shape: {{name: circle}}, state: {start}, goal: {goal}{DASH}}}\n"
+        for start, goal in (("[15, 1]", "[15, 5]"), ("[3, 5]", "[19, 5]"))
+    ).replace("  -", "obstacle:\n  -", 1)
+    assert irsim.run(text=walkers, steps=70).summary.endswith("; 1 of 2 moving obstacles arrived")
+    report = irsim.validate(text=walkers, simulate=True)
+    assert report.dry_run is not None
+    assert "of 2 moving obstacles arrived" in report.dry_run.summary

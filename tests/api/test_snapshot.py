@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+import irsim
 from irsim.api import snapshot
 from irsim.errors import IrsimError, OverLimitError
 from irsim.scenario.limits import Limits
@@ -83,3 +84,22 @@ def test_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.chdir(tmp_path)
     snapshot(text=SCENE)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_walls_and_a_map_are_no_obstacles() -> None:
+    walled = snapshot(text=SCENE.replace("offset: [-1, 0]", "offset: [-1, 0], boundary: walls"), draw=False)
+    assert (walled.obstacles, walled.contents) == (1, "1 obstacle and the boundary")
+    report = irsim.validate(text="world: {width: 50, height: 50, obstacle_map: cave.png}\n")
+    assert "no obstacles, a map of 500 x 500 cells (25 % occupied)" in report.summary
+    assert report.counts["obstacles"] == 0
+    assert report.counts["map_occupied"] == pytest.approx(500 * 500 / 4, rel=0.03)
+
+
+def test_moving_obstacles_are_told() -> None:
+    walker = SCENE + (
+        "  - {name: walker, kinematics: {name: omni}, state: [2, 1], goal: [2, 3], shape: {name: circle},"
+        " behavior: {name: dash}}\n"
+    )
+    (found,) = snapshot(text=walker, steps=10, draw=False).moving
+    assert found.name == "walker"
+    assert found.pose[:2] == pytest.approx((2, 1.7), abs=1e-6)

@@ -135,7 +135,38 @@ async def test_says_what_an_edit_changed(workspace: Path) -> None:
         outside = await client.call_tool("validate_scenario", {"scenario_yaml": edited, "base": "../x.yaml"})
     lines = data_of(by_file)["changes"]
     assert any("behavior.name" in line and '"dash" -> "rvo"' in line for line in lines)
-    assert any(line.startswith("world: changed") for line in lines)
+    assert not [line for line in lines if line.startswith("in the world")]  # the behavior is all that differs there
     assert data_of(by_text)["changes"][1:] == lines[1:]
     assert outside.is_error
     assert "path-outside-workspace" in text_of(outside)
+
+
+async def test_an_edit_is_told_once(workspace: Path) -> None:
+    before = ROOM.replace("height: 6}", "height: 6}  # 8 m wide")
+    after = before.replace("width: 8", "width: 9").replace("# 8 m", "# 9 m").replace("name: rover", "number: 2")
+    async with connected(workspace) as client:
+        found = await client.call_tool("validate_scenario", {"scenario_yaml": after, "base": before})
+    lines = data_of(found)["changes"]
+    assert [line for line in lines if "width" in line] == [lines[0], "changed world.width: 8 -> 9"]
+    assert "no comment lost, 1 comment changed" in lines[0]
+    assert "comment changed: # 8 m wide -> # 9 m wide" in lines
+    assert any(line.startswith("in the world: added ") for line in lines), lines
+
+
+async def test_what_was_there_before_an_edit_is_marked(workspace: Path) -> None:
+    before = ROOM.replace("[4, 3, 0]", "[40, 3, 0]")
+    after = before.replace("state: [1, 1, 0]", "state: [-1, 1, 0]")
+    async with connected(workspace) as client:
+        found = await client.call_tool("validate_scenario", {"scenario_yaml": after, "base": before})
+    issues = {issue["path"]: issue["message"] for issue in data_of(found)["issues"] if issue["code"] == "outside-world"}
+    assert issues["robot[0].goal"].endswith(" (also in base)")
+    assert "also in base" not in issues["robot[0].state"]
+
+
+async def test_few_hints_need_no_second_call(empty: Path) -> None:
+    hinted = ROOM.replace("behavior: {name: dash}", "vel_max: [2, 1]")
+    async with connected(empty) as client:
+        data = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": hinted}))
+    assert {issue["code"] for issue in data["issues"]} == {"no-behavior", "vel-min-default"}
+    assert "none needed" in str(data["issues"])
+    assert data["summary"].endswith("; 2 hints")

@@ -99,7 +99,7 @@ async def test_writing(workspace: Path, era: str) -> None:
         assert (data["path"], data["bytes"], data["replaced"]) == ("rooms/new/a.yaml", len(ROOM), False)
         assert data["summary"] in text_of(result)
         assert data["next"] in text_of(result)
-        assert "1 robot, 0 obstacles" in data["summary"]
+        assert "1 robot, no obstacles" in data["summary"]
         assert data_of(await client.call_tool("validate_scenario", {"scenario_path": "rooms/new/a.yaml"}))["valid"]
         other = ROOM.replace("rover", "größer")
         told = error_of(await client.call_tool("write_scenario", {"path": "rooms/new/a.yaml", "yaml": other}))

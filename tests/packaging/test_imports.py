@@ -68,6 +68,7 @@ LAYERS = (
     bridges
     comparison
     config
+    contents
     description
     dry_run
     episode

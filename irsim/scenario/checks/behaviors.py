@@ -46,7 +46,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "no-behavior",
             record.path,
             "this robot has no behavior: it stands still unless the program gives it actions",
-            fix="none needed if a program passes actions; otherwise add 'behavior: {name: dash}'",
+            fix="none needed if it is to stand or a program passes actions; otherwise add 'behavior: {name: dash}'",
             edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
         )
 

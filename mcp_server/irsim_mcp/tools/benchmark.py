@@ -156,7 +156,7 @@ def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     first = lost[0]
     behavior = ""
     if first["behavior"] != "as-written":
-        behavior = f", its robots with behavior {clean(first['behavior'], 60)}"
+        behavior = f" behavior={clean(first['behavior'], 60)!r}"
     found.next = (
         f"To see why: run_episode {clean(first['scenario'], 100)} seed={first['seed']}{behavior} ({first['outcome']})."
     )

@@ -22,7 +22,7 @@ _DESCRIPTION = """
     Draw one moment of a scenario as a PNG and look at it: bodies, yellow arrows (heading; omni: where it moves), goals
     (pale), names, lidar beams, paths. Use it once a scenario is valid, and after a failed run. Step 0 is the start: do
     things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first. Returns one line
-    of text (what the labels r0, G-r0 (its goal) stand for, where the robots are) and the image; writes no file.
+    of text (what the labels r0, G-r0 (its goal) stand for, where who is) and the image; writes no file.
     Next: edit and validate again, or run_episode.
 """
 _NAMED = 10
@@ -35,9 +35,7 @@ def tool(services: Services) -> StrictTool:
         ctx: Context[Any, Any],
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
-        run_id: Annotated[
-            str | None, Field(max_length=100, description="Or a run of run_episode, with its seed.")
-        ] = None,
+        run_id: Annotated[str | None, Field(max_length=100, description="Or of run_episode, with its seed.")] = None,
         step: Annotated[int, Field(ge=-1, le=STEPS, description="0: start; -1: end of the episode.")] = 0,
         seed: Seed = None,
         size_px: Annotated[
@@ -80,21 +78,29 @@ def tool(services: Services) -> StrictTool:
 def _line(scene: dict[str, Any], run_id: str | None) -> str:
     left, right, low, top = scene["extent"]
     size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
-    chance = "" if scene["random"] else ", nothing is random"
+    chance = f"seed {scene['seed']}" if scene["random"] else "nothing is random"
     parts = [
-        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, seed {scene['seed']}{chance})",
+        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
     parts += [_robot(robot) for robot in scene["robots"][:_NAMED]]
     more = len(scene["robots"]) - _NAMED
     if more > 0:
         parts.append(f"{more} robots more")
-    parts.append(f"{scene['obstacles']} obstacle{'s' * (scene['obstacles'] != 1)}")
+    parts.append(scene["contents"])
+    parts += [_moving(item) for item in scene["moving"][:_NAMED]]
+    if (rest := len(scene["moving"]) - _NAMED) > 0:
+        parts.append(f"{rest} moving obstacles more")
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
     again = f"Run: {uri(run_id, 'run.json')}" if run_id else f"Again: {clean(scene['reproduce'], 300)}"
     return "; ".join(parts) + f". {again}"
+
+
+def _moving(item: dict[str, Any]) -> str:
+    x, y, heading = item["pose"]
+    return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad"
 
 
 def _robot(robot: dict[str, Any]) -> str:

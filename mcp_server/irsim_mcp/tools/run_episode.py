@@ -21,11 +21,11 @@ __all__ = ["Episode", "tool"]
 _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up, and say how it ended. Outcome is
     success (every robot reached its goal without a collision), collision, or timeout; none of them is an error. The
-    reason says who hit what, where and when, and who was how far from its goal, doing what. Returns outcome, reason,
-    robots (unsuccessful ones first), first events, the command that repeats the run, and a run_id: its record is kept
-    for 24 hours after its last use. The same scenario and seed give the same result. Next: after a failure inspect_run
-    and draw that moment with render_snapshot (run_id, step), change the scenario, validate and run again; after a
-    success try a few other seeds if anything is random.
+    reason says who hit what, where and when, and who was how far from its goal, doing what. Also returns robots
+    (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
+    use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment with
+    render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds if
+    anything is random.
 """
 _UNDRIVEN = "has no behavior"
 _ARTIFACTS = ("events.json", "trace.csv")
@@ -55,7 +55,7 @@ class Event(BaseModel):
 
     time: float
     step: int
-    kind: Literal["arrival", "waypoint", "collision"]
+    kind: Literal["arrival", "waypoint", "collision", "no_path"]
     object: str
     partner: str | None = None
     x: float
@@ -73,6 +73,7 @@ class Episode(BaseModel):
     summary: str
     seed: int
     random: list[str]
+    behavior: str | None = None
     steps: int
     sim_time: float
     time_limit: float
@@ -95,6 +96,9 @@ def tool(services: Services) -> StrictTool:
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
         seed: Seed = None,
+        behavior: Annotated[
+            str | None, Field(max_length=500, description="Of all robots instead of their own, as in benchmark.")
+        ] = None,
         max_steps: Annotated[
             int | None,
             Field(ge=1, le=STEPS, description=f"Default: the scenario's time limit, at most {STEPS:,}."),
@@ -115,6 +119,7 @@ def tool(services: Services) -> StrictTool:
             progress=reporter(ctx, "steps"),
             seed=seed,
             steps=max_steps,
+            behavior=behavior,
         )
         episode = _episode(found, response_format == "detailed")
         text = TextContent(type="text", text=_text(episode))
@@ -140,6 +145,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         summary=clean(found["summary"], 300),
         seed=found["seed"],
         random=found["random"],
+        behavior=None if found["behavior"] is None else clean(found["behavior"], 200),
         steps=found["steps"],
         sim_time=_rounded(found["sim_time"]),
         time_limit=_rounded(found["time_limit"]),
@@ -189,19 +195,21 @@ def _event(event: dict[str, Any]) -> Event:
 
 
 def _advice(found: dict[str, Any]) -> str:
-    run = f"seed={found['seed']}" if found["run_id"] is None else f"run_id={found['run_id']}"
+    run = f" run_id={found['run_id']}"
+    if found["run_id"] is None:
+        run = f" seed={found['seed']}" if found["random"] else ""
     if found["outcome"] == "success":
         more = "; try other seeds" if found["random"] else ""
-        return f"See the paths with render_snapshot {run} step=-1{more}."
+        return f"See the paths with render_snapshot{run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
-        return "As it should be if a program gives the actions; to try the layout, run a copy with behavior dash."
+        return "As it should be if it is meant to stand or a program drives it; to try the layout: behavior=dash."
     hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
     if found["outcome"] == "collision" and hits:
         look, view = f"step={hits[0]}", "collisions"
     else:
         look, view = "step=-1", "speeds"
     more = "" if found["run_id"] is None else f" and inspect_run view={view}"
-    return f"Look with render_snapshot {run} {look}{more}, change the scenario, validate and run again."
+    return f"Look with render_snapshot{run} {look}{more}, change the scenario, validate and run again."
 
 
 def _text(episode: Episode) -> str:
@@ -212,8 +220,8 @@ def _text(episode: Episode) -> str:
         lines.append(f"Run: {episode.run_id}")
     if episode.reason is not None:
         lines.append(f"Reason: {episode.reason}")
-    chance = f"random: {', '.join(episode.random)}" if episode.random else "nothing is random"
-    lines.append(f"{episode.steps} steps, {episode.sim_time:g} s of at most {limit}, seed {episode.seed} ({chance})")
+    chance = f"seed {episode.seed} (random: {', '.join(episode.random)})" if episode.random else "nothing is random"
+    lines.append(f"{episode.steps} steps, {episode.sim_time:g} s of at most {limit}, {chance}")
     lines.append(f"Robots ({len(episode.robots)} of {episode.robot_count}):")
     lines += [f"- {_robot_text(robot)}" for robot in episode.robots]
     if episode.events:

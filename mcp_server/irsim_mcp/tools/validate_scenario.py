@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.text import clean
+from irsim.text import clean, pair, seconds
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 
@@ -27,6 +27,8 @@ _DESCRIPTION = """
 
 _GAPS = "Tell the user that this version cannot simulate this; to show the rest, run a labelled copy without it."
 _HINTS = 6
+_FEW_HINTS = 3
+"""So many are told even if they were not asked for, in one line each."""
 _MOST_CHANGES = 80
 _ALLOWED = 800
 """Characters of the values that would be accepted."""
@@ -95,12 +97,14 @@ def tool(services: Services) -> StrictTool:
 
 
 def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Report:
-    findings = [item for item in found["findings"] if detailed or item["severity"] != "hint"]
+    few = found["valid"] and found["hints"] <= _FEW_HINTS
+    findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
     if found["hints"] and not detailed:
         kinds = dict.fromkeys(item["code"] for item in found["findings"] if item["severity"] == "hint")
         named = ", ".join(list(kinds)[:_HINTS])
-        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)} ({named}) with response_format=detailed"
+        summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)}"
+        summary += "" if few else f" ({named}) with response_format=detailed"
     issues = _fitting([_issue(item, detailed) for item in findings[:most]], room)
     cut = len(findings) - len(issues)
     if cut > 0:
@@ -131,10 +135,11 @@ def _tried(found: dict[str, Any] | None, detailed: bool) -> str | None:
     """What happened, in words; in detail with everything that was noted."""
     if found is None:
         return None
-    more = [f"'{e['object']}' hit '{e['partner']}' at {e['time']:.1f} s" for e in found["collisions"][1:]]
-    more += [f"'{item['name']}' stands since {item['since']:.1f} s: {item['why']}" for item in found["stuck"][1:]]
-    more += [f"'{item['name']}' left the world at {item['time']:.1f} s" for item in found["left"][1:]]
-    return clean("; ".join([f"seed {found['seed']}, {found['summary']}", *(more if detailed else [])]), 1500)
+    more = [f"'{e['object']}' hit '{e['partner']}' at {seconds(e['time'])}" for e in found["collisions"][1:]]
+    more += [f"'{item['name']}' stands since {seconds(item['since'])}: {item['why']}" for item in found["stuck"][1:]]
+    more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in found["left"][1:]]
+    seed = f"seed {found['seed']}, " if found["random"] else ""
+    return clean("; ".join([seed + found["summary"], *(more if detailed else [])]), 1500)
 
 
 def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
@@ -143,17 +148,24 @@ def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
         return None
     most = _MOST_CHANGES if detailed else _MOST_CHANGES // 4
     lines = [f"{item['change']} {item['path']}: {_values(item)}" for item in found["keys"]]
-    lines += [
-        f"world: {item['change']} {' '.join(filter(None, (item['object'], item['key'])))}: {_values(item)}"
-        for item in found["world"] or []
-    ]
+    facts = [item for item in found["world"] or [] if not item["direct"]]
+    lines += [f"in the world: {item['change']} {_fact(item)}: {_values(item)}" for item in facts]
     lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
+    edited = [pair(item["before"], item["after"]) for item in found["comments_changed"]]
+    lines += [f"comment changed: {before} -> {after}" for before, after in edited]
     cut = [f"{len(lines) - most} more with response_format=detailed"] if len(lines) > most else []
     return [clean(line, 300) for line in [found["summary"], *lines[:most], *cut]]
 
 
+def _fact(item: dict[str, Any]) -> str:
+    return " ".join(filter(None, (item["object"] or "the world's", item["key"])))
+
+
 def _values(item: dict[str, Any]) -> str:
-    before, after = (clean(json.dumps(item[key], ensure_ascii=False), 80) for key in ("before", "after"))
+    before, after = (json.dumps(item[key], ensure_ascii=False) for key in ("before", "after"))
+    if item["change"] == "changed":
+        before, after = pair(before, after)
+    before, after = clean(before), clean(after)
     return {"added": after, "removed": before, "changed": f"{before} -> {after}"}[item["change"]]
 
 
@@ -172,7 +184,7 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
         severity=item["severity"],
         path=clean(item["path"], 120),
         line=item["line"],
-        message=clean(item["message"], 300),
+        message=clean(item["message"], 300) + (" (also in base)" if item["in_base"] else ""),
         fix=None if item["fix"] is None else clean(item["fix"], 300),
         column=item["column"] if detailed else None,
         allowed=clean(allowed, _ALLOWED if detailed else _ALLOWED // 4) if allowed else None,

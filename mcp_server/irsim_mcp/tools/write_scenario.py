@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import anyio.to_thread
 from mcp.types import CallToolResult, TextContent
@@ -62,5 +62,6 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _counted(found: dict[str, int]) -> str:
-    return ", ".join(f"{count} {kind if count != 1 else kind[:-1]}" for kind, count in found.items())
+def _counted(found: dict[str, Any]) -> str:
+    warnings = found["warnings"]
+    return f"{found['contents']}, {warnings or 'no'} warning{'s' * (warnings != 1)}"
