@@ -95,7 +95,8 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
     Args:
         code: From :data:`irsim.codes.CODES`.
         message: One sentence.
-        **details: ``allowed``, ``fix``, ``replace`` (a better value) or ``tolerated`` of the diagnostic.
+        **details: ``allowed`` and ``fix`` of the diagnostic; ``replace``: a better value, or ``rename``: a better key;
+            ``tolerated``: IR-SIM 2.12 carries on with the better value, or ``tolerated_as``: with another one.
     """
     return PydanticCustomError(code, "{message}", {"message": message, **details})
 

@@ -23,15 +23,15 @@ def wrap(angle: float) -> float:
 
 def _clipped(angle: float) -> float:
     if angle > FULL_TURN + _ROUNDING:
-        radians = math.radians(angle)
-        degrees = f"; {angle:g} degrees are {radians:.5g} rad" if 10 <= angle <= 360 else ""
+        radians = min(round(math.radians(angle), 9), FULL_TURN) if 10 <= angle <= 360 else None
+        degrees = "" if radians is None else f"; {angle:g} degrees are {radians:.5g} rad"
         raise problem(
             "angle-over-full-turn",
             f"{angle:g} rad is more than a full turn",
             allowed="0 to 6.28318 (2π) radians",
             fix=f"angles are in radians: a full turn is 6.28318{degrees}",
-            replace=FULL_TURN,
-            tolerated=True,
+            replace=radians,
+            tolerated_as=FULL_TURN,
         )
     return min(angle, FULL_TURN)
 

@@ -16,6 +16,9 @@ from irsim.registry import CustomBehaviors, Registry
 
 __all__ = ["Choices", "Select"]
 
+_NAME_WORDS = ("type", "kind")
+"""What people write for the key ``name``."""
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -147,6 +150,16 @@ class Select:
                 tolerated=True,
             )
             raise _at(kind, empty, None, "name")
+        for other in _NAME_WORDS:
+            if self.alias is None and "name" not in value and isinstance(value.get(other), str):
+                wrong = problem(
+                    "unknown-key",
+                    f"'{other}' is not a key of '{kind}': which one it is stands under 'name'",
+                    allowed=self.names(),
+                    fix="rename it to 'name'",
+                    rename="name",
+                )
+                raise _at(kind, wrong, other, other)
         name = self.name_of(value)
         if name is None:
             missing = problem("missing-key", "'name' is missing", allowed=self.names(), fix="add 'name: ...'")

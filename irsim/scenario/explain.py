@@ -12,9 +12,11 @@ from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
 from irsim.scenario.numerals import read_number
+from irsim.scenario.synonyms import instead_of, vector_of
 from irsim.scenario.tolerance import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.where import at, field_at, lengths_of, literals, model_at, unit_of
-from irsim.scenario.wording import number, shown
+from irsim.scenario.wording import flow, number, shown
+from irsim.vectors import is_vector
 
 __all__ = ["Explainer"]
 
@@ -98,6 +100,11 @@ class Explainer:
         sure = not isinstance(meant, str) or surely(self.value, meant)
         edit = Edit("replace", self.path, meant, safe=sure) if meant is not None else None
         carry_on = edit if context.get("tolerated") else self._carry_on()
+        if "tolerated_as" in context:
+            carry_on = Edit("replace", self.path, context["tolerated_as"])
+        if "rename" in context:
+            edit = Edit("rename", self.path, context["rename"])
+            carry_on = carry_on_group((*self.path[:-1], context["rename"]), self.data)
         return error(
             self.kind,
             self.path,
@@ -120,17 +127,26 @@ class Explainer:
         meant = getattr(model, "also_called", {}).get(str(key).lower())
         near = meant or nearest(key, allowed)
         where = f"'{format_path(parent)}'" if parent else "a scenario"
+        written = at(self.data, parent)
+        other, like = (None, None) if meant else instead_of(self.path, self.data)
+        edit, fix = None, other
+        if like is not None:
+            edit = Edit("rename", self.path, like, safe=False)
+        elif other is None and near is not None and isinstance(written, Mapping) and near in written:
+            fix = f"'{near}' is what it is called, and stands there already: keep one of them"
+        elif other is None and near is not None:
+            fix, edit = f"rename it to '{near}'", Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
+        elif other is None:
+            fix, edit = "remove it", Edit("remove", self.path, safe=False)
         return error(
             "unknown-key",
             self.path,
             f"'{key}' is not a key of {where}",
             given=key,
             allowed=sorted(allowed),
-            fix=f"rename it to '{near}'" if near else "remove it",
-            edit=Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
-            if near
-            else Edit("remove", self.path, safe=False),
-            carry_on=carry_on_unknown_key(self.path, at(self.data, parent)),
+            fix=fix,
+            edit=edit,
+            carry_on=carry_on_unknown_key(self.path, written),
         )
 
     def _choice(self) -> Finding:
@@ -220,6 +236,13 @@ class Explainer:
             return f"quote it: '{value}'", Edit("replace", path, str(value))
         if expected == "a whole number" and isinstance(value, float) and value.is_integer() and abs(value) < _LARGE:
             return f"{self._key()}: {int(value)}", Edit("replace", path, int(value))
+        if expected == "a list" and (vector := vector_of(value)) is not None:
+            return f"write {flow(vector)}", Edit("replace", path, vector)
+        if expected == "a list" and isinstance(value, Mapping) and value and is_vector(list(value.values())):
+            return f"numbers alone, in a list: {flow(list(value.values()))}", None
+        if expected == "a list" and place(path) == "entry.waypoints" and is_vector(points := at(self.data, path[:-1])):
+            edit = Edit("replace", path[:-1], [points])
+            return f"a list of places: waypoints: {flow([points])}", edit
         if expected == "a list" and isinstance(value, Mapping):
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
         if value is None:

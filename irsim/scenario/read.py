@@ -70,9 +70,10 @@ def read(
     findings = [Finding(problem) for problem in document.problems]
     if document.data is None and document.fatal:
         return Reading(None, _diagnostics(findings, document, strict), document)
-    resolved = _Reader(document, limits, findings, survey).resolved()
+    reader = _Reader(document, limits, findings, survey)
+    resolved = reader.resolved()
     blocked = document.fatal or any(f.blocking or (strict and f.diagnostic.severity == "error") for f in findings)
-    return Reading(None if blocked else resolved, _diagnostics(findings, document, strict), document)
+    return Reading(None if blocked else resolved, _diagnostics(findings, document, strict, reader.renamed), document)
 
 
 def _document(source: Any, limits: Limits, name: str | None) -> Document:
@@ -94,6 +95,7 @@ class _Reader:
         self.document, self.limits, self.findings, self.survey = document, limits, findings, survey
         self.data = document.data
         self.touched: list[Path] = []
+        self.renamed: dict[Path, Path] = {}
         self._map: tuple[Any, LoadedMap] | None = None
 
     def resolved(self) -> ResolvedScenario | None:
@@ -135,6 +137,9 @@ class _Reader:
                 break
             edits = [self._repair(f) for f in found]
             self.touched += [edit.path for edit in edits]
+            self.renamed.update(
+                ((*edit.path[:-1], str(edit.value)), edit.path) for edit in edits if edit.action == "rename"
+            )
             self.data = applied(self.data, edits)
             if (crowd := _too_many(self.data, self.limits)) is not None:  # a repaired number counts too
                 self._add([crowd])
@@ -184,6 +189,14 @@ class _Reader:
                 self.findings.append(finding)
 
 
+def _written(path: Path, renamed: Mapping[Path, Path]) -> Path:
+    """The path before keys were renamed: the last part that was renamed first."""
+    for end in range(len(path), 0, -1):
+        if (before := renamed.get(path[:end])) is not None:
+            path = (*before, *path[end:])
+    return path
+
+
 def _same(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
     """Equal options and numbers; an array only if it is the same one."""
     return a[1:] == b[1:] and (a[0] is b[0] or (not hasattr(a[0], "__array__") and a[0] == b[0]))
@@ -229,15 +242,25 @@ def _too_many(data: Mapping[str, Any], limits: Limits) -> Finding | None:
     return None
 
 
-def _diagnostics(findings: list[Finding], document: Document, strict: bool) -> list[Diagnostic]:
-    """Findings with their positions, in order; tolerated errors are warnings unless strict."""
+def _diagnostics(
+    findings: list[Finding], document: Document, strict: bool, renamed: Mapping[Path, Path] | None = None
+) -> list[Diagnostic]:
+    """Findings with their positions, in order; tolerated errors are warnings unless strict.
+
+    Args:
+        findings: In the terms of the repaired data.
+        document: As it was written.
+        strict: As for reading.
+        renamed: Place of each key that was renamed → where it was written.
+    """
     shown = []
     for finding in findings:
         item = finding.diagnostic
         changes: dict[str, Any] = {"file": document.name}
         path = item.path
         if item.line is None:
-            mark = document.mark((*document.prefix, *path), key=item.code in KEY_CODES)
+            written = _written(path, renamed or {})
+            mark = document.mark((*document.prefix, *written), key=item.code in KEY_CODES)
             if mark is not None:
                 changes.update(line=mark.line, column=mark.column, length=mark.length)
             changes["path"] = (*document.prefix, *path)

@@ -76,6 +76,8 @@ def _changed(text: str, root: yaml.Node | None, edit: Edit) -> str:
     if value.start_mark.index < key.end_mark.index:
         raise _NotPossible  # an alias: the node stands elsewhere
     if edit.action == "rename":
+        if any(_is_key(other, str(edit.value)) for other, _ in parent.value):
+            raise _NotPossible
         return text[: key.start_mark.index] + yaml_flow(str(edit.value)) + text[key.end_mark.index :]
     if edit.action == "replace":
         return _replace(text, value, edit.value, key)

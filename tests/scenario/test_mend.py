@@ -88,3 +88,58 @@ def test_hints_and_guesses_are_left_alone() -> None:
     mended = mend(text)
     assert mended.text == text
     assert {"no-behavior", "default-state"} <= {item.code for item in mended.reading.diagnostics}
+
+
+ROBOT = "state: [1, 5, 0], goal: [9, 5], behavior: {name: dash}"
+
+
+@pytest.mark.parametrize(
+    ("line", "repaired"),
+    [
+        ("sensors: [{name: lidar2d, angle_range: 180}]", "sensors: [{name: lidar2d, angle_range: 3.141592654}]"),
+        ("sensors: [{name: lidar2d, angle_range: 270}]", "sensors: [{name: lidar2d, angle_range: 4.71238898}]"),
+        ("sensors: [{name: lidar2d, angle_range: 360}]", "sensors: [{name: lidar2d, angle_range: 6.283185307}]"),
+        ("fov: 90, fov_radius: 3", "fov: 1.570796327, fov_radius: 3"),
+        ("sensors: [{name: lidar2d, angle_range: 7}]", None),  # nobody knows what was meant
+        ("sensors: [{name: lidar2d, range: 5, range_max: 6}]", None),  # would be there twice
+        ("shape: {type: rectangle, length: 0.6, width: 0.4}", "shape: {name: rectangle, length: 0.6, width: 0.4}"),
+        ("shape: {name: circle, diameter: 0.6}", None),
+        ("shape: {name: rectangle, width: 0.6, height: 0.4}", None),
+    ],
+)
+def test_values_and_names_that_were_meant(line: str, repaired: str | None) -> None:
+    head = "world: {width: 10, height: 10}\nrobot:\n  - {kinematics: {type: diff}, "
+    mended = mend(f"{head}{ROBOT}, {line}}}\n")
+    expected = f"{head}{ROBOT}, {repaired or line}}}\n".replace("{type: diff}", "{name: diff}")
+    assert mended.text == expected
+    if repaired:
+        assert not mended.reading.errors
+
+
+def test_a_key_is_not_renamed_to_one_that_is_there() -> None:
+    text = f"robot:\n  - {{kinematics: {{name: diff}}, {ROBOT}}}\nrobots:\n  - {{kinematics: {{name: omni}}}}\n"
+    mended = mend(text)
+    assert mended.text == text
+    (item,) = mended.reading.errors
+    assert item.edit is None
+    assert item.fix == "'robot' is what it is called, and stands there already: keep one of them"
+    both = mend(f"robot: {{kinematics: {{name: diff}}, start: [1, 5, 0], pose: [2, 5, 0], {ROBOT[18:]}}}\n")
+    assert both.text.count("state:") == 1
+
+
+def test_places_written_as_mappings() -> None:
+    text = "robot: {kinematics: {name: diff}, state: {x: 1, y: 5, theta: 0}, goal: {x: 9, y: 5}, waypoints: null}\n"
+    mended = mend(text)
+    assert "state: [1, 5, 0], goal: [9, 5]" in mended.text
+    assert "waypoints: [[9, 5]]" in mend("robot: {kinematics: {name: diff}, waypoints: [9, 5]}\n").text
+
+
+def test_lines_below_a_renamed_key_are_their_own() -> None:
+    text = "world: {width: 10}\nrobots:\n  - kinematics: {name: diff}\n    position: [1, 5, pi]\n    color: bleu\n"
+    mended = mend(text)
+    assert {(repair.finding.code, repair.finding.line) for repair in mended.repairs} == {
+        ("unknown-key", 2),
+        ("unknown-key", 4),
+        ("wrong-type", 4),
+        ("unknown-color", 5),
+    }

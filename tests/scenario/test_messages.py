@@ -237,3 +237,25 @@ def test_diagnostics_are_data() -> None:
     assert data["path"] == "world.widht"
     assert data["edit"] == {"action": "rename", "path": "world.widht", "value": "width"}
     assert (data["line"], data["column"], data["length"], data["file"]) == (1, 9, 5, "a.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "fix"),
+    [
+        ("world: {size: [20, 15]}\n", "write 'width: 20' and 'height: 15'"),
+        ("robot: {shape: {name: circle, diameter: 0.6}}\n", "write its half as the radius: 'radius: 0.3'"),
+        (
+            "obstacle: {shape: {name: rectangle, width: 1, height: 2}}\n",
+            "rename it to 'length': 'length' is along the heading (x where it is 0), 'width' across",
+        ),
+        (
+            "robot: {position: [1, 5], heading: 90}\n",
+            "it belongs into 'state', which is [x, y, theta]: state: [1, 5, 1.5708]",
+        ),
+        ("robot: {x: 3, y: 4}\n", "it belongs into 'state', which is [x, y, theta]: state: [3, 4, 0]"),
+        ("robot: {radius: 0.3}\n", "it belongs into 'shape': {name: circle, radius: 0.3}"),
+        ("robot: {vel_max: {linear: 1, angular: 2}}\n", "numbers alone, in a list: [1, 2]"),
+    ],
+)
+def test_words_that_say_it_in_another_way(text: str, fix: str) -> None:
+    assert fix in [item.fix for item in read(text, strict=True).errors]

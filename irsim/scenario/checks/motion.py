@@ -11,6 +11,7 @@ from typing import Any
 from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit, Path
 from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.magnitude import LARGEST
 from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of, segment_gap, thickness, top_speed
 from irsim.scenario.findings import Finding, hint, warning
@@ -143,7 +144,7 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     dt = context.scenario.world.step_time
     step = top_speed(record) * dt
-    if not math.isfinite(step) or step <= 2 * record.goal_threshold * (1 + 1e-9):
+    if not 2 * record.goal_threshold * (1 + 1e-9) < step <= LARGEST:
         return
     threshold = math.ceil(step / 2 * 100 + 1) / 100
     yield hint(

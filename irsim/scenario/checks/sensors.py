@@ -13,6 +13,7 @@ from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.where import at
 
 _MOST_CELLS = 16_000_000
 _USUAL_CELL = 0.1
@@ -59,7 +60,9 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
             fix="range_min must be smaller than range_max",
         )
     if getattr(sensor, "is_lidar", False):
-        yield from _beams(path, sensor)
+        written = at(context.document.data, (*path, "angle_range"))
+        if not isinstance(written, (int, float)) or written <= sensor.angle_range * (1 + _LEAST_SPAN):
+            yield from _beams(path, sensor)
         yield from _unused(path, sensor)
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":
         yield hint("contact-without-mode", path, "there are no contact forces without 'collision_mode: contact'")
