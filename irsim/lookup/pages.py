@@ -121,13 +121,17 @@ def _plot(source: _Source) -> str:
 
 
 def _templates(source: _Source) -> str:
-    parts = ["Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file."]
+    intro = (
+        "Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file. How a run "
+        "ends is told for the default parameters."
+    )
+    parts = [intro]
     for template in templates.load_all():
         answer = source.about(template.name)
-        about = f"{template.purpose} With the default parameters a run ends in {' or '.join(template.outcomes)}."
+        about = f"{template.purpose} Ends in {' or '.join(template.outcomes)}."
         words = f"About: {', '.join(template.tags)}."
         table = key_table(_all_keys(answer))
-        parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{table}\n`{answer.example}`")
+        parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{table.strip()}")
     return "\n\n".join(parts)
 
 

@@ -1,4 +1,7 @@
-"""Small safe expressions over template parameters: arithmetic, comparisons, lists, a few functions. Never ``eval``."""
+"""Small safe expressions over template parameters: arithmetic, comparisons, lists, mappings, a few functions.
+
+Never ``eval``.
+"""
 
 from __future__ import annotations
 
@@ -57,6 +60,8 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
                 return names[name]
             case ast.List(elts=items):
                 return [value(item) for item in items]
+            case ast.Dict(keys=keys, values=items) if all(keys):
+                return {value(key): value(item) for key, item in zip(keys, items, strict=True) if key is not None}
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return -value(operand)
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:

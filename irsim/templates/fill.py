@@ -76,6 +76,8 @@ def format_value(value: Any) -> str:
         return "0" if short == "-0" else short
     if isinstance(value, list):
         return "[" + ", ".join(format_value(item) for item in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {format_value(item)}" for key, item in value.items()) + "}"
     return str(value)
 
 
@@ -114,6 +116,8 @@ def _plain(node: yaml.Node) -> Any:
 def _same(old: Any, new: Any) -> bool:
     if isinstance(old, list) and isinstance(new, list):
         return len(old) == len(new) and all(_same(a, b) for a, b in zip(old, new, strict=True))
+    if isinstance(old, dict) and isinstance(new, dict):
+        return old.keys() == new.keys() and all(_same(old[key], new[key]) for key in old)
     if isinstance(old, bool) or isinstance(new, bool) or isinstance(old, str) or isinstance(new, str):
         return type(old) is type(new) and bool(old == new)
     return isinstance(old, (int, float)) and isinstance(new, (int, float)) and abs(old - new) < 1e-6

@@ -108,7 +108,8 @@ async def test_completions(workspace: Path, era: str) -> None:
         assert await completed(client, design, "kinematics", "o") == ["omni", "omni_angular"]
         assert await completed(client, design, "difficulty", "") == ["easy", "medium", "hard"]
         assert await completed(client, debug, "run_id", "room") == [run_id]
-        assert await completed(client, compare, "scenario", "cross") == ["crossing-mine.yaml", "crossing"]
+        found = await completed(client, compare, "scenario", "cross")
+        assert found == ["crossing-mine.yaml", "crossing", "crossing-pedestrians"]
         everything = await completed(client, compare, "scenario", "")
         assert "room.yaml" in everything
         assert not {"link.yaml", "evil\x1b[2J.yaml"} & set(everything)

@@ -95,6 +95,7 @@ def test_what_is_not_a_setting_is_refused(setting: str) -> None:
         ("2 * a + 1", 7),
         ("[a, -a, a / 2]", [3, -3, 1.5]),
         ("1 if a > 2 else 5", 1),
+        ("{'name': kind, 'radius': a / 2}", {"name": "y", "radius": 1.5}),
         ("1 if kind == 'x' else 5", 5),
         ("max(a, 10) // 4", 2),
         ("round(pi * a)", 9),
@@ -126,3 +127,11 @@ def test_replacing_writes_what_yaml_reads_back() -> None:
     data = yaml.safe_load(replace_values(TEXT, changes))
     assert data["world"] == {"width": 0.333333, "height": 8}
     assert data["robot"][0] == {"shape": {"name": "polygon", "radius": 0.3}, "goal": [[1, 0], [2.5, True]]}
+
+
+def test_mappings_are_written_as_yaml_and_left_alone_if_they_are_the_same() -> None:
+    text = "behavior: {name: orca, timeHorizon: 3}   # both\n"
+    assert replace_values(text, {("behavior",): {"name": "orca", "timeHorizon": 3.0}}) == text
+    changed = replace_values(text, {("behavior",): {"name": "rvo", "vxmax": 0.5}})
+    assert yaml.safe_load(changed) == {"behavior": {"name": "rvo", "vxmax": 0.5}}
+    assert changed.rstrip().endswith("# both")

@@ -43,7 +43,18 @@ def extremes(template: Template) -> list[dict[str, object]]:
 SITUATIONS = [
     *("head-on", "crossing", "overtaking", "doorway", "bottleneck", "T-junction", "group", "queue", "exploration"),
     *("pushing", "sorting", "parking", "planner", "mixed fleet", "wandering", "CrowdNav", "perlin", "image map"),
-    *("fmcw", "maze", "warehouse", "crowd", "training", "compound", "lidar"),
+    *(
+        "fmcw",
+        "maze",
+        "warehouse",
+        "crowd",
+        "training",
+        "compound",
+        "lidar",
+        "dead end",
+        "staggered",
+        "random benchmark",
+    ),
 ]
 
 
@@ -128,3 +139,49 @@ def test_robots_pass_in_corridors_of_any_width(given: dict[str, float], tmp_path
     path = tmp_path / "corridor.yaml"
     path.write_text(templates.fill(templates.load("corridor-passing"), given), encoding="utf-8")
     assert irsim.run(path).outcome == "success"
+
+
+def filled(name: str, folder: Path, **given: object) -> Path:
+    path = folder / f"{name}.yaml"
+    path.write_text(templates.fill(templates.load(name), given), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("behavior", "outcome"),
+    [("follow", "success"), ("dash", "collision"), ("orca", "timeout"), ("rvo", "timeout"), ("sfm", "timeout")],
+)
+def test_only_who_plans_gets_out_of_the_trap(behavior: str, outcome: str, tmp_path: Path) -> None:
+    assert irsim.run(filled("u-trap", tmp_path, behavior=behavior), seed=0).outcome == outcome
+
+
+def test_people_cross_at_their_times_and_in_the_way_of_the_robot(tmp_path: Path) -> None:
+    path = filled("crossing-pedestrians", tmp_path, gap=1.5, walking=1.0)
+    env = irsim.make(path, display=False, headless=True)
+    heights = []
+    for _ in range(60):
+        env.step()
+        heights.append([float(person.state[1, 0]) for person in env.obstacle_list])
+    env.end(ending_time=0)
+    for k in range(4):
+        assert heights[15 * (k + 1) - 1][k] == pytest.approx(0, abs=1e-6)
+    text = templates.load("crossing-pedestrians").text
+    path.write_text(text.replace("{name: orca, timeHorizon: 3, safe_radius: 0.2}", "{name: dash}"), encoding="utf-8")
+    assert irsim.run(path).outcome == "collision"
+
+
+def test_another_behavior_brings_its_own_options(tmp_path: Path) -> None:
+    path = filled("random-crossing", tmp_path, behavior="rvo", robots=4)
+    [robots] = yaml.safe_load(path.read_text(encoding="utf-8"))["robot"]
+    assert robots["behavior"] == {"name": "rvo", "vxmax": 1, "vymax": 1, "neighbor_threshold": 4}
+    assert irsim.run(path, seed=0).outcome == "success"
+    first, second = (irsim.make(path, display=False, headless=True, seed=seed) for seed in (0, 1))
+    assert (first.robot.state != second.robot.state).any()
+
+
+def test_the_first_scan_measures_how_fast_people_walk() -> None:
+    env = irsim.make(templates.scenario_file("fmcw-watch"), display=False, headless=True, seed=0)
+    speeds = env.get_lidar_scan()["radial_velocity"]
+    env.end(ending_time=0)
+    assert speeds.min() < -0.8
+    assert speeds.max() > 0.8
