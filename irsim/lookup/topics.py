@@ -341,7 +341,7 @@ def _index() -> Answer:
             "components": kinds,
             "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
             "more": [
-                Key(name="guides", text=f"short texts: {', '.join(GUIDES)}"),
+                Key(name="guides", text=", ".join(GUIDES)),
                 Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings"),
             ],
         },
