@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any, Literal
@@ -9,6 +10,7 @@ from typing import Any, Literal
 from irsim.benchmarks.variant import behavior_of, with_behavior
 from irsim.env import Env
 from irsim.episode import horizon_of, import_modules
+from irsim.metrics.company import first_arrivals, on_their_way
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.observers.trace import record
@@ -19,6 +21,8 @@ from irsim.scenario.objects import ResolvedScenario
 __all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
 
 Outcome = Literal["success", "collision", "timeout"]
+_STRIDE = 100
+"""Steps after which it is seen whether the people have arrived."""
 _TOLD = 10
 """Robots of which an episode tells what became."""
 
@@ -95,8 +99,9 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     simulation = env.simulation
     trace = record(simulation, horizon)
-    measured = episode_metrics(trace, simulation, env.events, ways=ways)
     steps = int(simulation.count[0])
+    measured = episode_metrics(trace, simulation, env.events, ways=ways)
+    measured.episode["pedestrian_delay"] = _delay(task, env, horizon)
     env.end(ending_time=0.0)
     robots = measured.robots
     outcome: Outcome = "timeout"
@@ -114,6 +119,29 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "failures": _failures(measured),
         "metrics": measured.episode,
     }
+
+
+def _delay(task: Task, env: Env, horizon: int) -> float:
+    """``pedestrian_delay`` [s]; lets time pass until the people have arrived, at most to the horizon."""
+    people = on_their_way(env.scenario.objects)
+    if not people or not env.robot_list:
+        return math.nan
+    with_robots: dict[str, float] = {}
+    while True:
+        with_robots = first_arrivals(env.events, people)
+        left = horizon - int(env.simulation.count[0])
+        if len(with_robots) == len(people) or left <= 0:
+            break
+        env.simulation.advance(min(left, _STRIDE))
+    if not with_robots:
+        return math.nan
+    alone = Env(scenario_of(task.job), seed=task.seed, display=False, headless=True, log_level="ERROR")
+    alone.delete_objects([robot.id for robot in alone.robot_list])
+    alone.simulation.advance(int(env.simulation.count[0]))
+    without = first_arrivals(alone.events, people)
+    alone.end(ending_time=0.0)
+    delays = [with_robots[name] - without[name] for name in with_robots if name in without]
+    return math.fsum(delays) / len(delays) if delays else math.nan
 
 
 def _failures(measured: EpisodeMetrics) -> dict[str, str]:

@@ -98,6 +98,19 @@ def _extras() -> tuple[Metric, ...]:
         ),
         extra("freezing_count", "count", "stalls of 2 s or more, not arrived", better="less"),
         extra("freezing_time", "s", "time in such stalls", better="less"),
+        extra("min_clearance", "m", "least distance to anything that can be hit, surface to surface", "min", "more"),
+        extra(
+            "human_collisions_by_robot", "count", "of those with humans, where it went faster to the contact, or both"
+        ),
+        extra("human_collisions_by_human", "count", "of those with humans, where the human did, or both"),
+        extra("group_space_intrusion_ratio", "0-1", "share of time in the space of a social group", better="less"),
+        extra("group_collision_rate", "0/1", "entered the space of a social group", "max", "less"),
+        extra("social_force_robot", "m/s", "norm of the social force of humans on it, summed times dt", better="less"),
+        extra("social_force_agents", "m/s", "norms of its social forces on humans, summed times dt", better="less"),
+        extra("social_work", "m/s", "both of these together", better="less"),
+        extra("pedestrian_velocity_avg", "m/s", "mean speed of the humans until it arrived"),
+        extra("control_effort", "s", "squared controls, each over its limit, summed times dt", better="less"),
+        extra("left_world", "0/1", "its position was outside the world", "max", "less"),
     )
 
 
@@ -106,6 +119,13 @@ METRICS: tuple[Metric, ...] = _canonical() + _extras()
 
 EPISODE_METRICS: tuple[Metric, ...] = (
     Metric("collision", "0/1", "a robot collided before it arrived", "max", better="less"),
+    Metric(
+        "pedestrian_delay",
+        "s",
+        "time of the humans to their goals minus that of the same seed without robots; of those who arrive in both",
+        canonical=False,
+        better="less",
+    ),
     Metric("aggregated_time", "s", "when the last robot arrived; undefined if one never did", "max", better="less"),
 )
 """What only an episode has."""

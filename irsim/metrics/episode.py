@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.metrics.clearance import Clearance, clearance
-from irsim.metrics.company import company_of
 from irsim.metrics.definitions import METRICS
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.metrics.motion import motion
 from irsim.metrics.outcome import outcome
 from irsim.metrics.progress import progress
+from irsim.metrics.social import social
 from irsim.metrics.space import space
 from irsim.metrics.track import Track, tracks
 from irsim.simulation import Simulation
@@ -80,23 +80,21 @@ def episode_metrics(
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
     records = simulation.scenario.objects
     distances = clearance(trace, simulation)
-    passable = {record.name for record in records if record.unobstructed}
     robots = distances.robots.tolist()
     cut = tracks(
         trace,
         list(events),
         distances,
-        company_of(records),
+        simulation.scenario,
         np.asarray(simulation.radius[: simulation.objects], dtype=np.float64),
         [_top_speed(records[robot].vel_max, records[robot].kinematics) for robot in robots],
-        passable,
     )
     geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
     values, flags = [], []
     for track in cut:
         made, odd = progress(track, geodesics, inscribed_radius(simulation, track.index))
-        found = outcome(track) | motion(track) | space(track) | made
+        found = outcome(track) | motion(track) | space(track) | social(track) | made
         values.append({key: _settled(found[key]) for key in order})
         flags.append(odd)
     names = [track.name for track in cut]
@@ -130,6 +128,7 @@ def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     collided = any(not robot["success"] and not robot["timeout"] for robot in robots)
     found["timeout"] = float(not collided and not found["success"]) if robots else math.nan
     found["collision"] = float(collided) if robots else math.nan
+    found["pedestrian_delay"] = math.nan  # takes a second run: irsim.benchmark makes it
     times = [robot["time_to_goal"] for robot in robots]
     found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
     return found

@@ -26,6 +26,9 @@ def motion(track: Track) -> dict[str, float]:
     - ``cumulative_heading_change`` [rad], and divided by the path ``angle_over_length`` [rad/m].
     - ``curvature``, ``roughness`` [1/m]: see :func:`curvatures`.
     - ``motion_energy`` [m^2/s]: sum of squared speed times dt (unit mass).
+    - ``control_effort`` [s]: sum over steps and controls of (executed control / its greatest magnitude)^2 times dt, of
+      the controls that have a finite limit above 0; NaN without any.
+    - ``left_world``: its position was outside the world.
     """
     dt, speed = track.step_time, track.speed
     stalled = (speed < _STILL) & (np.abs(track.turning) < _UNTURNED * dt)
@@ -53,9 +56,19 @@ def motion(track: Track) -> dict[str, float]:
         "roughness": _or_nan(np.abs(np.diff(bends)), np.mean),
         "angle_over_length": turned / length if length > 0 else float("nan"),
         "motion_energy": float((speed**2).sum() * dt),
+        "control_effort": _effort(track),
+        "left_world": float(track.outside.any()),
         "freezing_count": float(len(long)),
         "freezing_time": float(sum(end - begin for begin, end in long) * dt),
     }
+
+
+def _effort(track: Track) -> float:
+    bounded = np.isfinite(track.limits) & (track.limits > 0)
+    if not bounded.any():
+        return float("nan")
+    shares = track.control[:, bounded] / track.limits[bounded]
+    return float((shares**2).sum() * track.step_time)
 
 
 def curvatures(points: NDArray[np.float64]) -> NDArray[np.float64]:

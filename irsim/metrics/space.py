@@ -19,6 +19,7 @@ def space(track: Track) -> dict[str, float]:
     """Distances between surfaces over all rows until it arrived; NaN where there is nobody of the kind.
 
     - ``clearing_distance_min``, ``_avg`` [m]: to the nearest static thing.
+    - ``min_clearance`` [m]: to the nearest robot, human or static thing.
     - ``distance_to_human_min``, ``_avg`` [m]: to the nearest human.
     - ``space_compliance``: share of rows with every human at 0.5 m or more (high is good);
       ``personal_space_intrusion_ratio`` is 1 minus it. ``proxemics_*_ratio``: share of rows with the nearest human
@@ -30,6 +31,7 @@ def space(track: Track) -> dict[str, float]:
     agents, humans, static = track.distance.T
     nan = float("nan")
     found = {
+        "min_clearance": _least(track.distance),
         "clearing_distance_min": _least(static),
         "clearing_distance_avg": _mean(static),
         "distance_to_human_min": _least(humans),

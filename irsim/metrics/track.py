@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.metrics.company import HUMAN, company_of, social_groups
+
 if TYPE_CHECKING:
     from irsim.metrics.clearance import Clearance
     from irsim.observers.events import Event
     from irsim.observers.trace import Trace
+    from irsim.scenario.objects import ResolvedScenario
 
 __all__ = ["Track", "tracks"]
 
@@ -25,6 +28,7 @@ class Track:
     Attributes:
         name: Of the robot.
         index: Among the objects.
+        first: Step of the first row.
         step_time: Period [s].
         pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start.
         goal: (K, 3) present goal; NaN without one.
@@ -32,7 +36,12 @@ class Track:
         distance: (K, 3) distance [m] to the nearest robot, human, static thing (see ``Clearance``).
         arrival: Step of the first arrival, None if it never arrived.
         collisions: Its contacts until then, with the kind of each (a number of :mod:`irsim.metrics.company`).
+        control: (K - 1, C) controls executed in each step, as many as its drive has.
+        limits: (C,) greatest magnitude of each.
+        outside: (K,) its position is outside the world.
         others: (K, M, 3) poses of the humans.
+        people: Names of the humans.
+        groups: Of each social group its members, as columns of ``others``.
         reaches: (M,) bounding radii of the humans [m].
         reach: Its own bounding radius [m].
         top_speed: What it may do at most [m/s].
@@ -40,6 +49,7 @@ class Track:
 
     name: str
     index: int
+    first: int
     step_time: float
     pose: Floats
     goal: Floats
@@ -47,7 +57,12 @@ class Track:
     distance: Floats
     arrival: int | None
     collisions: tuple[tuple[Event, int], ...]
+    control: Floats
+    limits: Floats
+    outside: NDArray[np.bool_]
     others: Floats
+    people: tuple[str, ...]
+    groups: tuple[tuple[int, ...], ...]
     reaches: Floats
     reach: float
     top_speed: float
@@ -88,10 +103,9 @@ def tracks(
     trace: Trace,
     events: list[Event],
     distances: Clearance,
-    kinds: NDArray[np.uint8],
+    scenario: ResolvedScenario,
     radii: Floats,
     top_speeds: list[float],
-    passable: set[str],
 ) -> list[Track]:
     """Cut a trace into the tracks of its robots.
 
@@ -99,16 +113,18 @@ def tracks(
         trace: The episode.
         events: What happened in it.
         distances: Of the robots.
-        kinds: (N,) who is who (:func:`irsim.metrics.company.company_of`).
+        scenario: What was simulated.
         radii: (N,) bounding radii [m].
         top_speeds: Of the robots [m/s].
-        passable: Names of what is ``unobstructed``.
     """
     from irsim.observers.events import collision_of, first_events
 
+    records = scenario.objects
+    kinds, groups = company_of(records), social_groups(records)
+    passable = {record.name for record in records if record.unobstructed}
     number = {name: index for index, name in enumerate(trace.names)}
     arrivals = first_events(events, "arrival")
-    humans = np.flatnonzero(kinds == 1)
+    humans = np.flatnonzero(kinds == HUMAN)
     first = int(trace.step[0])
     found = []
     for place, robot in enumerate(distances.robots.tolist()):
@@ -121,10 +137,16 @@ def tracks(
                 other = event.partner if event.object == name else event.object
                 hits.append((event, int(kinds[number[str(other)]])))
         them = humans[humans != robot]
+        column = {human: place for place, human in enumerate(them.tolist())}
+        together = [tuple(column[one] for one in group if one in column) for group in groups]
+        record = records[robot]
+        x, y = trace.pose[rows, robot, 0], trace.pose[rows, robot, 1]
+        x0, y0, x1, y1 = scenario.world.bounds
         found.append(
             Track(
                 name=name,
                 index=robot,
+                first=first,
                 step_time=trace.step_time,
                 pose=trace.pose[rows, robot],
                 goal=trace.goal[rows, robot],
@@ -132,7 +154,12 @@ def tracks(
                 distance=distances.distance[rows, place],
                 arrival=arrival,
                 collisions=tuple(hits),
+                control=trace.control[rows, robot, : record.vel_dim][1:],
+                limits=np.maximum(np.abs(record.vel_min), np.abs(record.vel_max)),
+                outside=(x < x0) | (x > x1) | (y < y0) | (y > y1),
                 others=trace.pose[rows][:, them],
+                people=tuple(trace.names[human] for human in them),
+                groups=tuple(group for group in together if len(group) > 1),
                 reaches=radii[them],
                 reach=float(radii[robot]),
                 top_speed=top_speeds[place],

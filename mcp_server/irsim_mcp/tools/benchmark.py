@@ -27,7 +27,7 @@ _DESCRIPTION = """
     a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
-_METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl")
+_METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl", "min_clearance")
 _DIFFERENCES = (*_SHARES, "time_to_goal")
 _ROWS, _NOTES, _DECIMALS = 50, 10, 3
 _FAILED, _FAILURES = 10, 3

@@ -21,22 +21,24 @@ import sys
 from typing import Any
 
 FEWEST = 10
-SHARES = ("success", "collision", "timeout", "goal_reached")
+SHARES = ("success", "goal_reached", "timeout", "group_collision_rate", "left_world", "collision")
 MORE = """
     success goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
-    distance_to_human_min stl barn_score
+    distance_to_human_min stl barn_score min_clearance
 """.split()  # noqa: SIM905
 LESS = """
     collision_count collision_steps wall_collisions agent_collisions human_collisions timeout
     failure_to_progress stalled_time time_to_goal path_length acceleration_avg acceleration_max jerk_avg
     jerk_max personal_space_intrusion_ratio min_distance_to_goal final_distance_to_goal
     cumulative_heading_change path_irregularity path_efficiency curvature roughness angle_over_length
-    motion_energy discomfort_ratio near_misses freezing_count freezing_time collision aggregated_time
+    motion_energy discomfort_ratio near_misses freezing_count freezing_time group_space_intrusion_ratio
+    group_collision_rate social_force_robot social_force_agents social_work control_effort left_world collision
+    pedestrian_delay aggregated_time
 """.split()  # noqa: SIM905
 EITHER = """
     velocity_min velocity_max acceleration_min jerk_min time_to_collision_min proxemics_intimate_ratio
     proxemics_personal_ratio proxemics_social_ratio proxemics_public_ratio distance_to_human_avg
-    discomfort_min_dist
+    discomfort_min_dist human_collisions_by_robot human_collisions_by_human pedestrian_velocity_avg
 """.split()  # noqa: SIM905
 # Which way is better, None if that depends; as in references/metrics.md.
 BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)

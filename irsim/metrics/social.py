@@ -1,0 +1,147 @@
+"""What it did to people: blame for contacts, spaces of groups, social forces (HuNavSim, TAGA, SEAN)."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.behaviors.sfm import Sfm
+from irsim.metrics.company import HUMAN
+from irsim.metrics.track import Track
+
+if TYPE_CHECKING:
+    from irsim.observers.events import Event
+
+__all__ = ["group_gaps", "social", "social_forces"]
+
+Floats = NDArray[np.float64]
+_GROWN = 0.45  # the space of a group reaches so far round its members [m]
+_EQUAL = 0.1  # speeds that differ by less than this share are equal
+_STRAIGHT = 1e-12  # smaller angles are rounding errors [rad]
+_SAME_PLACE = 1e-6  # no direction, no force [m]
+
+
+def social(track: Track) -> dict[str, float]:
+    """Over the steps until it arrived; NaN where there are no humans, or no social groups.
+
+    - ``human_collisions_by_robot``, ``human_collisions_by_human``: of two that touch, the one whose velocity in the
+      step that led to it pointed more toward the contact; both where these speeds differ by at most 10 %.
+    - ``group_space_intrusion_ratio``: share of rows in which its bounding disc is in the space of a social group: the
+      convex hull of the members' centres, grown by 0.45 m. ``group_collision_rate``: whether it ever was, 0 or 1.
+    - ``social_force_robot`` [m/s]: norm of the sum of the social forces of all humans on it, summed times dt;
+      ``social_force_agents``: norms of its forces on each human, summed times dt; ``social_work``: both together.
+      Forces are those of Moussaid et al. (2009) with the parameters and the weight that ``sfm`` has by default.
+    - ``pedestrian_velocity_avg`` [m/s]: way of all humans / (their number x time).
+    """
+    nan = math.nan
+    blamed = [_blame(track, event) for event, kind in track.collisions if kind == HUMAN]
+    found = {
+        "human_collisions_by_robot": float(sum(mine for mine, _ in blamed)),
+        "human_collisions_by_human": float(sum(theirs for _, theirs in blamed)),
+        "group_space_intrusion_ratio": nan,
+        "group_collision_rate": nan,
+        "social_force_robot": nan,
+        "social_force_agents": nan,
+        "social_work": nan,
+        "pedestrian_velocity_avg": nan,
+    }
+    if track.groups:
+        gaps = [group_gaps(track.position, track.others[:, list(group), :2]) for group in track.groups]
+        within = (np.array(gaps) <= _GROWN + track.reach).any(axis=0)
+        found |= {"group_space_intrusion_ratio": float(within.mean()), "group_collision_rate": float(within.any())}
+    if track.people and len(track.pose) > 1:
+        steps = np.diff(track.others[:, :, :2], axis=0)
+        on_it, by_it = social_forces(
+            track.position[1:], track.velocity, track.others[1:, :, :2], steps / track.step_time
+        )
+        robot = float(np.linalg.norm(on_it.sum(axis=1), axis=1).sum() * track.step_time)
+        agents = float(np.linalg.norm(by_it, axis=2).sum() * track.step_time)
+        found |= {"social_force_robot": robot, "social_force_agents": agents, "social_work": robot + agents}
+        found["pedestrian_velocity_avg"] = float(np.linalg.norm(steps, axis=2).mean() / track.step_time)
+    return found
+
+
+def social_forces(position: Floats, velocity: Floats, others: Floats, velocities: Floats) -> tuple[Floats, Floats]:
+    """Social forces [m/s^2] between a robot and M humans, with the default parameters of ``sfm``.
+
+    Args:
+        position: (T, 2) of the robot [m].
+        velocity: (T, 2) of it [m/s].
+        others: (T, M, 2) of the humans [m].
+        velocities: (T, M, 2) of them [m/s].
+
+    Returns:
+        (T, M, 2) of each human on the robot, (T, M, 2) of the robot on each human.
+    """
+    way, closing = others - position[:, None], velocity[:, None] - velocities
+    return _force(way, closing), _force(-way, -closing)
+
+
+def _force(way: Floats, closing: Floats) -> Floats:
+    """On one that sees another at ``way`` and comes to it at ``closing``."""
+    options = Sfm()
+    distance = np.linalg.norm(way, axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        towards = way / distance[..., None]
+        interaction = closing * options.lambda_importance + towards
+        length = np.linalg.norm(interaction, axis=-1)
+        along = interaction / length[..., None]
+        cross = along[..., 0] * towards[..., 1] - along[..., 1] * towards[..., 0]
+        angle = np.arctan2(cross, (along * towards).sum(axis=-1))
+        angle = np.where(np.abs(angle) > _STRAIGHT, angle, 0.0)
+        reach = options.gamma * length
+        gap = np.maximum(distance - 2 * options.safety_radius, 0.0)
+        braking = -np.exp(-gap / reach - (options.n_velocity * reach * angle) ** 2)
+        aside = -np.sign(angle) * np.exp(-gap / reach - (options.n_angular * reach * angle) ** 2)
+        normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+        force = along * braking[..., None] + normal * aside[..., None]
+    acts = (distance >= _SAME_PLACE) & (length > 0) & (distance <= options.neighbor_threshold)
+    return np.asarray(np.where(acts[..., None], options.force_factor_social * force, 0.0))
+
+
+def group_gaps(point: Floats, members: Floats) -> Floats:
+    """(T,) distance [m] of a point to the convex hull of the members of a group; 0 within it.
+
+    A point from which the members stand all round is within; else the nearest point of the hull is between two of them.
+
+    Args:
+        point: (T, 2) [m].
+        members: (T, M, 2) [m], M of 2 or more.
+    """
+    count = members.shape[1]
+    best = np.full(len(point), np.inf)
+    for a, b in itertools.combinations(range(count), 2):
+        start, along = members[:, a], members[:, b] - members[:, a]
+        length2 = np.maximum((along**2).sum(axis=1), 1e-300)
+        share = np.clip(((point - start) * along).sum(axis=1) / length2, 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(start + along * share[:, None] - point, axis=1))
+    to = members - point[:, None]
+    angles = np.sort(np.arctan2(to[:, :, 1], to[:, :, 0]), axis=1)
+    turns = np.diff(angles, axis=1, append=angles[:, :1] + 2 * np.pi)
+    best[turns.max(axis=1) < np.pi] = 0.0
+    return best
+
+
+def _blame(track: Track, event: Event) -> tuple[bool, bool]:
+    """Whether the robot, and whether the human, brought about a contact."""
+    partner = event.partner if event.object == track.name else event.object
+    human = track.others[:, track.people.index(str(partner)), :2]
+    row = min(event.step - track.first, len(track.pose) - 1)
+    if row < 1:
+        return True, True  # they touch from the start
+    contact = np.array([event.x, event.y])
+    mine, theirs = (_speed_to(contact, way[row - 1], way[row]) for way in (track.position, human))
+    if abs(mine - theirs) <= _EQUAL * max(abs(mine), abs(theirs)):
+        return True, True
+    return mine > theirs, theirs > mine
+
+
+def _speed_to(point: Floats, before: Floats, after: Floats) -> float:
+    """Way made towards a point in a step."""
+    apart = point - before
+    distance = float(np.linalg.norm(apart))
+    return float((after - before) @ apart) / distance if distance > 0 else 0.0
