@@ -72,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
         type=_address,
         metavar="[HOST:]PORT",
         help="serve over streamable HTTP at http://HOST:PORT/mcp (default host: 127.0.0.1, which only this machine "
-        "reaches; others need a token); port 0 is any that is free",
+        "reaches; any other needs a token, and 0.0.0.0 and [::] need --allow-host, too); port 0 is any that is free",
     )
     parser.add_argument(
         "--token-file",
@@ -86,7 +86,8 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="NAME",
-        help="name or address that HTTP clients connect to, beside HOST; may be given several times",
+        help="name or address that HTTP clients connect to, beside HOST: required where HOST is 0.0.0.0 or [::], since "
+        "requests that name another host are refused; may be given several times",
     )
     for name, most, what in (
         ("--max-robots", standard.robots, "robots of a scenario"),

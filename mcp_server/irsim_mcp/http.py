@@ -141,7 +141,7 @@ class _WithToken:
     """
 
     def __init__(self, app: ASGIApp, token: str) -> None:
-        self._app, self._expected = app, f"Bearer {token}".encode()
+        self._app, self._expected = app, token.encode()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan" or (scope["type"] == "http" and self._known(scope)):
@@ -158,7 +158,10 @@ class _WithToken:
 
     def _known(self, scope: Scope) -> bool:
         sent = [value for name, value in scope["headers"] if name == b"authorization"]
-        return len(sent) == 1 and hmac.compare_digest(sent[0], self._expected)
+        if len(sent) != 1:
+            return False
+        scheme, _, token = sent[0].partition(b" ")  # the scheme in any case: RFC 9110, section 11.1
+        return scheme.lower() == b"bearer" and hmac.compare_digest(token.lstrip(b" "), self._expected)
 
 
 def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> None:

@@ -113,6 +113,8 @@ async def test_a_token_is_asked_for(empty: Path, tmp_path: Path) -> None:
             assert TOKEN not in answer.text
         for method in ("GET", "DELETE", "OPTIONS"):
             assert httpx2.request(method, url).status_code == 401
+        for sent in (f"bearer {TOKEN}", f"BEARER  {TOKEN}"):
+            assert httpx2.post(url, json=DISCOVER, headers={**HEADERS, "Authorization": sent}).status_code == 200
         async with (
             httpx2.AsyncClient(headers={"Authorization": f"Bearer {TOKEN}"}) as http,
             Client(streamable_http_client(url, http_client=http)) as client,
