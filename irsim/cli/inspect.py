@@ -83,7 +83,7 @@ def inspect(
 
 
 def _list_runs() -> None:
-    """Recorded runs of this folder, the last used one first."""
+    """Recorded runs of this folder, the one begun last first."""
     from rich.table import Table
 
     from irsim.cli.output import console
@@ -100,10 +100,11 @@ def _list_runs() -> None:
     table.add_column("scenario", overflow="fold")
     for run in runs[:_LISTED]:
         result = run.result
+        steps = run.last_step if result is None else result.steps
         table.add_row(
             run.id,
             run.status if result is None else result.outcome,
-            str(run.last_step if result is None else result.steps),
+            "-" if steps < 0 else str(steps),
             str(run.meta.get("seed")),
             clean(run.meta.get("created"))[:16].replace("T", " "),
             clean(run.meta.get("scenario") or "(text)"),
@@ -147,7 +148,7 @@ def _show(table: RunTable, out: object) -> None:
         out.print("nothing of the kind happened")
     steps = f"steps {table.from_step} to {table.to_step}"
     if table.every > 1:
-        steps += f", every {table.every}th: --every, --from, --to and --robot look closer"
+        steps += f", one in {table.every}: --every, --from, --to and --robot look closer"
     more = f" of {table.total}; go on with --cursor {table.next_cursor}" if table.next_cursor else ""
     out.print(f"{len(table.rows)} rows{more}, {steps}")
 

@@ -8,16 +8,20 @@ from typing import Annotated
 import typer
 
 from irsim.cli.options import Json
+from irsim.runs.store import RunError
 
 __all__ = ["replay"]
 
 
 def replay(
     run: Annotated[str, typer.Argument(help="Id or folder of a run, or 'last'.")] = "last",
+    file: Annotated[
+        Path | None, typer.Argument(help="File to write, as with -o; default: RUN.html here.", show_default=False)
+    ] = None,
     html: Annotated[bool, typer.Option("--html", help="Write one HTML file; so far there is no other form.")] = True,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="OUT", help="File to write; default: RUN.html here.", show_default=False),
+        typer.Option("-o", "--out", metavar="OUT", help="The same, as an option.", show_default=False),
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
     json_output: Json = False,
@@ -31,8 +35,10 @@ def replay(
     from irsim.cli.output import console, print_json, progress
     from irsim.replay.export import replay as write
 
+    if file is not None and out is not None:
+        raise RunError("bad-argument", f"two files are named, '{file}' and '{out}'", "name one file")
     with progress("packing"):
-        result = write(run, out)
+        result = write(run, out or file)
     if show:
         import webbrowser
 
@@ -40,7 +46,7 @@ def replay(
     if json_output:
         print_json(result)
         return
-    thinned = f", every {result.every}th step" if result.every > 1 else ""
+    thinned = f", one in {result.every}" if result.every > 1 else ""
     size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
     console().print(
         Text.assemble("wrote ", (result.file, "bold"), f" ({size}, steps 0 to {result.last_step}{thinned})"),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections import Counter
+from collections.abc import Container
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.env import Env
+from irsim.observers.events import Event
 from irsim.observers.trace import Trace
 from irsim.replay.columns import Columns, changes, folded, quantised
 from irsim.replay.drawing import drawn_grid, drawn_objects
@@ -26,6 +29,7 @@ FORMAT = 1
 _MOST_POSES = 2_000_000
 """Rows times moving objects; runs beyond that show every so many-th step."""
 _MOST_EVENTS = 4000
+_RANKS = {"collision": 0, "no_path": 1, "arrival": 2, "waypoint": 3}
 _MOST_RANGES = 2_000_000
 _MOST_SCAN_BYTES = 700_000
 """Recorded scans are shown as long as they take no more than this; others the page computes."""
@@ -109,7 +113,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         "lidars": lidars,
         "scans": scans,
         "grid": grid,
-        **_events(run, trace),
+        **_events(run, trace, objects),
     }
     return Packed(columns.block(head), head)
 
@@ -188,19 +192,19 @@ def _ending(run: Run) -> dict[str, Any]:
     result = run.result
     if result is None:
         return {"outcome": None, "summary": f"This run is {run.status}.", "reason": None}
-    reason = None if result.reason is None else clean(result.reason, 500)
-    return {"outcome": result.outcome, "summary": clean(result.summary, 300), "reason": reason}
+    reason = None if result.reason is None else clean(result.reason, 2000)
+    return {"outcome": result.outcome, "summary": clean(result.summary, 1000), "reason": reason}
 
 
-def _events(run: Run, trace: Trace) -> dict[str, Any]:
-    """[step, kind, object, partner or -1, x, y] each; arrivals and collisions first if there are too many."""
+def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
+    """[step, kind, object, partner or -1, x, y] each, and how many of each kind are left out if there are too many."""
     number = {name: row for row, name in enumerate(trace.names)}
     last = int(trace.step[-1])
     events = [event for event in run.events if event.step <= last and event.object in number]
     count = len(events)
-    if count > _MOST_EVENTS:
-        chosen = sorted(range(count), key=lambda k: (events[k].kind == "waypoint", k))[:_MOST_EVENTS]
-        events = [events[k] for k in sorted(chosen)]
+    left = Counter(event.kind for event in events)
+    events = _most_important(events, {trace.names[k] for k, item in enumerate(objects) if item["role"] == "robot"})
+    left.subtract(event.kind for event in events)
     told = [
         [
             event.step,
@@ -212,7 +216,24 @@ def _events(run: Run, trace: Trace) -> dict[str, Any]:
         ]
         for event in events
     ]
-    return {"events": told, "event_count": count}
+    return {"events": told, "event_count": count, "left_out": {kind: most for kind, most in left.items() if most}}
+
+
+def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
+    """As many as are shown: collisions of robots before others, then what concerns nobody else, waypoints last.
+
+    Those of a rank that do not all fit are thinned evenly.
+    """
+    ranks: dict[tuple[int, bool], list[int]] = {}
+    for place, event in enumerate(events):
+        others = event.object not in robots and (event.partner is None or event.partner not in robots)
+        ranks.setdefault((_RANKS.get(event.kind, len(_RANKS)), others), []).append(place)
+    chosen = list[int]()
+    for rank in sorted(ranks):
+        places = ranks[rank]
+        room = min(len(places), _MOST_EVENTS - len(chosen))
+        chosen += [places[k] for k in np.linspace(0, len(places) - 1, room).round().astype(int)]
+    return [events[place] for place in sorted(chosen)]
 
 
 def _number(value: float) -> float:

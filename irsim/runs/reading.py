@@ -147,7 +147,7 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     """Open a recorded run.
 
     Args:
-        folder_or_id: Its id, its folder, or ``last`` for the last used one.
+        folder_or_id: Its id, its folder, or ``last`` for the one begun last.
         workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
 
     Raises:
@@ -162,7 +162,7 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
 
 
 def list_runs(workspace: str | Path | None = None) -> list[Run]:
-    """The runs of a workspace, the last used one first; those that can't be read are left out."""
+    """The runs of a workspace, the one begun last first; those that can't be read are left out."""
     runs = []
     for folder in run_folders(runs_folder(workspace)):
         try:

@@ -9,7 +9,7 @@ import secrets
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,6 +41,8 @@ __all__ = [
 
 Status = Literal["running", "finished", "cancelled", "interrupted"]
 META, RESULT, LOCK = "run.json", "result.json", "lock"
+_BEGUN = "scenario.yaml"
+"""Written once, when a run begins; ``run.json`` is touched by each use."""
 QUOTA = 500 * 1000 * 1000
 """Bytes that the runs of a workspace may take together; the least recently used ones make room."""
 DAY = 24 * 3600.0
@@ -112,19 +114,34 @@ def made_folder(runs: Path, stem: str) -> Path:
 
 
 def run_folders(runs: Path) -> list[Path]:
-    """The folders of runs, the last used one first."""
-    found: list[tuple[float, str, Path]] = []
+    """The folders of runs, the one begun last first."""
+    return _sorted_folders(runs, (_BEGUN, META))
+
+
+def _sorted_folders(runs: Path, dated_by: Sequence[str]) -> list[Path]:
+    """The folders of runs, the latest first, by the date of the first of those files that is there."""
+    found: list[tuple[int, str, Path]] = []
     with suppress(FileNotFoundError, NotADirectoryError), os.scandir(runs) as entries:
         for entry in entries:
             if _ID.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
                 with suppress(OSError):  # it may be let go at this moment
-                    meta = os.stat(os.path.join(entry.path, META), follow_symlinks=False)
-                    found.append((meta.st_mtime, entry.name, Path(entry.path)))
+                    dates = {name: _date(os.path.join(entry.path, name)) for name in (META, *dated_by)}
+                    date = next((dates[name] for name in dated_by if dates[name] is not None), None)
+                    if date is not None and dates[META] is not None:
+                        found.append((date, entry.name, Path(entry.path)))
     return [folder for _, _, folder in sorted(found, reverse=True)]
 
 
+def _date(path: str) -> int | None:
+    """When a file was written [ns]; None without it."""
+    try:
+        return os.stat(path, follow_symlinks=False).st_mtime_ns
+    except OSError:
+        return None
+
+
 def recent_ids(runs: Path, most: int = _NAMED) -> list[str]:
-    """Ids of the runs used last."""
+    """Ids of the runs begun last."""
     return [folder.name for folder in run_folders(runs)[:most]]
 
 
@@ -132,7 +149,7 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
     """The folder of a run.
 
     Args:
-        name: Its id, ``last`` for the last used one, or (only without a workspace) its folder.
+        name: Its id, ``last`` for the one begun last, or (only without a workspace) its folder.
         workspace: Where its id is looked for; the current directory by default.
 
     Raises:
@@ -318,7 +335,7 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
     """
     _sweep(runs)
     total, gone, now = 0, list[str](), time.time()
-    for folder in run_folders(runs):
+    for folder in _sorted_folders(runs, (META,)):
         size, leftovers = _size_of(folder)
         total += size
         if keep is not None and folder.name == keep.name:

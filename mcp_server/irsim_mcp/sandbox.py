@@ -91,7 +91,7 @@ class Workspace:
             raise failure(error.code, error.message, where="run_id", fix=error.fix) from None
 
     def runs(self) -> list[str]:
-        """Ids of the recorded runs, the last used one first."""
+        """Ids of the recorded runs, the one begun last first."""
         try:
             return [folder.name for folder in run_folders(runs_folder(self.root))]
         except RunError:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -90,6 +91,32 @@ def test_long_runs_are_thinned(run: Run, monkeypatch: pytest.MonkeyPatch) -> Non
     assert head["every"] > 1
     assert steps[:2] == [0, head["every"]]
     assert steps[-1] == head["last_step"] == run.last_step
+
+
+def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    [piece] = run.folder.glob("events-*.json")
+    known = json.loads(piece.read_text())
+    hit = next(event for event in known if event["kind"] == "collision" and event["object"] == "lorry")
+    times = np.linspace(0, run.last_step, 200).astype(int).tolist()
+    arrivals = [{**hit, "kind": "arrival", "object": "rover", "partner": None, "step": step} for step in times]
+    hits = [{**hit, "step": step} for step in times[150:180]]
+    other = {**hit, "object": "crate", "partner": "block"}
+    piece.write_text(json.dumps(sorted([*arrivals, *hits, other], key=lambda event: event["step"])))
+    monkeypatch.setattr(packing, "_MOST_EVENTS", 60)
+    head = packing.pack_run(open_run(run.id)).head
+    kinds = [event[1] for event in head["events"]]
+    assert (kinds.count("collision"), kinds.count("arrival")) == (31, 29)
+    shown = [event[0] for event in head["events"] if event[1] == "arrival"]
+    assert (shown[0], shown[-1]) == (0, run.last_step)
+    assert max(np.diff(shown)) <= 2 * run.last_step / 28
+    assert (head["event_count"], head["left_out"]) == (231, {"arrival": 171})
+    monkeypatch.setattr(packing, "_MOST_EVENTS", 10)
+    head = packing.pack_run(open_run(run.id)).head
+    assert [event[2] for event in head["events"]] == [1] * 10  # the robot's collisions, over their whole time
+    assert (head["events"][0][0], head["events"][-1][0]) == (hits[0]["step"], hits[-1]["step"])
+    assert head["left_out"] == {"arrival": 200, "collision": 21}
 
 
 def test_names_are_cleaned(workspace: Path) -> None:

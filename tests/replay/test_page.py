@@ -82,6 +82,11 @@ def test_the_command(run: Run, workspace: Path) -> None:
     assert json.loads(done.stdout) == irsim.replay(run.id, "page.html").model_dump()
     shown = CliRunner().invoke(app, ["replay"])
     assert shown.stdout.startswith(f"wrote {run.id}.html (")
+    named = CliRunner().invoke(app, ["replay", run.id, "--html", "other.html"])
+    assert named.stdout.startswith("wrote other.html (")
+    twice = CliRunner().invoke(app, ["replay", run.id, "--html", "other.html", "-o", "page.html"])
+    assert twice.exit_code == 2
+    assert "name one file" in twice.output
 
 
 def test_a_run_that_was_cut_short_is_shown(workspace: Path) -> None:

@@ -263,6 +263,10 @@ def test_the_command_line(crash: Path) -> None:
         assert run.id in call("inspect", "last", "--view", view)
     rows = list(csv.reader(io.StringIO(call("inspect", "last", "--csv"))))
     assert len(rows) == run.last_step + 2
+    for piece in run.folder.glob("trace-*"):
+        piece.unlink()
+    (run.folder / "result.json").unlink()
+    assert "interrupted -" in " ".join(call("inspect").split())
     kept = crash.parent / "kept"
     assert f"irsim inspect {kept}" in call("run", str(crash), "--record-to", str(kept))
     assert "collision" in call("inspect", str(kept))

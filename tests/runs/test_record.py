@@ -103,6 +103,16 @@ def test_a_failing_run_is_readable_until_then(room: Path) -> None:
     assert run.trace().step.tolist() == [0, 1, 2, 3, 4, 5]
 
 
+def test_last_is_the_run_begun_last_whatever_was_looked_at_since(room: Path) -> None:
+    ids = [str(irsim.run(room, seed=n, steps=1, record=True).run_id) for n in range(7)]
+    irsim.runs.inspection.inspect_run(ids[0])
+    assert open_run("last").id == ids[-1]
+    assert [run.id for run in list_runs()] == ids[::-1]
+    with pytest.raises(RunError) as caught:
+        open_run("room-123456")
+    assert f"recent ones are {', '.join(ids[:1:-1])}" in str(caught.value)
+
+
 def test_an_unknown_run_names_recent_ones(room: Path) -> None:
     with pytest.raises(RunError, match="record one first"):
         open_run("room-123456")

@@ -3,6 +3,7 @@
 import { fit, pan, zoom } from "./camera.js";
 import { $, element, setTerms } from "./dom.js";
 import { objectAt } from "./draw.js";
+import { unfold } from "./panel.js";
 import { listenToMarks } from "./timeline.js";
 import { valuesOf } from "./words.js";
 
@@ -21,6 +22,7 @@ export function listen(player, actions) {
   $("speed").addEventListener("change", () => setSpeed(Number($("speed").value)));
   $("robot").addEventListener("change", () => choose(Number($("robot").value)));
   for (const name of Object.values(SWITCHES)) $(name).addEventListener("click", () => flip(name));
+  $("more").addEventListener("click", () => unfold($("more").getAttribute("aria-expanded") !== "true"));
   $("theme").addEventListener("click", theme);
   $("help").addEventListener("click", () => $("keys").showModal());
   $("closer").addEventListener("click", () => zoomed(ZOOM));

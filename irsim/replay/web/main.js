@@ -6,7 +6,7 @@ import { listen, showTip, SPEEDS } from "./controls.js";
 import { $ } from "./dom.js";
 import { drawFrame, makeDrawing } from "./draw.js";
 import { connect } from "./host.js";
-import { fillPanel, showChoices, showMoment } from "./panel.js";
+import { fillPanel, offerMore, showChoices, showMoment } from "./panel.js";
 import { bytesOf, unpack } from "./read.js";
 import { makeRun, poseAt, rowOfTime, timeOfRow } from "./run.js";
 import { drawMarks } from "./timeline.js";
@@ -132,6 +132,7 @@ function measure() {
   canvas.height = Math.round(clientHeight * ratio());
   resize(player.camera, clientWidth, clientHeight);
   if (!player.run) return;
+  offerMore();
   drawMarks(player.run, player.colors, ratio());
   if (player.frame) cancelAnimationFrame(player.frame);
   onFrame(performance.now());

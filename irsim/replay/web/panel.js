@@ -1,7 +1,7 @@
 // The column at the side, the head line and the clock.
 
 import { $, element, setTerms } from "./dom.js";
-import { eventWords, ofRobot, seconds, valuesOf } from "./words.js";
+import { eventWords, manyWords, ofRobot, seconds, valuesOf } from "./words.js";
 
 const LISTED = 300; // events at a time
 const NONE = -1;
@@ -15,16 +15,43 @@ export function fillPanel(player, goToEvent) {
   badge.textContent = head.outcome ?? head.status;
   badge.className = `badge ${head.outcome ?? ""}`;
   $("facts").textContent = $("facts").title = factsOf(run);
+  unfold(false);
+  note($("recordnote"), (head.notes ?? []).join("; "));
+  $("events").style.setProperty("--time", `${seconds(run.time[run.rows - 1]).length}ch`);
   const movers = run.objects.filter(({ track, role }) => track >= 0 && role !== "robot").map(({ index }) => index);
   $("robot").replaceChildren(
     element("option", { value: NONE, textContent: "none" }),
     ...[...run.robots, ...movers].map((index) => element("option", { value: index, textContent: run.objects[index].name })),
   );
   $("view").setAttribute("aria-label", `The world from above: ${run.robots.length} robots, ${run.objects.length - run.robots.length} other objects`);
-  $("eventshead").textContent = `Events (${head.event_count})`;
+  const listed = run.events.length, left = Object.entries(head.left_out ?? {});
+  $("eventshead").textContent = `Events (${listed < head.event_count ? `${listed} of ` : ""}${head.event_count})`;
+  note($("leftout"), left.length ? `Not listed, evenly over time: ${left.map(([kind, count]) => `${count} ${manyWords(kind)}`).join(", ")}.` : "");
   player.goToEvent = goToEvent;
   listEvents(player, 0);
   $("time").max = run.rows - 1;
+}
+
+function note(place, text) {
+  place.hidden = !text;
+  place.textContent = text;
+}
+
+/** Show all of the facts, or as much as has room. */
+export function unfold(whole) {
+  const button = $("more");
+  button.closest("header").classList.toggle("whole", whole);
+  button.setAttribute("aria-expanded", String(whole));
+  button.textContent = whole ? "less" : "more";
+  if (!whole) offerMore();
+}
+
+/** A button where the facts have no room. */
+export function offerMore() {
+  const facts = $("facts"), button = $("more");
+  if (button.getAttribute("aria-expanded") === "true") return;
+  button.hidden = true;
+  button.hidden = facts.scrollHeight <= facts.clientHeight + 1;
 }
 
 /** List the events from a place on. */
@@ -38,7 +65,7 @@ function listEvents(player, first) {
     return button;
   });
   const before = first ? [element("p", { textContent: `… ${first} before` })] : [];
-  const after = run.head.event_count > last ? [element("p", { textContent: `… ${run.head.event_count - last} more` })] : [];
+  const after = count > last ? [element("p", { textContent: `… ${count - last} more` })] : [];
   const none = count ? [] : [element("p", { textContent: "Nothing happened." })];
   list.replaceChildren(...[...before, ...buttons, ...after, ...none].map((part) => element("li", {}, part)));
   Object.assign(player, { listed: buttons, listedFrom: first, current: null, heldFocus: held });
@@ -46,7 +73,7 @@ function listEvents(player, first) {
 
 function factsOf({ head, robots }) {
   const facts = [head.reason ?? head.summary, `${robots.length} robot${robots.length === 1 ? "" : "s"}`, `seed ${head.seed}`];
-  if (head.every > 1) facts.push(`every ${head.every}th step is shown`);
+  if (head.every > 1) facts.push(`one in ${head.every} steps is shown`);
   return facts.filter(Boolean).join(" · ");
 }
 
@@ -96,10 +123,10 @@ export function showChoices({ run, shown }) {
   $("robot").value = shown.robot;
   for (const name of ["follow", "lidar", "trails", "goals", "names"]) $(name).setAttribute("aria-pressed", String(shown[name]));
   $("follow").disabled = shown.robot < 0;
-  const lidars = run.lidars.get(shown.robot) ?? [], note = $("scannote");
+  const lidars = run.lidars.get(shown.robot) ?? [], told = $("scannote");
   $("lidar").disabled = !lidars.length;
-  note.hidden = !(shown.lidar && lidars.length);
-  note.textContent = lidars.every(({ ranges }) => ranges)
+  told.hidden = !(shown.lidar && lidars.length);
+  told.textContent = lidars.every(({ ranges }) => ranges)
     ? "Lidar: ranges as recorded in the run."
     : "Lidar: computed in this page from the shapes drawn, without the noise of the sensor.";
 }

@@ -16,7 +16,7 @@ export function drawMarks(run, colors, ratio) {
   context.scale(ratio, ratio);
   const order = { waypoint: 0, arrival: 1, collision: 2 }, drawn = new Set();
   const crowded = run.events.length > width / ROOMY;
-  for (const event of [...run.events].sort((a, b) => order[a.kind] - order[b.kind])) {
+  for (const event of [...run.events].sort((a, b) => (order[a.kind] ?? 0) - (order[b.kind] ?? 0))) {
     const x = placeOf(run, event.row, width), y = height / 2 + 1, place = `${Math.round(x)} ${event.kind}`;
     if (drawn.has(place)) continue;
     drawn.add(place);

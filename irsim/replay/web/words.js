@@ -2,7 +2,10 @@
 
 import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
 
-const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint" };
+const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way" };
+const MANY_OF = { collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way" };
+
+export const manyWords = (kind) => MANY_OF[kind] ?? kind;
 
 export const metres = (value) => `${value.toFixed(2)} m`;
 export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 1)} s`;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 
 import irsim
 import irsim.replay.data as packing
-from irsim.runs import Run
+from irsim.runs import Run, open_run
 from tests.replay.browser.conftest import Watched, until
 from tests.replay.conftest import HOSTILE, recorded, scene
 
@@ -382,6 +383,57 @@ def test_a_narrow_window(run: Run, watched: Watched) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") <= 420
     assert page.locator("#view").bounding_box()["height"] > 200
     assert page.locator("#play").is_visible()
+
+
+REASON = "; ".join(f"robot_with_a_long_name_{k} was 3.42 m from its goal and stood for 12.0 s" for k in range(9))
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1000, 1280])
+def test_long_reasons_and_names_have_room(workspace: Path, watched: Watched, width: int, theme: str) -> None:
+    slow = scene("lorry_" * 13).replace("name: slider", "name: slider\n    vel_max: [0.02, 0.02]")
+    run = recorded(slow, steps=2000)
+    assert run.events[-1].time > 100
+    path = run.folder / "result.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "reason": REASON}))
+    watched.page.set_viewport_size({"width": width, "height": 800})
+    watched.page.emulate_media(color_scheme=theme)
+    page = watched.open(Path(irsim.replay(open_run(run.id)).file))
+    page.select_option("#robot", index=2)
+
+    def fits() -> None:
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for name in ("title", "outcome", "facts", "help", "robot", "names", "events", "speed"):
+            box = page.locator(f"#{name}").bounding_box()
+            assert box["x"] >= 0, name
+            assert box["x"] + box["width"] <= width, name
+
+    fits()
+    assert page.locator("#facts").bounding_box()["height"] < 50
+    assert REASON in page.get_attribute("#facts", "title")
+    page.get_by_role("button", name="more").click()
+    settled(page)
+    assert page.evaluate(
+        "() => { const f = document.getElementById('facts'); return f.scrollHeight <= f.clientHeight; }"
+    )
+    fits()
+    page.get_by_role("button", name="less").click()
+    settled(page)
+    assert page.locator("#facts").bounding_box()["height"] < 50
+    heights = page.locator("#events button time").evaluate_all("all => all.map(time => time.offsetHeight)")
+    assert max(heights) < 30
+
+
+def test_more_is_offered_only_where_there_is_more(shown: Any) -> None:
+    assert not shown.locator("#more").is_visible()
+
+
+def test_it_says_which_events_are_not_listed(run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packing, "_MOST_EVENTS", 1)
+    page = watched.open(Path(irsim.replay(run).file))
+    assert page.text_content("#eventshead") == f"Events (1 of {len(run.events)})"
+    assert page.inner_text("#events").endswith("hits crate")
+    assert page.inner_text("#leftout") == "Not listed, evenly over time: 2 arrivals."
 
 
 def test_a_hundred_robots_are_small_and_fast(crowd: Path, watched: Watched) -> None:
