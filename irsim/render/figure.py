@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from irsim.render.canvas import Compositor
 from irsim.render.grids import GridLayer
-from irsim.render.labels import free_places
+from irsim.render.labels import free_places, small_bodies
 from irsim.render.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import Pixels
@@ -56,7 +56,7 @@ class SceneFigure:
         tight: Fit the axes to the figure.
         figure: A figure to use (of a window); default: a new one without a window.
         pictures: Images drawn in place of bodies.
-        halo: Labels have a white rim, to be read on dark ground too.
+        halo: Labels have a white rim, to be read on dark ground too, and keep off bodies.
 
     Attributes:
         figure, ax: For drawing more into it.
@@ -79,6 +79,7 @@ class SceneFigure:
         self.figure = figure
         self.axis, self.tight = axis, tight
         self._images = pictures or Pictures()
+        self._halo = halo
         self._effects: list[AbstractPathEffect] = [withStroke(linewidth=_HALO, foreground="white")] if halo else []
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
@@ -120,13 +121,12 @@ class SceneFigure:
         self.ax.clear()
         self._start()
 
-    def show(self, scene: Scene, title: str | None, keep_clear: Sequence[Bounds] = ()) -> None:
+    def show(self, scene: Scene, title: str | None) -> None:
         """Bring the artists up to date.
 
         Args:
             scene: What to show.
             title: Text above the axes; None for none.
-            keep_clear: Left, bottom, right, top of what labels had better not cover [m].
         """
         first = self._extent is None
         self._look_at(scene)
@@ -158,7 +158,7 @@ class SceneFigure:
             self._fog.show(scene.fog)
         self._show_grids(scene.grids)
         self._show_pictures(scene.pictures)
-        self._show_labels(scene.labels, keep_clear)
+        self._show_labels(scene)
 
     def draw(self) -> None:
         """Draw the artists into the canvas."""
@@ -261,7 +261,10 @@ class SceneFigure:
             artist.set_zorder(picture.zorder)
             artist.set_clip_path(self.ax.patch)
 
-    def _show_labels(self, labels: Sequence[Label], bodies: Sequence[Bounds]) -> None:
+    def _show_labels(self, scene: Scene) -> None:
+        labels = scene.labels
+        if not labels and not self._labels:
+            return
         shown: dict[tuple[int, str], tuple[Label, Text]] = {}
         view, data = self.ax.bbox, self.ax.transData
         anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
@@ -286,9 +289,9 @@ class SceneFigure:
             if key not in shown:
                 text.set_visible(False)
         if shown:
-            self._move_labels(list(shown.values()), anchors[seen], bodies)
+            self._move_labels(list(shown.values()), anchors[seen], scene)
 
-    def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, bodies: Sequence[Bounds]) -> None:
+    def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
         """Shift labels that the edge of the axes would cut, and those that would cover another; names come first."""
         order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
         texts, anchors = [shown[i][1] for i in order], anchors[order]
@@ -296,8 +299,12 @@ class SceneFigure:
         starts = data.transform([text.get_position() for text in texts])
         boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
         margin = np.array([_LABEL_MARGIN, _LABEL_MARGIN, -_LABEL_MARGIN, -_LABEL_MARGIN])
-        covered = data.transform(np.array(bodies, dtype=np.float64).reshape(-1, 2)).reshape(-1, 4)
-        moves = free_places(boxes, anchors, np.array(view.extents) + margin, covered)
+
+        def bodies() -> Floats:
+            corners = np.array(small_bodies(scene), dtype=np.float64).reshape(-1, 2)
+            return np.asarray(data.transform(corners), dtype=np.float64).reshape(-1, 4)
+
+        moves = free_places(boxes, anchors, np.array(view.extents) + margin, bodies, clear=self._halo)
         moved = data.inverted().transform(starts + moves)
         for text, move, (x, y) in zip(texts, moves.tolist(), moved.tolist(), strict=True):
             if move != [0.0, 0.0]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.render.bodies import Pose, arrow, bounds, picture_outline, place
-from irsim.render.scene import Beams, Bounds, Geometry, Label, Mark, Region, Scene, Sector, Stroke
+from irsim.render.scene import Beams, Geometry, Label, Mark, Region, Scene, Sector, Stroke
 from irsim.scans import Lidar2D
 from irsim.views import views
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     from irsim.simulation import Simulation
     from irsim.views import ObjectView
 
-__all__ = ["make_legible", "small_bodies"]
+__all__ = ["make_legible"]
 
 _MOST_LABELS = 60
-_CLEAR = ("body", "goal", "arrow")
+_SAME_PLACE, _MOST_JOINED = 0.01, 3
+"""Goals within this share of the picture's width have one label, which names them if they are so few."""
 _LABEL_GAP = 0.01
 """Between a label and what it names, as a share of the picture's height."""
 _SMALL_TEXT = 7.0
@@ -36,8 +37,6 @@ _MOVING = 1e-3
 _FULL_TURN = 2 * math.pi - 0.05
 _SECTOR_ZORDER = 2.0
 _LABEL_ZORDER = 10.0
-_LARGE = 0.2
-"""Bodies longer than this share of the picture may be covered by labels."""
 
 
 def make_legible(scene: Scene, simulation: Simulation, world: int) -> None:
@@ -58,15 +57,6 @@ def make_legible(scene: Scene, simulation: Simulation, world: int) -> None:
             mark.geometry = _at_least(mark.geometry, least)
     scene.beams = [_paler(beams) for beams in scene.beams]
     scene.labels = _thinned(_tidy(scene, objects), objects)
-
-
-def small_bodies(scene: Scene) -> list[Bounds]:
-    """Left, bottom, right, top of what labels had better not cover [m]."""
-    x0, x1, y0, y1 = scene.extent
-    most = _LARGE * max(x1 - x0, y1 - y0)
-    boxes = [bounds(mark.geometry) for mark in scene.marks if mark.part in _CLEAR]
-    boxes += [bounds(picture_outline(picture)) for picture in scene.pictures]
-    return [box for box in boxes if max(box[2] - box[0], box[3] - box[1]) < most]
 
 
 def _moves(view: ObjectView) -> bool:
@@ -141,7 +131,8 @@ def _tidy(scene: Scene, objects: dict[int, ObjectView]) -> list[Label]:
     """Labels on top of what they name; who has arrived gets one for itself and its goal."""
     x0, x1, y0, y1 = scene.extent
     pictures = {picture.object: picture for picture in scene.pictures}
-    labels = []
+    labels, shared = [], dict[tuple[int, int], list[Label]]()
+    near = _SAME_PLACE * (x1 - x0)
     for label in scene.labels:
         view = objects[label.object]
         if label.part == "goal" and (view.arrive or not (view.role == "robot" or _moves(view))):
@@ -158,10 +149,19 @@ def _tidy(scene: Scene, objects: dict[int, ObjectView]) -> list[Label]:
             label = replace(label, x=left, y=top + _LABEL_GAP * (y1 - y0), anchor=middle, zorder=_LABEL_ZORDER)
         if label.part == "goal" and view.role != "robot":
             label = replace(label, size=min(label.size, _SMALL_TEXT), alpha=label.alpha * _FAINT)
+        elif label.part == "goal":
+            shared.setdefault((round(label.x / near), round(label.y / near)), []).append(label)
+            continue
         elif view.arrive and view.role == "robot" and any(scene.of(view.id, "goal")):
             label = replace(label, text=f"{label.text} at goal")
         labels.append(label)
-    return labels
+    return labels + [_joined(of_one_place) for of_one_place in shared.values()]
+
+
+def _joined(labels: list[Label]) -> Label:
+    """One label for the goals at one place."""
+    some = ", ".join(label.text for label in labels)
+    return replace(labels[0], text=some if len(labels) <= _MOST_JOINED else f"{len(labels)} goals")
 
 
 def _thinned(labels: list[Label], objects: dict[int, ObjectView]) -> list[Label]:

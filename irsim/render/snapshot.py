@@ -12,7 +12,7 @@ from irsim.render.figure import SceneFigure, fitting_size
 from irsim.render.files import replacing
 from irsim.render.gif import reduce_colors
 from irsim.render.layers import opaque_colors
-from irsim.render.legible import make_legible, small_bodies
+from irsim.render.legible import make_legible
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import to_image
 from irsim.render.scene import region_extent
@@ -71,7 +71,7 @@ def render_scene(
     x0, x1, y0, y1 = scene.extent
     size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
     figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
-    figure.show(scene, f"{scene.time:.2f} s" if title is None else title, small_bodies(scene))
+    figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
     pixels, _ = figure.pixels(tight=False)
     data = io.BytesIO()
     image = to_image(pixels)

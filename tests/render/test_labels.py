@@ -32,7 +32,8 @@ def overlapping(boxes: Any) -> list[tuple[int, int]]:
 
 def placed(points: Any, bodies: Any = NOTHING) -> np.ndarray:
     boxes = boxes_of(points)
-    moves = free_places(boxes, np.asarray(points, dtype=float).reshape(-1, 2), VIEW, np.asarray(bodies, dtype=float))
+    anchors = np.asarray(points, dtype=float).reshape(-1, 2)
+    moves = free_places(boxes, anchors, VIEW, lambda: np.asarray(bodies, dtype=float))
     return boxes + np.concatenate([moves, moves], axis=1)
 
 

@@ -93,6 +93,13 @@ def test_one_label_for_a_robot_that_has_arrived(make: Callable[..., Any]) -> Non
     assert [label.text for label in hidden.labels] == ["r0", "r1"]
 
 
+def test_goals_at_one_place_share_a_label(make: Callable[..., Any]) -> None:
+    robot = "{kinematics: {name: diff}, state: [1, %d, 0], goal: [5, 5, 0]}"
+    few, many = (make(f"robot: [{', '.join(robot % y for y in range(1, 1 + number))}]") for number in (3, 5))
+    assert [label.text for label in look(few).labels] == ["r0", "r1", "r2", "G-r0, G-r1, G-r2"]
+    assert look(many).labels[-1].text == "5 goals"
+
+
 WALKERS = """
 robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [9, 9, 0], shape: {name: circle, radius: 0.3}}
 obstacle:
