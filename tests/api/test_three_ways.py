@@ -80,6 +80,13 @@ def test_run(workspace: Path, name: str) -> None:
     assert worker(workspace, "run", path=file, seed=SEED, steps=STEPS) == expected
 
 
+def test_run_with_another_behavior(workspace: Path) -> None:
+    file, behavior = "crossing/scenario.yaml", "{name: orca, timeHorizon: 3}"
+    expected = bytes_of(irsim.run(file, behavior=behavior, steps=STEPS, strict=True).model_dump_json())
+    assert shell("run", file, "--behavior", behavior, "--steps", STEPS, "--strict") == expected
+    assert worker(workspace, "run", path=file, behavior=behavior, steps=STEPS) == expected
+
+
 @pytest.mark.parametrize("name", ["crossing", "random-polygons"])
 def test_benchmark(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"

@@ -81,7 +81,7 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     told = text_of(result)
     assert told.count(long) == 2  # in the note, and in the command that repeats it
     assert row["failed"] in told
-    assert f"seed={bad[0]}" in found["next"]
+    assert f"seed={bad[0]} behavior='dash' (collision)" in found["next"]
 
 
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:

@@ -157,3 +157,39 @@ async def test_memory_is_limited(empty: Path) -> None:
         result = await client.call_tool("run_episode", {"scenario_yaml": huge, "max_steps": 1})
     assert error_of(result).startswith("out-of-memory: ")
     assert "fewer objects, lidar beams or steps" in error_of(result)
+
+
+async def test_another_behavior_for_all_robots(workspace: Path) -> None:
+    standing = ROOM.replace("    behavior: {name: dash}\n", "")
+    async with connected(workspace) as client:
+        plain = await client.call_tool("run_episode", {"scenario_yaml": standing})
+        driven = await client.call_tool("run_episode", {"scenario_yaml": standing, "behavior": "dash"})
+        options = await client.call_tool(
+            "run_episode", {"scenario_yaml": standing, "behavior": "{name: orca, timeHorizon: 3}"}
+        )
+        wrong = await client.call_tool("run_episode", {"scenario_yaml": standing, "behavior": "dahs"})
+        last = {"run_id": data_of(driven)["run_id"], "step": -1, "return_image": False}
+        picture = await client.call_tool("render_snapshot", last)
+    assert data_of(plain)["outcome"] == "timeout"
+    assert "behavior=dash" in data_of(plain)["next"]
+    assert "behavior" not in data_of(plain)
+    assert (data_of(driven)["outcome"], data_of(driven)["behavior"]) == ("success", "dash")
+    assert "with behavior dash for all robots" in text_of(driven)
+    assert "--behavior dash" in data_of(driven)["reproduce"]
+    assert "'rover' arrived at (4.0" in text_of(picture)
+    assert data_of(options)["outcome"] == "success"
+    assert error_of(wrong) == "bad-argument: there is no behavior 'dahs' (behavior). Fix: did you mean dash?"
+
+
+async def test_no_seed_is_shown_where_it_decides_nothing(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        first, second = [await client.call_tool("run_episode", {"scenario_yaml": ROOM}) for _ in range(2)]
+        scenes = [
+            await client.call_tool("render_snapshot", {"scenario_yaml": scene, "return_image": False})
+            for scene in (ROOM, ROOM.replace("{name: diff}", "{name: diff, noise: true}"))
+        ]
+    assert data_of(first)["seed"] == data_of(second)["seed"] == 0
+    for told in (text_of(first), text_of(scenes[0])):
+        assert "nothing is random" in told
+        assert "seed" not in told
+    assert "seed" in text_of(scenes[1])
