@@ -10,7 +10,6 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
@@ -137,6 +136,8 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 
 def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
+    from irsim.benchmarks.labels import labels_of  # not before there is a result: it loads much
+
     labels = labels_of(result["behaviors"])
     found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_ROWS]]
     found.done = found.total = len(result["episodes"])
@@ -182,6 +183,8 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
     shown |= {key: _numbers(row["metrics"][key]) for key in metrics if row["metrics"][key]["n"]}
     diff = {key: _numbers(row["paired"][key]) for key in _DIFFERENCES if row["paired"] and row["paired"][key]["n"]}
     shown |= {"diff": diff} if diff else {}
+    from irsim.benchmarks.labels import seeds_of
+
     if failed := seeds_of(row["failed"], _FAILED):
         robots = [f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_FAILURES]]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
