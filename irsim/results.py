@@ -300,6 +300,8 @@ class RunResult(Result):
     """Name of the record of this run, for ``irsim inspect``; None if it was not recorded."""
     artifacts: dict[str, str] = Field(default_factory=dict)
     """Files of the record by name."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record lacks, because there was too much of it."""
 
 
 class Estimate(Result):
@@ -451,6 +453,8 @@ class ReplayResult(Result):
     """Every how many-th step it shows; 1: all."""
     scans: Literal["none", "recorded", "computed"]
     """Whether scans are as recorded, or computed in the page from the shapes it draws."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record lacks, because there was too much of it."""
 
 
 class RunTable(Result):
@@ -480,6 +484,8 @@ class RunTable(Result):
     """Last step looked at."""
     next_cursor: str | None
     """Where the next page begins; None on the last one."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record lacks, because there was too much of it, so that the table lacks it, too."""
 
 
 class RobotPose(Result):

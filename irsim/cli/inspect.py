@@ -78,6 +78,8 @@ def inspect(
         print_json(table)
     elif csv:
         _print_csv(table)
+        for note in table.notes:
+            typer.echo(f"note: {note}", err=True)
     else:
         _show(table, console())
 
@@ -134,6 +136,8 @@ def _show(table: RunTable, out: object) -> None:
     assert isinstance(out, Console)
     ended = table.status if table.outcome is None else table.outcome
     out.print(f"{table.run_id}: {ended}: {clean(table.summary, 400)}")
+    for note in table.notes:
+        out.print(f"note: {clean(note, 200)}", style="yellow")
     shown = Table(box=None, pad_edge=False, header_style="dim")
     for column in table.columns:
         shown.add_column(

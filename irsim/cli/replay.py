@@ -52,3 +52,5 @@ def replay(
         Text.assemble("wrote ", (result.file, "bold"), f" ({size}, steps 0 to {result.last_step}{thinned})"),
         soft_wrap=True,
     )
+    for note in result.notes:
+        console().print(f"note: {note}", style="yellow")

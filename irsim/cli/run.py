@@ -130,6 +130,8 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
             Text.assemble("recorded: ", (f"irsim inspect {name}", "cyan"), " or ", (f"irsim replay {name}", "cyan")),
             soft_wrap=True,
         )
+    for note in result.notes:
+        out.print(f"note: {note}", style="yellow")
     out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
 
 

@@ -56,7 +56,8 @@ class Trace:
         goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN where there is none.
         arrived, collided, stopped: (T, N) flags.
         ranges: (T, B) ranges [m] of each sensor, infinite where a beam hit nothing; by ``<object name>/<number of the
-            sensor among the object's native ones>``. Empty if scans were not kept.
+            sensor among the object's native ones>``. Empty if scans were not kept; of a recorded run that was too large
+            to keep all of them there are as many rows as were kept.
         names: Names of the objects, in order.
         step_time: Period [s].
     """

@@ -103,6 +103,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         **_ending(run),
         "seed": int(run.meta["seed"]),
         "irsim": clean(run.meta.get("irsim", "")),
+        "notes": run.notes,
         "step_time": trace.step_time,
         "last_step": int(trace.step[-1]),
         "every": every,
@@ -168,7 +169,7 @@ def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: 
     if not lidars:
         return "none"
     keys = [lidar.pop("key") for lidar in lidars]
-    known = [trace.ranges.get(key) for key in keys]
+    known = [block if block is not None and len(block) == len(trace) else None for block in map(trace.ranges.get, keys)]
     if sum(0 if block is None else block.shape[1] * len(rows) for block in known) > _MOST_RANGES:
         return "computed"
     room, scans = _MOST_SCAN_BYTES, "recorded"

@@ -56,4 +56,5 @@ def replay(
         last_step=packed.head["last_step"],
         every=packed.head["every"],
         scans=packed.head["scans"],
+        notes=packed.head["notes"],
     )

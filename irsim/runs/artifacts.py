@@ -112,7 +112,7 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
     trace = run.trace()
     begin, end = int(trace.step[0]), int(trace.step[-1])
     if not begin <= from_step <= end:
-        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", f"it has {begin} to {end}")
+        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent)
     if robot is not None and robot not in trace.names:
         raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}")
     objects = slice(None) if robot is None else [trace.names.index(robot)]
@@ -126,6 +126,7 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
         "names": [name for name in trace.names if robot in (None, name)],
         "last_step": end,
         "every": max(1, every),
+        "notes": run.notes,
     }
     room, parts, next_step = most - len(json.dumps(head)) - 100, list[str](), None
     for row in rows:
@@ -137,7 +138,9 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
             ).tolist(),
         }
         if keys:
-            values["ranges"] = {key: _finite(trace.ranges[key][row]) for key in keys}
+            values["ranges"] = {
+                key: _finite(trace.ranges[key][row]) if row < len(trace.ranges[key]) else None for key in keys
+            }
         part = json.dumps(values, separators=(",", ":"))
         room -= len(part) + 1
         if room < 0:

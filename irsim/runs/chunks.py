@@ -43,7 +43,8 @@ def save_chunk(file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: 
 
     ``steps``: the first one and how many. ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the
     objects ``movers``; ``pose_at`` (N, 3) of everybody. ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4
-    stopped) and ``ranges`` (K, beams) hold from the rows ``goal_rows``, ``flag_rows`` and ``scan_rows`` on.
+    stopped) and ``ranges`` (K, beams) hold from the rows ``goal_rows``, ``flag_rows`` and ``scan_rows`` on; without any
+    row of scans none were kept.
 
     Args:
         file: Where to.
@@ -109,7 +110,9 @@ def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
     flags = _held(arrays, "flag_rows", "flags", rows, (count,)).astype(np.uint8)
     ranges: dict[str, NDArray[np.float32]] = {}
     if layout.sensors:
-        scans = _held(arrays, "scan_rows", "ranges", rows, (beams,)).astype(np.float32, copy=False)
+        scans = np.zeros((0, beams), dtype=np.float32)
+        if len(arrays["scan_rows"]):
+            scans = _held(arrays, "scan_rows", "ranges", rows, (beams,)).astype(np.float32, copy=False)
         cuts = np.cumsum([number for _, number in layout.sensors])[:-1]
         ranges = {key: part for (key, _), part in zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)}
     step = np.arange(first, first + rows, dtype=np.int64)

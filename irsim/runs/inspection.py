@@ -30,6 +30,7 @@ _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "sta
 _STANDING = 1e-3
 """Slower than this is standing still [m/s]."""
 _DECIMALS = 4
+_NOT_KEPT = "not recorded"
 _PARTNERS = 5
 """Of each kind, whom an object is told to have come near."""
 Cell = float | int | str | bool | None
@@ -102,8 +103,9 @@ def inspect_run(
     begin, end = int(trace.step[0]), int(trace.step[-1])
     last = end if to_step is None else min(to_step, end)
     if from_step > end or last < from_step:
-        what = f"run {opened.id} has no steps from {from_step} to {end if to_step is None else to_step}"
-        raise RunError("step-out-of-range", what, f"it has the steps {begin} to {end}")
+        to = "on" if to_step is None else f"to {to_step}"
+        what = f"run {opened.id} has no steps from {from_step} {to}"
+        raise RunError("step-out-of-range", what, opened.extent)
     chosen = _fields(fields)
     objects = _objects(opened, trace, robot)
     start = _start(cursor)
@@ -128,6 +130,7 @@ def inspect_run(
         from_step=from_step,
         to_step=last,
         next_cursor=str(shown) if shown < found.total else None,
+        notes=opened.notes,
     )
 
 
@@ -211,9 +214,10 @@ def _cells(trace: Trace, field: Field, row: int, index: int, controls: int) -> l
         return [" ".join(word for word, flag in flags if flag[row, index]) or "under way"]
     if field == "nearest_hit":
         prefix = f"{trace.names[index]}/"
-        least = [
-            float(block[row].min()) for key, block in trace.ranges.items() if key.startswith(prefix) and block.size
-        ]
+        blocks = [block for key, block in trace.ranges.items() if key.startswith(prefix)]
+        if any(row >= len(block) for block in blocks):
+            return [_NOT_KEPT]
+        least = [float(block[row].min()) for block in blocks if block.size]
         return [_number(min(least, default=math.inf))]
     if field == "speed":
         return [_number(float(_speeds(trace, index, row, row)[0]))]

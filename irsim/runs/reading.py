@@ -13,6 +13,7 @@ from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
 from irsim.runs.chunks import Layout, load_chunk
+from irsim.runs.notes import lacking
 from irsim.runs.store import (
     META,
     RESULT,
@@ -103,6 +104,17 @@ class Run:
         if not isinstance(objects, list) or not all(isinstance(item, dict) for item in objects):
             raise RunError("unreadable-run", f"resolved.json of run {self.id} is missing or has been changed")
         return dict(data)
+
+    @property
+    def notes(self) -> list[str]:
+        """What its record lacks because there was too much of it."""
+        result = self.result
+        return lacking(self.meta, None if result is None else result.steps)
+
+    @property
+    def extent(self) -> str:
+        """Which steps there are, and why no more."""
+        return "; ".join([f"it has the steps 0 to {self.last_step}", *self.notes])
 
     @property
     def last_step(self) -> int:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from irsim import _core as core
 from irsim.observers.trace import present_row
 from irsim.runs.chunks import save_chunk
+from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
 from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, tidy, written
 
@@ -35,8 +36,11 @@ _PIECE = 4_000_000
 _PERIOD = 0.5
 """Seconds after which a piece is written at the latest."""
 _MOST_TRACE = 200_000_000
-"""Bytes of the trace of one run; what happens later is told by events and result only."""
-_MOST_SCANS = 64_000_000
+"""Bytes of the trace of one run without its scans; what happens later is told by events and result only."""
+_MOST_SCANS = 80_000_000
+"""Bytes of the scans of one run when they are read; later ones are not kept."""
+_LARGEST_SCAN = 8_000_000
+"""Bytes of all ranges of one step; larger ones are not kept at all."""
 _BETWEEN_PRUNING = 16_000_000
 
 
@@ -76,14 +80,15 @@ class Recorder:
             assert folder is not None
             self.folder = _new(folder)
         self._claim = claim(self.folder)
-        beams = simulation.world.beams_per_world
-        scans = bool(beams) and (horizon + 1) * beams * 4 <= _MOST_SCANS
+        self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
+        self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
+        self._scan_rows = _MOST_SCANS // self._scan if scans else 0  # that may still come
         self._revision = simulation.revision
         self._log, self._movers = _log_of(simulation, scans)
         self._log.attach(simulation.state)
         self._log.add(simulation.state)
         simulation.log = self._log
-        self._pieces = self._events = self._bytes = self._pruned_at = 0
+        self._pieces = self._events = self._bytes = self._scan_bytes = self._pruned_at = 0
         self._done = False
         self._due = time.monotonic() + _PERIOD
         start = present_row(simulation, scans)
@@ -99,8 +104,9 @@ class Recorder:
             "options": dict(options),
             "names": list(start.names),
             "sensors": [[key, block.shape[1]] for key, block in start.ranges.items()],
-            "scans": scans or not beams,
+            "scans": scans or not self._scan,
             "trace_until": None,
+            "scans_until": None,
             **_versions(),
         }
         try:
@@ -113,21 +119,36 @@ class Recorder:
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""
-        done = self._simulation.advance(steps, until_done=until_done)
-        self.look()
+        done = 0
+        while done < steps:
+            some = min(steps - done, self._most_steps())
+            more = self._simulation.advance(some, until_done=until_done)
+            done += more
+            self.look()
+            if more < some:
+                break
         return done
+
+    def _most_steps(self) -> int:
+        """Steps until the next look at the latest: pieces stay small, and scans end at the same step every time."""
+        if not self._scans:
+            return 2**62
+        return max(1, min(_PIECE // self._scan, self._scan_rows - self._log.rows))
 
     def look(self) -> None:
         """Write a piece if it is time to: to be called now and then, best after every step."""
         if self._simulation.revision != self._revision:
             raise RunError("unreadable-run", "objects came or went: only runs with the same objects are recorded")
-        if self._log.bytes >= _PIECE or time.monotonic() >= self._due:
+        if self._scans and self._log.rows >= self._scan_rows:
+            self._end_scans()
+        elif self._log.bytes >= _PIECE or time.monotonic() >= self._due:
             self._flush()
 
     def finish(self, result: RunResult) -> None:
         """Write what is left and the result, which is told where its record is; the run is complete."""
         self._flush()
         self._write_meta(status="finished", steps=int(self._simulation.count[0]))
+        result.notes = lacking(self._meta, result.steps)
         result.run_id = self.folder.name
         result.artifacts = {name: str(self.folder / name) for name in ARTIFACTS}
         self._write(RESULT, result.model_dump_json(indent=1))
@@ -148,6 +169,19 @@ class Recorder:
         self._detach()
         self._claim.release()
 
+    def _end_scans(self) -> None:
+        """Go on without scans."""
+        last = self._log.first + self._log.rows - 1
+        self._flush()
+        self._scans = False
+        if self._simulation.log is None:
+            return
+        self._detach()
+        self._log, _ = _log_of(self._simulation, scans=False)
+        self._log.attach(self._simulation.state)
+        self._simulation.log = self._log
+        self._write_meta(scans_until=last)
+
     def _detach(self) -> None:
         self._simulation.log = None
         self._log.detach(self._simulation.state)
@@ -164,9 +198,12 @@ class Recorder:
             name = f"trace-{self._pieces:04d}.npz"
             written(self.folder / name, lambda file: save_chunk(file, log, self._movers, self._simulation.pose))
             self._bytes += log.bytes
+            self._scan_bytes += 4 * log.ranges.size
+            self._scan_rows -= log.rows
             last = log.first + log.rows - 1
             log.clear()
-            if self._bytes >= _MOST_TRACE:
+            if self._bytes - self._scan_bytes >= _MOST_TRACE:
+                self._scans = False
                 self._detach()
                 self._write_meta(trace_until=last)
         self._pieces += 1

@@ -63,7 +63,7 @@ def replayed(
     last = run.last_step
     wanted = last if step is None or step == -1 else step
     if not 0 <= wanted <= last:
-        raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", f"it has 0 to {last}")
+        raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", run.extent)
     env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
     advance(env, wanted, progress, until_done=False)
     trace = run.trace()

@@ -8,11 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import irsim
+from irsim.cli.app import app
 from irsim.env import Env
 from irsim.observers.trace import Trace, record
 from irsim.runs import RunError, list_runs, open_run
+from irsim.runs.artifacts import artifact
+from irsim.runs.inspection import VIEWS, inspect_run
+from irsim.runs.replaying import replayed
 from tests.runs.test_trace import assert_same
 
 
@@ -72,6 +77,53 @@ def test_many_pieces_are_one_trace(room: Path, monkeypatch: pytest.MonkeyPatch) 
     assert many.events == one.events
 
 
+def test_scans_are_kept_as_long_as_there_is_room(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = open_run(str(irsim.run(room, seed=4, steps=30, record=True).run_id)).trace()
+    [(key, ranges)] = whole.ranges.items()
+    assert len(ranges) == len(whole) == 31
+    monkeypatch.setattr("irsim.runs.recorder._MOST_SCANS", 4 * ranges.shape[1] * 17)
+    for kept in (None, "film.gif"):  # inside the core, and step by step
+        result = irsim.run(room, seed=4, steps=30, record=True, save=kept)
+        assert result.notes == ["scans recorded until step 16 of 30 (too large)"]
+        run = open_run(str(result.run_id))
+        np.testing.assert_array_equal(run.trace().ranges[key], ranges[:17])
+        np.testing.assert_array_equal(run.trace().pose, whole.pose)
+        table = inspect_run(run, robot="rover", fields=["nearest_hit"], every=1, limit=None)
+        told = [row[-1] for row in table.rows]
+        assert "not recorded" not in told[:17]
+        assert told[17:] == ["not recorded"] * 14
+        assert table.notes == result.notes
+        told = json.loads(artifact(run, "trace.json", robot="rover", from_step=16, to_step=17))
+        assert [row["ranges"][key] is None for row in told["rows"]] == [False, True]
+        assert irsim.replay(run).scans == "computed"
+    monkeypatch.setattr("irsim.runs.recorder._LARGEST_SCAN", 1)
+    assert irsim.run(room, seed=4, steps=30, record=True).notes == ["scans not recorded (too large)"]
+
+
+def test_a_record_that_ends_early_says_so_everywhere(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("irsim.runs.recorder._PIECE", 1)
+    monkeypatch.setattr("irsim.runs.recorder._MOST_TRACE", 2000)
+    monkeypatch.setattr("irsim.episode._CHUNK_STEPS", 5)
+    console = CliRunner()
+    shown = console.invoke(app, ["run", str(room), "--seed", "4", "--steps", "30", "--record"]).stdout
+    run = open_run("last")
+    until = run.last_step
+    assert 0 < until < 30
+    note = f"recorded until step {until} of 30: size limit"
+    assert f"note: {note}" in shown
+    assert run.result is not None
+    assert run.result.notes == [note]
+    for view in VIEWS:
+        assert inspect_run(run, view=view).notes == [note]
+        assert f"note: {note}" in console.invoke(app, ["inspect", "last", "--view", view]).stdout
+    with pytest.raises(RunError, match=f"no steps from 29 on. Fix: it has the steps 0 to {until}; {note}"):
+        inspect_run(run, from_step=29)
+    with pytest.raises(RunError, match=f"no step 29. Fix: it has the steps 0 to {until}; {note}"):
+        replayed(run, 29)
+    assert irsim.replay(run).notes == [note]
+    assert f"note: {note}" in console.invoke(app, ["replay", "last"]).stdout
+
+
 def test_a_folder_of_ones_own(room: Path, tmp_path: Path) -> None:
     target = tmp_path / "kept" / "first"
     result = irsim.run(room, seed=4, record=target)
@@ -105,7 +157,7 @@ def test_a_failing_run_is_readable_until_then(room: Path) -> None:
 
 def test_last_is_the_run_begun_last_whatever_was_looked_at_since(room: Path) -> None:
     ids = [str(irsim.run(room, seed=n, steps=1, record=True).run_id) for n in range(7)]
-    irsim.runs.inspection.inspect_run(ids[0])
+    inspect_run(ids[0])
     assert open_run("last").id == ids[-1]
     assert [run.id for run in list_runs()] == ids[::-1]
     with pytest.raises(RunError) as caught:

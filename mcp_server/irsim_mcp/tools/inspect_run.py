@@ -110,7 +110,7 @@ def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
 def _text(table: Table, found: dict[str, Any]) -> str:
     """The table in words; it says all that the structure says."""
     ended = found["status"] if found["outcome"] is None else found["outcome"]
-    lines = [f"{ended}: {table.summary}", ", ".join(table.columns)]
+    lines = [f"{ended}: {table.summary}", *(f"Note: {note}" for note in found["notes"]), ", ".join(table.columns)]
     lines += [", ".join("-" if cell is None else str(cell) for cell in row) for row in table.rows]
     spread = f", every {found['every']} steps" if found["every"] > 1 else ""
     return "\n".join([*lines, f"{len(table.rows)} of {table.total} rows{spread}", f"Next: {table.next}"])

@@ -137,6 +137,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
     told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:_CONCISE]]
     if len(warnings) > _CONCISE:
         told.append(f"{len(warnings) - _CONCISE} more: validate_scenario lists them")
+    told += [f"the record lacks something: {note}" for note in found["notes"]]
     run_id = found["run_id"]
     return Episode(
         run_id=run_id,

@@ -424,6 +424,16 @@ def test_long_reasons_and_names_have_room(workspace: Path, watched: Watched, wid
     assert max(heights) < 30
 
 
+def test_it_says_what_the_record_lacks(run: Run, watched: Watched) -> None:
+    shown = watched.open(Path(irsim.replay(run).file))
+    assert not shown.locator("#recordnote").is_visible()
+    path = run.folder / "run.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "trace_until": 7}))
+    watched.requests.clear()
+    watched.open(Path(irsim.replay(open_run(run.id)).file))
+    assert shown.inner_text("#recordnote") == f"recorded until step 7 of {run.last_step}: size limit"
+
+
 def test_more_is_offered_only_where_there_is_more(shown: Any) -> None:
     assert not shown.locator("#more").is_visible()
 
