@@ -39,8 +39,8 @@ _MOST_TRACE = 200_000_000
 """Bytes of the trace of one run without its scans; what happens later is told by events and result only."""
 _MOST_SCANS = 80_000_000
 """Bytes of the scans of one run when they are read; later ones are not kept."""
-_LARGEST_SCAN = 8_000_000
-"""Bytes of all ranges of one step; larger ones are not kept at all."""
+_LARGEST_SCAN = 800_000
+"""Bytes of all ranges of one step; of larger ones none are kept, as there would be room for a few steps only."""
 _BETWEEN_PRUNING = 16_000_000
 
 
