@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from irsim.episode import seed_of
-from irsim.metrics import Approach, least
 from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
@@ -20,6 +19,7 @@ from irsim.text import clean, seconds
 
 if TYPE_CHECKING:
     from irsim.env import Env
+    from irsim.metrics import Approach
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
     from irsim.views import ObjectView
 
@@ -163,6 +163,8 @@ def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotRe
 
 def _nearest(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | None]:
     """For each robot, by row, what it came nearest to until it arrived; empty in very large runs."""
+    from irsim.metrics.clearance import least
+
     state, rows, steps = env.simulation.state, [view.row for view in env.robot_list], int(env.simulation.count[0])
     if not rows or (steps + 1) * env.simulation.objects > _MOST_POSES:
         return {}

@@ -159,9 +159,7 @@ def test_arguments_that_do_not_fit() -> None:
     end=st.integers(1, 12),
 )
 def test_the_least_of_all_rows_is_that_of_the_rows(bodies, ways, end) -> None:
-    world, state = scene(
-        *(robot(parts=[part]) for part, *_ in bodies), obstacle(parts=[circle(0.5)])
-    )
+    world, state = scene(*(robot(parts=[part]) for part, *_ in bodies), obstacle(parts=[circle(0.5)]))
     share = np.linspace(0, 1, 12)[:, None]
     moving = [np.array(a) + share * (np.array(b) - np.array(a)) for (a, b), _ in zip(ways, bodies, strict=False)]
     poses = np.ascontiguousarray(np.stack([*moving, np.tile([3.0, 2.0, 0.0], (12, 1))], axis=1))
