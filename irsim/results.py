@@ -513,6 +513,8 @@ class MovingPose(Result):
     name: str
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
+    velocity: tuple[float, float]
+    """Along x and y of the world [m/s]; an omni drive need not move where it heads."""
 
 
 class SnapshotResult(Result):

@@ -226,8 +226,9 @@ def _arrivals(robots: list[RobotResult], sim_time: float) -> str:
         return count + (f", the last at {seconds(max(arrived))}" if everybody else f" within {seconds(sim_time)}")
     if arrived:
         return f"the robot arrived at {seconds(arrived[0])}"
-    told = "collided" if robots[0].outcome == "collision" else "did not arrive"
-    return f"the robot {told} within {seconds(sim_time)}"
+    if robots[0].outcome == "collision":
+        return "the robot collided"  # when is told by what it hit
+    return f"the robot did not arrive within {seconds(sim_time)}"
 
 
 def _gone_again(env: Env, robots: list[RobotResult]) -> str | None:
