@@ -16,11 +16,12 @@ from irsim.episode import (
     read_scenario,
     seed_of,
 )
-from irsim.results import RenderResult, RunResult
+from irsim.files import check_suffix
+from irsim.results import RenderResult, RunResult, SnapshotResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.rewrite import yaml_flow
-from irsim.snapshot import snapshot
+from irsim.snapshot import snapshot, snapshot_of
 from irsim.validation import diff, fix, validate
 from irsim.verdict import command, region_words, run_result
 
@@ -132,6 +133,7 @@ def render(
     steps: int | None = None,
     size: int | None = None,
     region: Sequence[float] | None = None,
+    strip: int | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
     limits: Limits | None = None,
@@ -146,17 +148,39 @@ def render(
         steps: Steps before the picture (default 0: the start), or the longest an animation goes on.
         size: Longer side of the picture [px]; default from ``world.plot``.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
+        strip: So many moments on one sheet (png), labelled as snapshots are, evenly from the start to ``steps``
+            (default: of a whole episode).
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.
         limits: Limits of the loader.
         progress: Told how far it is.
 
     Raises:
-        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes, a region that is none.
+        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes, a region that is none, too
+            few or too many moments.
     """
     target = Path(out)
     import_modules(imports)
+    if strip is not None:
+        check_suffix(target, ["png"])
     scenario, warnings = read_scenario(path, strict=strict, limits=limits)
+    if strip is not None:
+        sheet = snapshot_of(
+            scenario,
+            path,
+            warnings=warnings,
+            seed=seed,
+            steps=steps,
+            strip=strip,
+            size=600 if size is None else size,
+            region=region,
+            strict=strict,
+            limits=limits,
+            progress=progress,
+            imports=imports,
+            out=out,
+        )
+        return _written(sheet, target)
     animated = target.suffix.lower() in VIDEO_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
@@ -183,6 +207,24 @@ def render(
     )
     env.end(ending_time=0.0)
     return result
+
+
+def _written(sheet: SnapshotResult, target: Path) -> RenderResult:
+    """Write a picture of several moments."""
+    from irsim.render.files import replacing
+
+    with replacing(target) as temporary:
+        temporary.write_bytes(sheet.png)
+    return RenderResult(
+        scenario=sheet.scenario,
+        seed=sheet.seed,
+        steps=sheet.steps,
+        frames=len(sheet.moments),
+        size=sheet.size,
+        files=[str(target.absolute())],
+        warnings=sheet.warnings,
+        reproduce=sheet.reproduce,
+    )
 
 
 def _animate(

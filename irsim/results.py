@@ -24,6 +24,7 @@ __all__ = [
     "Proportion",
     "RenderResult",
     "ReplayResult",
+    "RobotPlan",
     "RobotPose",
     "RobotResult",
     "RunResult",
@@ -253,11 +254,6 @@ class RobotResult(Result):
     """Distance travelled [m]."""
     distance_to_goal: float | None
     """Distance to the present goal at the end [m]; None without a goal."""
-    min_clearance: float | None = None
-    """Least distance to anything it could hit, until it arrived, edge to edge [m]; negative: overlap; None where there
-    is nothing, and in runs of more than two million poses."""
-    nearest: str | None = None
-    """Name of what that was."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad] at the end."""
 
@@ -513,8 +509,25 @@ class MovingPose(Result):
     name: str
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
-    velocity: tuple[float, float]
-    """Along x and y of the world [m/s]; an omni drive need not move where it heads."""
+
+
+class RobotPlan(Result):
+    """The way that a robot would take over its goals."""
+
+    name: str
+    label: str
+    """What stands beside it in the picture."""
+    own: bool
+    """Its own behavior has planned it; else it is a shortest way round what stands still, which it may not know."""
+    length: float
+    """Of the way, as far as there is one [m]."""
+    margin: float | None
+    """About the least distance between what stands still and a disc inside of the robot's body [m]; None where nothing
+    stands."""
+    tightest: tuple[float, float]
+    """Where that is [m]."""
+    lost: tuple[float, float] | None
+    """A goal that it cannot get to [m]; None if it gets to all of them."""
 
 
 class SnapshotResult(Result):
@@ -540,6 +553,10 @@ class SnapshotResult(Result):
     """One entry per robot."""
     moving: list[MovingPose]
     """One entry per obstacle that can move."""
+    moments: list[int] = []
+    """Steps in the picture, from left to right and top to bottom, if it shows several."""
+    plans: list[RobotPlan] = []
+    """The ways of robots, if they were asked for."""
     size: tuple[int, int]
     """Width and height [px]."""
     warnings: list[Finding]

@@ -2,33 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from irsim.contents import counts_of, in_words
 from irsim.env import Env
 from irsim.episode import Progress, advance, horizon_of, read_scenario, seed_of
 from irsim.observers.outcome import robot_outcomes
+from irsim.overlays import OVERLAYS, Overlay, additions, plan_results, planned, plot_keys
 from irsim.results import Finding, MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
-from irsim.verdict import command, region_words
-
-if TYPE_CHECKING:
-    from irsim.views import ObjectView
+from irsim.strips import drawn_strip, moments_of
+from irsim.verdict import command, region_words, strip_words
 
 __all__ = ["OVERLAYS", "Overlay", "drawn", "snapshot", "snapshot_of"]
-
-Overlay = Literal["names", "goals", "paths", "sensors"]
-OVERLAYS: dict[Overlay, tuple[str, ...]] = {
-    "names": ("show_text", "show_goal_text"),
-    "goals": ("show_goal",),
-    "paths": ("show_trajectory",),
-    "sensors": ("show_sensor",),
-}
-"""What a snapshot may show besides bodies, and the plot keys that switch it."""
 
 
 def snapshot(
@@ -37,6 +27,7 @@ def snapshot(
     text: str | None = None,
     seed: int | None = None,
     steps: int | None = 0,
+    strip: int | None = None,
     size: int = 600,
     overlays: Iterable[Overlay] | None = None,
     region: Sequence[float] | None = None,
@@ -52,6 +43,7 @@ def snapshot(
         text: Or its text.
         seed: Over the file's.
         steps: Steps before the picture; None: those of a whole episode.
+        strip: So many moments in one picture, evenly from the start to ``steps`` (0: of a whole episode).
         size: Longer side of the picture [px].
         overlays: What to show besides bodies, see :data:`OVERLAYS`; by default names, goals and paths, and of sensors
             what the scenario says.
@@ -64,7 +56,8 @@ def snapshot(
     Raises:
         ScenarioError: The scenario cannot be used; ScenarioNotFoundError: there is none.
         OverLimitError: More steps are asked for than the limits allow.
-        ValueError: Neither or both of ``path`` and ``text``; a region that is none.
+        ValueError: Neither or both of ``path`` and ``text``; a region that is none, or too few or too
+            many moments.
     """
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
     return snapshot_of(
@@ -73,6 +66,7 @@ def snapshot(
         warnings=warnings,
         seed=seed,
         steps=steps,
+        strip=strip,
         size=size,
         overlays=overlays,
         region=region,
@@ -90,6 +84,7 @@ def snapshot_of(
     warnings: list[Finding],
     seed: int | None = None,
     steps: int | None = 0,
+    strip: int | None = None,
     size: int = 600,
     overlays: Iterable[Overlay] | None = None,
     region: Sequence[float] | None = None,
@@ -97,20 +92,42 @@ def snapshot_of(
     strict: bool = False,
     limits: Limits | None = None,
     progress: Progress | None = None,
+    imports: Sequence[str] = (),
+    out: str | Path = "snapshot.png",
 ) -> SnapshotResult:
     """The same of a scenario that has been read, with what was odd about it; ``path`` is only told."""
     if region is not None:
         from irsim.render.scene import region_extent
 
         region_extent(region)  # before much work is done
+    shown = None if overlays is None else list(overlays)
     env = Env(scenario, seed=seed_of(scenario, seed), headless=True, log_level="ERROR")
+    if strip is not None:
+        moments_of(0, strip)
+        steps = steps or None
     horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    advance(env, horizon, progress, until_done=steps is None)
-    count = int(env.simulation.count[0])
-    extra = ["--size", str(size), *region_words(region), "-o", "snapshot.png"]
-    again = command("render", path, env, count, strict, extra=extra)
+    chosen: list[int] | None = None
+    if strip is None or steps is None:
+        advance(env, horizon, progress, until_done=steps is None)
+    if strip is not None:
+        last = int(env.simulation.count[0]) if steps is None else steps
+        chosen = moments_of(last, strip)
+        if steps is None:  # nobody knew how long it would be
+            env.end(ending_time=0.0)
+            env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR")
+    count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
+    extra = ["--size", str(size), *region_words(region), *strip_words(strip), "-o", str(out)]
     result = drawn(
-        env, path, size=size, overlays=overlays, region=region, draw=draw, warnings=warnings, reproduce=again
+        env,
+        path,
+        size=size,
+        overlays=shown,
+        region=region,
+        moments=chosen,
+        draw=draw,
+        warnings=warnings,
+        reproduce=command("render", path, env, count, strict, imports, extra=extra),
+        progress=progress,
     )
     env.end(ending_time=0.0)
     return result
@@ -121,22 +138,30 @@ def drawn(
     path: str | Path | None,
     *,
     size: int,
-    overlays: Iterable[Overlay] | None,
+    overlays: Collection[Overlay] | None,
     region: Sequence[float] | None = None,
+    moments: Sequence[int] | None = None,
     draw: bool,
     warnings: list[Finding],
     reproduce: str,
+    progress: Progress | None = None,
 ) -> SnapshotResult:
-    """An environment as it is now: like :func:`snapshot`, with the command that draws the same moment."""
+    """An environment as it is now: like :func:`snapshot`, with the command that draws the same moment.
+
+    With ``moments``, steps of which the first is now, it is at the last of them afterwards.
+    """
     scenario = env.scenario
-    png, pixels = b"", (0, 0)
-    if draw:
+    png = b""
+    if moments is not None and draw:
+        png = drawn_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress)
+    elif moments is not None:
+        advance(env, moments[-1], progress, until_done=False)
+    ways = planned(env, overlays)
+    if moments is None and draw:
         from irsim.render.snapshot import render_scene
 
-        shown = None if overlays is None else set(overlays)
-        keys = {} if shown is None else {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
-        png = render_scene(env.simulation, size_px=size, region=region, overrides=keys)
-        pixels = _size_of(png)
+        extra = additions(env, overlays, ways)
+        png = render_scene(env.simulation, size_px=size, region=region, overrides=plot_keys(overlays), extra=extra)
     x, y, right, top = scenario.world.bounds
     counts = counts_of(scenario)
     return SnapshotResult(
@@ -149,8 +174,14 @@ def drawn(
         obstacles=counts["obstacles"],
         contents=in_words(counts, robots=False, sensors=False),
         robots=_poses(env),
-        moving=[_moving(view) for view in env.obstacle_list if not view.record.static],
-        size=pixels,
+        moving=[
+            MovingPose(name=view.name, pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])))
+            for view in env.obstacle_list
+            if not view.record.static
+        ],
+        moments=list(moments or ()),
+        plans=plan_results(env, ways),
+        size=_size_of(png) if png else (0, 0),
         warnings=warnings,
         reproduce=reproduce,
         png=png,
@@ -173,12 +204,6 @@ def _poses(env: Env) -> list[RobotPose]:
             )
         )
     return robots
-
-
-def _moving(view: ObjectView) -> MovingPose:
-    vx, vy = (float(value) for value in view.velocity_xy.reshape(-1)[:2])
-    pose = (float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0]))
-    return MovingPose(name=view.name, pose=pose, velocity=(vx, vy))
 
 
 def _size_of(png: bytes) -> tuple[int, int]:

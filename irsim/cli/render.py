@@ -31,6 +31,15 @@ def render(
         tuple[float, float, float, float] | None,
         typer.Option(metavar="X_MIN Y_MIN X_MAX Y_MAX", help="The part of the world to show, in metres."),
     ] = None,
+    strip: Annotated[
+        int | None,
+        typer.Option(
+            min=2,
+            max=12,
+            metavar="N",
+            help="N moments on one sheet, from the start to --steps (default: to the end of the episode).",
+        ),
+    ] = None,
     json_output: Json = False,
     strict: Strict = False,
     imports: Imports = None,
@@ -56,6 +65,7 @@ def render(
             steps=steps,
             size=size,
             region=region,
+            strip=strip,
             strict=strict,
             imports=imports or (),
             limits=limits_for(max_objects),

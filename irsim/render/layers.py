@@ -19,7 +19,7 @@ from irsim.render.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line,
 
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 
-_PARTS = ("trail", "trajectory", "fov", "goal", "body", "beams", "arrow", "contact")
+_PARTS = ("field", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Order of drawing within one zorder."""
 
 _RANK = 1e-3
@@ -192,8 +192,9 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
 
 
 def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
-    """Colours that a reduced palette must keep (0..255): paper, ink, and opaque bodies and arrows."""
+    """Colours that a reduced palette must keep (0..255): paper, ink, opaque bodies and arrows, some texts."""
     colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
+    colors += [rgba(label.color)[:3] for label in scene.labels if label.part in ("field", "plan")]
     levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
     return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
 

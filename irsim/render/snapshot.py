@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,13 +15,17 @@ from irsim.render.layers import opaque_colors
 from irsim.render.legible import make_legible
 from irsim.render.pictures import Pictures
 from irsim.render.pixels import to_image
-from irsim.render.scene import region_extent
+from irsim.render.scene import Scene, region_extent
 
 if TYPE_CHECKING:
+    from PIL import Image
+
     from irsim.simulation import Simulation
 
-__all__ = ["render_scene"]
+__all__ = ["Extra", "legible_scene", "png_of", "render_scene"]
 
+Extra = Callable[[Scene], None]
+"""Adds something to a scene."""
 _DPI = 100.0
 _COLORS = 255
 
@@ -37,6 +41,7 @@ def render_scene(
     viewpoint: Any = None,
     region: Sequence[float] | None = None,
     overrides: Mapping[str, Any] | None = None,
+    extra: Extra | None = None,
 ) -> bytes:
     """Draw one world as a PNG of few colours (some 20 kB).
 
@@ -50,10 +55,37 @@ def render_scene(
         viewpoint: Point or object name to centre on; default: what the scenario says.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         overrides: Object plot keys.
+        extra: Adds something to the scene.
 
     Returns:
         The PNG file.
     """
+    scene, pictures = legible_scene(
+        simulation, world, labels=labels, viewpoint=viewpoint, region=region, overrides=overrides, extra=extra
+    )
+    x0, x1, y0, y1 = scene.extent
+    size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
+    figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
+    figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
+    pixels, _ = figure.pixels(tight=False)
+    data = png_of(to_image(pixels), opaque_colors(scene))
+    if out is not None:
+        with replacing(Path(out)) as temporary:
+            temporary.write_bytes(data)
+    return data
+
+
+def legible_scene(
+    simulation: Simulation,
+    world: int = 0,
+    *,
+    labels: bool = True,
+    viewpoint: Any = None,
+    region: Sequence[float] | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    extra: Extra | None = None,
+) -> tuple[Scene, Pictures]:
+    """What such a picture shows, and the images in it; see :func:`render_scene`."""
     options, source = simulation.scenario.world.plot, simulation.scenario.source
     pictures = Pictures(Path(source).parent if source else None)
     builder = SceneBuilder(simulation, world=world, has_picture=pictures.has)
@@ -68,16 +100,13 @@ def render_scene(
         (x, y), right, up = scene.center, (x1 - x0) / 2, (y1 - y0) / 2
         scene.look_at((x - right, x + right, y - up, y + up))
     make_legible(scene, simulation, world)
-    x0, x1, y0, y1 = scene.extent
-    size = fitting_size(x1 - x0, y1 - y0, size_px, _DPI)
-    figure = SceneFigure(size, _DPI, pictures=pictures, halo=True)
-    figure.show(scene, f"{scene.time:.2f} s" if title is None else title)
-    pixels, _ = figure.pixels(tight=False)
+    if extra is not None:
+        extra(scene)
+    return scene, pictures
+
+
+def png_of(image: Image.Image, kept: Sequence[tuple[int, int, int]]) -> bytes:
+    """A PNG file of few colours, among them those that are to be kept."""
     data = io.BytesIO()
-    image = to_image(pixels)
-    reduced = reduce_colors(image, opaque_colors(scene), _COLORS)
-    reduced.save(data, "PNG", optimize=True)
-    if out is not None:
-        with replacing(Path(out)) as temporary:
-            temporary.write_bytes(data.getvalue())
+    reduce_colors(image, kept, _COLORS).save(data, "PNG", optimize=True)
     return data.getvalue()

@@ -17,7 +17,7 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.read import read
 
-__all__ = ["replayed", "scenario_of"]
+__all__ = ["check_same", "replayed", "scenario_of", "step_of"]
 
 
 def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
@@ -60,20 +60,39 @@ def replayed(
         RunError: There is no such step, or simulating it again gives something else, because a map or irsim itself has
             changed since.
     """
+    wanted = step_of(run, step)
+    env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
+    advance(env, wanted, progress, until_done=False)
+    check_same(run, env)
+    return env
+
+
+def step_of(run: Run, step: int | None) -> int:
+    """A step of a run; None or -1 is the last one.
+
+    Raises:
+        RunError: There is no such step.
+    """
     last = run.last_step
     wanted = last if step is None or step == -1 else step
     if not 0 <= wanted <= last:
         raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", run.extent)
-    env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
-    advance(env, wanted, progress, until_done=False)
-    trace = run.trace()
-    row = wanted - int(trace.step[0])
+    return wanted
+
+
+def check_same(run: Run, env: Env) -> None:
+    """Refuse an environment that is not where the run was at its step.
+
+    Raises:
+        RunError: Simulating it again has given something else, because a map or irsim itself has changed since.
+    """
+    trace, step = run.trace(), int(env.simulation.count[0])
+    row = step - int(trace.step[0])
     if trace.pose[row].shape != env.simulation.pose.shape or not np.array_equal(
         trace.pose[row], env.simulation.pose, equal_nan=True
     ):
-        what = f"simulating run {run.id} again gives other poses at step {wanted}"
+        what = f"simulating run {run.id} again gives other poses at step {step}"
         raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
-    return env
 
 
 def _place(run: Run, limits: Limits) -> str | None:

@@ -155,12 +155,15 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
     from irsim.runs import open_run
-    from irsim.runs.replaying import replayed
+    from irsim.runs.replaying import check_same, replayed, step_of
     from irsim.snapshot import drawn
+    from irsim.strips import moments_of
 
-    arguments = job["arguments"]
+    arguments, moments = job["arguments"], None
     run = open_run(arguments["run_id"], job["workspace"])
-    env = replayed(run, arguments["steps"], limits=_limits(job), progress=progress)
+    if arguments["strip"] is not None:
+        moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
+    env = replayed(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
     result = drawn(
@@ -169,10 +172,13 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
         size=arguments["size"],
         overlays=arguments["overlays"],
         region=arguments["region"],
+        moments=moments,
         draw=arguments["draw"],
         warnings=[],
         reproduce="",
+        progress=progress,
     )
+    check_same(run, env)
     png = base64.b64encode(result.png).decode()
     return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
 

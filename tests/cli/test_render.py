@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from irsim.api import snapshot
 from tests.cli.conftest import Run, parsed
 
 
@@ -59,3 +60,13 @@ def test_demo_leaves_a_gif_and_says_where(irsim: Run, tmp_path: Path) -> None:
     assert "irsim demo --seed" in result.stdout
     with Image.open(tmp_path / "irsim-demo.gif") as picture:
         assert getattr(picture, "n_frames", 1) > 20
+
+
+def test_a_strip_is_the_picture_of_the_tool(irsim: Run, room: Path, tmp_path: Path) -> None:
+    data = parsed(irsim("render", "room.yaml", "-o", "strip.png", "--strip", "3", "--steps", "4", "--json"))
+    assert (data["frames"], data["steps"]) == (3, 4)
+    assert "--strip 3" in data["reproduce"]
+    assert (tmp_path / "strip.png").read_bytes() == snapshot("room.yaml", strip=3, steps=4).png
+    refused = irsim("render", "room.yaml", "-o", "strip.gif", "--strip", "3")
+    assert refused.exit_code != 0
+    assert "unknown-format" in refused.output

@@ -65,6 +65,16 @@ async def test_region(empty: Path) -> None:
     assert "x_min, y_min, x_max, y_max" in error_of(bad)
 
 
+async def test_plans_in_words(empty: Path) -> None:
+    async with connected(empty) as client:
+        given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
+        result = await client.call_tool("render_snapshot", given)
+        refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
+    assert "a way for r0: " in text_of(result)
+    assert "(strip)" in error_of(refused)
+    assert "2 to 12" in error_of(refused)
+
+
 async def test_settings_of_the_workspace_have_no_effect(workspace: Path) -> None:
     """A matplotlibrc could switch on LaTeX, which runs programs."""
     (workspace / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: 123456\n", encoding="utf-8")

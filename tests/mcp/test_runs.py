@@ -111,6 +111,15 @@ async def test_a_picture_of_a_run_is_that_of_the_scenario(workspace: Path) -> No
         assert f"step {open_run(run_id, workspace).last_step}," in text_of(last)
         beyond = await client.call_tool("render_snapshot", {"run_id": run_id, "step": 4000})
         assert error_of(beyond).startswith("step-out-of-range: ")
+        strip = await client.call_tool("render_snapshot", {"run_id": run_id, "step": 20, "strip": 3})
+        assert (
+            image_of(strip).data == image_of(await client.call_tool("render_snapshot", {**scenario, "strip": 3})).data
+        )
+        assert "steps 0, 10, 20, the last: t=2 s (step 20" in text_of(strip)
+        whole = await client.call_tool("render_snapshot", {"run_id": run_id, "strip": 2, "return_image": False})
+        assert f"steps 0, {open_run(run_id, workspace).last_step}, the last:" in text_of(whole)
+        beyond = await client.call_tool("render_snapshot", {"run_id": run_id, "step": 4000, "strip": 3})
+        assert error_of(beyond).startswith("step-out-of-range: ")
         both = await client.call_tool("render_snapshot", {"run_id": run_id, "seed": 1})
         assert error_of(both).startswith("bad-argument: ")
 

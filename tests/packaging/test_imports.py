@@ -77,11 +77,13 @@ LAYERS = (
     lookup
     map_files
     modeline
+    overlays
     replay
     results
     runs
     skills
     snapshot
+    strips
     survey
     templates
     testing

@@ -8,6 +8,7 @@ from mcp.server.mcpserver import Context
 from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
+from irsim.strips import FEWEST, MOST
 from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import STEPS
@@ -19,12 +20,12 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["tool"]
 
 _DESCRIPTION = """
-    Draw one moment of a scenario as a PNG and look at it: bodies, yellow arrows (heading; omni: where it moves), goals
-    (pale), names, lidar beams, paths. Use it once a scenario is valid, and after a failed run. Step 0 is the start: do
-    things overlap, lie outside the world, are goals inside obstacles? Later steps are simulated first. Returns one line
-    of text (what the labels r0, G-r0 (its goal) stand for, where who is) and the image; writes no file.
-    Next: edit and validate again, or run_episode.
+    Draw a scenario at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni: where it
+    moves), goals (pale), names, lidar beams, paths. Use it on a valid scenario and after a failed run. At step 0: do
+    things overlap, lie outside the world, are goals in obstacles? Returns a line of text (what r0, G-r0 (its
+    goal) stand for, who is where) and the image; writes no file. Next: edit and validate again, or run_episode.
 """
+_OVERLAYS = "Default: names, goals, paths. clearance: shaded where a robot's middle can't be; plan: ways to goals."
 _NAMED = 10
 
 
@@ -37,13 +38,17 @@ def tool(services: Services) -> StrictTool:
         scenario_yaml: ScenarioYaml = None,
         run_id: Annotated[str | None, Field(max_length=100, description="Or of run_episode, with its seed.")] = None,
         step: Annotated[int, Field(ge=-1, le=STEPS, description="0: start; -1: end of the episode.")] = 0,
+        strip: Annotated[
+            int | None,
+            Field(ge=FEWEST, le=MOST, description="Moments on one sheet, from 0 to `step` (0: the end)."),
+        ] = None,
         seed: Seed = None,
         size_px: Annotated[
             int, Field(ge=200, le=1024, description="Longer side; 600 px cost a model about 480 tokens.")
         ] = 600,
         overlays: Annotated[
-            list[Literal["names", "goals", "paths", "sensors"]] | None,
-            Field(description="Besides bodies. Default: names, goals, paths; sensors as the scenario says."),
+            list[Literal["names", "goals", "paths", "sensors", "clearance", "plan"]] | None,
+            Field(description=_OVERLAYS),
         ] = None,
         region: Annotated[
             list[float] | None,
@@ -55,6 +60,7 @@ def tool(services: Services) -> StrictTool:
             "seconds": services.limits.draw_seconds,
             "progress": reporter(ctx, "steps"),
             "steps": None if step == -1 else step,
+            "strip": strip,
             "size": size_px,
             "overlays": overlays,
             "region": region,
@@ -77,13 +83,15 @@ def tool(services: Services) -> StrictTool:
 
 def _line(scene: dict[str, Any], run_id: str | None) -> str:
     left, right, low, top = scene["extent"]
+    moments = f"steps {', '.join(map(str, scene['moments']))}, the last: " if scene["moments"] else ""
     size = "x".join(map(str, scene["size"])) + " px, " if any(scene["size"]) else ""
     chance = f"seed {scene['seed']}" if scene["random"] else "nothing is random"
     parts = [
-        f"{size}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
+        f"{size}{moments}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
     parts += [_robot(robot) for robot in scene["robots"][:_NAMED]]
+    parts += [_plan(plan) for plan in scene["plans"][:_NAMED]]
     more = len(scene["robots"]) - _NAMED
     if more > 0:
         parts.append(f"{more} robots more")
@@ -100,8 +108,15 @@ def _line(scene: dict[str, Any], run_id: str | None) -> str:
 
 def _moving(item: dict[str, Any]) -> str:
     x, y, heading = item["pose"]
-    moving = " moving ({:.2f}, {:.2f}) m/s".format(*item["velocity"]) if any(item["velocity"]) else ""
-    return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad{moving}"
+    return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad"
+
+
+def _plan(plan: dict[str, Any]) -> str:
+    lost, margin = plan["lost"], plan["margin"]
+    if lost is not None:
+        return f"no way for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
+    tight = "" if margin is None else ", least margin {:.2g} m at ({:.2f}, {:.2f})".format(margin, *plan["tightest"])
+    return f"{'its own plan' if plan['own'] else 'a way'} for {plan['label']}: {plan['length']:.3g} m{tight}"
 
 
 def _robot(robot: dict[str, Any]) -> str:

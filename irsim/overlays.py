@@ -1,0 +1,91 @@
+"""What a snapshot shows besides bodies: plot keys, free space, and the ways that robots would take."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import TYPE_CHECKING, Literal
+
+from irsim.env import Env
+from irsim.results import RobotPlan
+
+if TYPE_CHECKING:
+    from irsim.render.planned import Planned
+    from irsim.render.scene import Floats
+    from irsim.render.snapshot import Extra
+
+__all__ = ["OVERLAYS", "Overlay", "additions", "plan_results", "planned", "plot_keys"]
+
+Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
+OVERLAYS: dict[Overlay, tuple[str, ...]] = {
+    "names": ("show_text", "show_goal_text"),
+    "goals": ("show_goal",),
+    "paths": ("show_trajectory",),
+    "sensors": ("show_sensor",),
+    "clearance": (),
+    "plan": (),
+}
+"""What a snapshot may show besides bodies, and the plot keys that switch it."""
+
+
+def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
+    """Plot keys over those of objects; none if nothing is said about overlays."""
+    if overlays is None:
+        return {}
+    shown = set(overlays)
+    return {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
+
+
+def planned(env: Env, overlays: Collection[Overlay] | None) -> list[Planned]:
+    """The ways of the robots of an environment, if they are asked for."""
+    if not overlays or "plan" not in overlays:
+        return []
+    from irsim.render.planned import plans
+
+    return plans(env.simulation, routes=_routes(env))
+
+
+def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned]) -> Extra:
+    """Draws what no plot key switches."""
+    from irsim.render.free_space import draw_clearance
+    from irsim.render.planned import draw_plans
+    from irsim.render.scene import Scene
+
+    def add(scene: Scene) -> None:
+        if overlays and "clearance" in overlays:
+            draw_clearance(scene, env.simulation)
+        draw_plans(scene, ways)
+
+    return add
+
+
+def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
+    """The ways in numbers."""
+    labels = {view.id: view.abbr for view in env.robot_list}
+    return [
+        RobotPlan(
+            name=way.name,
+            label=labels[way.robot],
+            own=way.own,
+            length=way.length,
+            margin=None if way.margin == float("inf") else way.margin,
+            tightest=way.tightest,
+            lost=way.lost,
+        )
+        for way in ways
+    ]
+
+
+def _routes(env: Env) -> dict[int, Floats | None]:
+    """What robots that plan for themselves have planned, or will in their first step, by id."""
+    following = [record for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"]
+    if not following:
+        return {}
+    ahead = env
+    if int(env.simulation.count[0]) == 0:
+        ahead = Env(env.scenario, seed=env.seed, headless=True, log_level="ERROR")
+        ahead.step()
+    places = {view.id: view.row for view in ahead.robot_list}
+    routes = {record.id: ahead.simulation.state.route(places[record.id]) for record in following if record.id in places}
+    if ahead is not env:
+        ahead.end(ending_time=0.0)
+    return routes

@@ -1,0 +1,119 @@
+"""What snapshots draw of room and ways."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from irsim.api import snapshot
+from irsim.env import make
+from irsim.render import SceneBuilder
+from irsim.render.free_space import FreeSpace, draw_clearance
+from irsim.render.scene import Line, Region, Scene
+
+ROOM = """\
+world: {{width: 10, height: 6, boundary: walls}}
+robot:
+  - {{name: rover, kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.3}}, state: [1, 3], goal: {goal},
+     behavior: {{name: {behavior}}}}}
+obstacle:
+  - {{state: [5, {middle}], shape: {{name: rectangle, length: 0.4, width: 4}}}}
+"""
+
+
+def room(goal: str = "[9, 3]", behavior: str = "dash", middle: float = 2.0) -> str:
+    return ROOM.format(goal=goal, behavior=behavior, middle=middle)
+
+
+def plan(text: str) -> dict[str, object]:
+    (found,) = snapshot(text=text, overlays=["plan"], draw=False).plans
+    return found.model_dump()
+
+
+def scene_of(text: str, tmp_path: Path) -> Scene:
+    file = tmp_path / "room.yaml"
+    file.write_text(text, encoding="utf-8")
+    env = make(str(file), headless=True, log_level="ERROR")
+    scene = SceneBuilder(env.simulation).build()
+    draw_clearance(scene, env.simulation)
+    env.end(ending_time=0.0)
+    return scene
+
+
+def test_shortest_way_of_who_does_not_plan() -> None:
+    found = plan(room())
+    assert (found["own"], found["lost"]) == (False, None)
+    assert found["length"] == pytest.approx(2 * math.hypot(4, 1), abs=0.5)
+    assert 0 <= float(str(found["margin"])) < 0.1
+
+
+def test_own_plan_of_follow_is_the_one_that_it_drives() -> None:
+    text = room(behavior="follow")
+    first = snapshot(text=text, overlays=["plan"], draw=False).plans[0]
+    later = snapshot(text=text, steps=1, overlays=["plan"], draw=False).plans[0]
+    assert first.own
+    assert first == later
+    assert first.margin is not None
+    assert first.margin > 0
+
+
+@pytest.mark.parametrize("behavior", ["dash", "follow"])
+def test_no_way(behavior: str) -> None:
+    text = room(behavior=behavior).replace("width: 4}", "width: 8}")
+    found = plan(text)
+    assert found["lost"] == (9, 3)
+    assert found["length"] == 0
+
+
+def test_several_goals() -> None:
+    text = room().replace("goal: [9, 3]", "waypoints: [[1, 5], [9, 5], [9, 1]]")
+    assert plan(text)["length"] == pytest.approx(2 + 8 + 4, abs=0.3)
+
+
+def test_nothing_in_the_way() -> None:
+    found = plan("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n")
+    assert (found["length"], found["margin"], found["lost"]) == (3, None, None)
+
+
+def test_no_ways_unless_asked_for() -> None:
+    assert snapshot(text=room(), draw=False).plans == []
+
+
+def test_distances_are_those_of_geometry(tmp_path: Path) -> None:
+    file = tmp_path / "room.yaml"
+    file.write_text(room(), encoding="utf-8")
+    env = make(str(file), headless=True, log_level="ERROR")
+    space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
+    points = np.array([[1.0, 3.0], [4.0, 2.0], [5.0, 5.0], [9.5, 3.0]])
+    exact = [1.0, 0.8, 1.0, 0.5]
+    assert space.at(points) == pytest.approx(exact, abs=2 * space.half)
+    assert [space.exactly_at((float(x), float(y))) for x, y in points] == pytest.approx(exact, abs=1e-3)
+    env.end(ending_time=0.0)
+
+
+def test_shade_and_lines(tmp_path: Path) -> None:
+    scene = scene_of(room(), tmp_path)
+    fields = [mark.geometry for mark in scene.marks if mark.part == "field"]
+    assert sum(isinstance(shape, Region) for shape in fields) >= 1
+    line = next(shape for shape in fields if isinstance(shape, Line))
+    assert 0 < line.points[:, 0].min() < line.points[:, 0].max() < 10
+    texts = [label.text for label in scene.labels if label.part == "field"]
+    assert texts[0] == "0.3 m"
+    assert texts[1] == "0.5 m"
+
+
+def test_nothing_stands_nothing_is_drawn(tmp_path: Path) -> None:
+    scene = scene_of("world: {width: 5, height: 5}\nrobot: [{state: [1, 1], goal: [4, 1]}]\n", tmp_path)
+    assert not any(mark.part == "field" for mark in scene.marks)
+
+
+@pytest.mark.parametrize("template", ["maze", "perlin-forest", "car-park", "crowd", "mixed-fleet", "shape-gallery"])
+def test_templates(template: str) -> None:
+    from irsim.templates import scenario_file
+
+    overlays = snapshot(str(scenario_file(template)), seed=1, overlays=["names", "clearance", "plan"], size=400)
+    assert overlays.png != snapshot(str(scenario_file(template)), seed=1, overlays=["names"], size=400).png
+    assert all(found.lost is None for found in overlays.plans)
