@@ -3,7 +3,7 @@
 import { inMetres, toPixels, toWorld } from "./camera.js";
 import { cellImage } from "./cells.js";
 import { opposite, rgbOf, seen } from "./colors.js";
-import { makeLayer, showLayer } from "./layer.js";
+import { makeLayer, showLayer, showTrails } from "./layer.js";
 import { ARRIVED, COLLIDED, courseAt, flagsAt, goalAt, poseAt, rowOfTime } from "./run.js";
 import { scanAt } from "./scan.js";
 
@@ -11,36 +11,39 @@ const DENSE = 2.5; // pixels between points of a trail
 const RECENT = 3; // seconds of a trail that stand out
 const LEAST = 3.5; // pixels: radius of the mark of what would be too small to be seen
 const STEPS = [1, 2, 5];
+const AHEAD = 500; // points of the way that is still to come
 
 export function makeDrawing() {
-  return { ground: makeLayer(), trails: makeLayer(), image: null, scan: null };
+  return { ground: makeLayer(), trails: makeLayer(), way: makeLayer(), image: null, scan: null };
 }
 
-export function drawFrame(context, drawing, run, shown, camera, colors, ratio) {
+/** Draw everything; `most` points of trails at a time. Returns whether all of them are there. */
+export function drawFrame(context, drawing, run, shown, camera, colors, ratio, most) {
   const { at } = shown, row = Math.floor(at);
+  let whole = true;
   const { width, height } = context.canvas;
   context.setTransform(1, 0, 0, 1, 0, 0);
   context.fillStyle = colors.outside;
   context.fillRect(0, 0, width, height);
   const key = `${colors.paper}${run.head.run_id}`;
-  showLayer(drawing.ground, context, camera, ratio, key, 0, 1, (target, own) => {
+  showLayer(drawing.ground, context, camera, ratio, key, (target, own) => {
     drawGround(target, drawing, run, own, colors, ratio);
   });
   if (shown.trails) {
     const faint = Math.max(0.14, 0.5 / (1 + run.movers.length / 25));
-    showLayer(drawing.trails, context, camera, ratio, key, row, faint, (target, own, from, to) => {
-      drawTrails(target, run, own, colors, ratio, from, to, 1.6);
-    });
+    whole = showTrails(drawing.trails, context, camera, ratio, key, row, run.movers.length, faint, most, (target, own, from, to) =>
+      drawTrails(target, run, own, colors, ratio, from, to, 1.6));
     context.globalAlpha = 0.75;
     drawTrails(context, run, camera, colors, ratio, Math.floor(rowOfTime(run, run.time[row] - RECENT)), row, 2);
     context.globalAlpha = 1;
   }
-  if (shown.robot >= 0) drawWay(context, run, shown, camera, colors, ratio);
+  if (shown.robot >= 0 && !drawWay(context, drawing, run, shown, camera, colors, ratio, key, most)) whole = false;
   if (shown.goals) drawGoals(context, run, shown, camera, colors, ratio);
   if (shown.lidar && shown.robot >= 0) drawScans(context, drawing, run, shown, camera, colors, ratio);
   for (const object of run.movers) drawBody(context, run, object, at, shown, camera, colors, ratio);
   if (shown.names) drawNames(context, run, at, camera, colors, ratio);
   drawScale(context, camera, colors, ratio);
+  return whole;
 }
 
 function drawGround(context, drawing, run, camera, colors, ratio) {
@@ -118,18 +121,21 @@ function drawTrails(context, run, camera, colors, ratio, from, to, width) {
   context.lineWidth = width / camera.scale;
   context.lineJoin = "round";
   context.lineCap = "round";
+  let points = 0;
   for (const object of run.objects) {
     if (object.track < 0) continue;
     context.beginPath();
-    trace(context, run, object.track, Math.max(0, from), to, DENSE / camera.scale);
+    points += trace(context, run, object.track, Math.max(0, from), to, DENSE / camera.scale);
     context.strokeStyle = seen(colors, object.color);
     context.stroke();
   }
+  return points;
 }
 
-/** A line through the rows of a track, without points that are closer together than can be seen. */
-function trace(context, run, track, from, to, dense) {
+/** A line through the rows of a track, without points that are closer together than can be seen; how many it has. */
+function trace(context, run, track, from, to, dense, most = Infinity) {
   const base = track * run.rows, limit = dense * dense;
+  let points = 0;
   let px = run.x[base + from], py = run.y[base + from];
   context.moveTo(px, py);
   for (let row = from + 1; row <= to; row++) {
@@ -138,29 +144,43 @@ function trace(context, run, track, from, to, dense) {
     context.lineTo(x, y);
     px = x;
     py = y;
+    if (++points >= most) break;
   }
+  return points;
 }
 
-/** The chosen robot's way: behind it in full, ahead of it dotted. */
-function drawWay(context, run, shown, camera, colors, ratio) {
+/** The chosen robot's way: behind it in full, ahead of it dotted, as far as eyes can follow. */
+function drawWay(context, drawing, run, shown, camera, colors, ratio, key, most) {
   const object = run.objects[shown.robot], row = Math.floor(shown.at);
-  if (object.track < 0 || !shown.trails) return;
+  if (object.track < 0 || !shown.trails) return true;
+  const color = seen(colors, object.color), { way } = drawing;
+  const whole = showTrails(way, context, camera, ratio, `${key} ${shown.robot}`, row, 1, 1, most, (target, own, from, to) => {
+    inMetres(target, own, ratio);
+    beginWay(target, color, 2.6 / own.scale);
+    const points = trace(target, run, object.track, from, to, 1 / own.scale);
+    target.stroke();
+    return points;
+  });
   inMetres(context, camera, ratio);
-  context.strokeStyle = seen(colors, object.color);
-  context.lineCap = "round";
-  context.lineJoin = "round";
-  context.lineWidth = 2.6 / camera.scale;
-  context.beginPath();
-  trace(context, run, object.track, 0, row, 1 / camera.scale);
+  beginWay(context, color, 2.6 / camera.scale);
+  trace(context, run, object.track, row, row, 1);
   const pose = poseAt(run, shown.robot, shown.at);
   context.lineTo(pose.x, pose.y);
   context.stroke();
+  beginWay(context, color, 2 / camera.scale);
   context.setLineDash([0.1 / camera.scale, 5 / camera.scale]);
-  context.lineWidth = 2 / camera.scale;
-  context.beginPath();
-  trace(context, run, object.track, row, run.rows - 1, 1 / camera.scale);
+  trace(context, run, object.track, row, run.rows - 1, 1 / camera.scale, AHEAD);
   context.stroke();
   context.setLineDash([]);
+  return whole;
+}
+
+function beginWay(context, color, width) {
+  context.strokeStyle = color;
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  context.lineWidth = width;
+  context.beginPath();
 }
 
 function drawGoals(context, run, shown, camera, colors, ratio) {

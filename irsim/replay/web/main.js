@@ -12,6 +12,7 @@ import { makeRun, poseAt, rowOfTime, timeOfRow } from "./run.js";
 import { drawMarks } from "./timeline.js";
 import { eventWords, seconds } from "./words.js";
 
+const POINTS = { playing: 2500, resting: 10000 }; // of trails, painted in one frame
 const LONG = 60; // seconds: longer runs begin at a higher speed
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 
@@ -50,10 +51,11 @@ function onFrame(now) {
     const { x, y } = poseAt(run, shown.robot, shown.at);
     centre(camera, x, y);
   }
-  drawFrame($("view").getContext("2d"), player.drawing, run, shown, camera, player.colors, ratio());
+  const most = player.playing ? POINTS.playing : POINTS.resting;
+  const whole = drawFrame($("view").getContext("2d"), player.drawing, run, shown, camera, player.colors, ratio(), most);
   showMoment(player);
   if (player.pointer) showTip(player);
-  if (player.playing) refresh();
+  if (player.playing || !whole) refresh();
 }
 
 const ratio = () => Math.min(2, devicePixelRatio || 1);
