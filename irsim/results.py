@@ -340,7 +340,7 @@ class BenchmarkRow(Result):
     """One scenario under one behavior, over all seeds."""
 
     scenario: str
-    """The file; ``(all)`` for all files together, where each has as many episodes."""
+    """The file; ``(all)`` for all files together, where each has as many episodes, and several or the files are ten."""
     behavior: str
     """What the robots followed: a behavior, or ``as-written``."""
     episodes: int

@@ -18,6 +18,8 @@ KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
 """Metrics of an episode."""
 _SHARES = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
 _MOST = 10
+_FEWEST = 10
+"""Scenarios of one episode each from which on something can be said of all together."""
 _TABLE = ((True, True), (True, False), (False, True), (False, False))
 
 
@@ -50,7 +52,9 @@ def rows_of(
         random: What the seed decides in each scenario.
     """
     groups = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
-    if len(scenarios) > 1 and len({len(group) for group in groups.values()}) == 1:
+    sizes = {len(group) for group in groups.values()}
+    once = sizes == {len(behaviors)}  # one episode of each
+    if len(sizes) == 1 and len(scenarios) >= (_FEWEST if once else 2):
         groups[ALL] = list(episodes)
     rows = []
     for name, chosen in groups.items():

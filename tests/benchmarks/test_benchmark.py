@@ -95,6 +95,12 @@ def test_scenarios_that_weigh_the_same_are_also_taken_together(files, tmp_path) 
     found = irsim.benchmark(both, seeds=3)
     assert [(row.scenario, row.episodes) for row in found.rows] == [(both[0], 3), (both[1], 3), ("(all)", 6)]
     assert [row.scenario for row in irsim.benchmark(files, seeds=3).rows] == files  # three episodes and one
+    fixed = []
+    for number in range(10):
+        fixed.append(str(tmp_path / f"fixed-{number}.yaml"))
+        (tmp_path / f"fixed-{number}.yaml").write_text(ALONE.replace("[5, 1, 0]", f"[5, {number / 10}, 0]"))
+    assert len(irsim.benchmark(fixed[:9]).rows) == 9  # unlike scenes, one run each
+    assert irsim.benchmark(fixed).rows[-1].scenario == "(all)"
 
 
 def test_seeds_and_robots_that_failed_are_told(files) -> None:
