@@ -768,6 +768,20 @@ def clearances(
     and -1 where there is none. Releases the GIL.
     """
 
+def least_clearances(
+    world: World,
+    state: State,
+    index: int,
+    poses: Floats,
+    robots: Sequence[int],
+    company: Flags,
+    ends: Sequence[int],
+) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+    """For each robot the least distance [m] of its first `ends` rows to anybody, (R,), whose it is, and in which row.
+
+    As :func:`clearances` otherwise, of all kinds together, and much faster. Releases the GIL.
+    """
+
 def intersects(
     parts_a: Sequence[Part], pose_a: Sequence[float], parts_b: Sequence[Part], pose_b: Sequence[float]
 ) -> bool: ...

@@ -254,6 +254,11 @@ class RobotResult(Result):
     """Distance travelled [m]."""
     distance_to_goal: float | None
     """Distance to the present goal at the end [m]; None without a goal."""
+    min_clearance: float | None = None
+    """Least distance to anything it could hit, until it arrived, edge to edge [m]; negative: overlap; None where there
+    is nothing, and in runs of more than two million poses."""
+    nearest: str | None = None
+    """Name of what that was."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad] at the end."""
 
@@ -509,6 +514,8 @@ class MovingPose(Result):
     name: str
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
+    velocity: tuple[float, float]
+    """Along x and y of the world [m/s]; an omni drive need not move where it heads."""
 
 
 class RobotPlan(Result):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from irsim.contents import counts_of, in_words
 from irsim.env import Env
@@ -17,6 +17,9 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
 from irsim.strips import drawn_strip, moments_of
 from irsim.verdict import command, region_words, strip_words
+
+if TYPE_CHECKING:
+    from irsim.views import ObjectView
 
 __all__ = ["OVERLAYS", "Overlay", "drawn", "snapshot", "snapshot_of"]
 
@@ -174,11 +177,7 @@ def drawn(
         obstacles=counts["obstacles"],
         contents=in_words(counts, robots=False, sensors=False),
         robots=_poses(env),
-        moving=[
-            MovingPose(name=view.name, pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])))
-            for view in env.obstacle_list
-            if not view.record.static
-        ],
+        moving=[_moving(view) for view in env.obstacle_list if not view.record.static],
         moments=list(moments or ()),
         plans=plan_results(env, ways),
         size=_size_of(png) if png else (0, 0),
@@ -204,6 +203,12 @@ def _poses(env: Env) -> list[RobotPose]:
             )
         )
     return robots
+
+
+def _moving(view: ObjectView) -> MovingPose:
+    vx, vy = (float(value) for value in view.velocity_xy.reshape(-1)[:2])
+    pose = (float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0]))
+    return MovingPose(name=view.name, pose=pose, velocity=(vx, vy))
 
 
 def _size_of(png: bytes) -> tuple[int, int]:

@@ -19,6 +19,7 @@ from irsim.text import clean, seconds
 
 if TYPE_CHECKING:
     from irsim.env import Env
+    from irsim.metrics import Approach
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
     from irsim.views import ObjectView
 
@@ -28,6 +29,8 @@ _MAX_EVENTS = 100
 _NAMED = 3
 """Robots named one by one in a sentence."""
 _LONGEST_NAME = 40
+_MOST_POSES = 2_000_000
+"""Poses of all objects in all steps, up to which the least distances of robots are told."""
 _STANDING = 1e-3
 """Slower than this is standing still [m/s]."""
 _NO_FILE = "scenario.yaml"
@@ -140,7 +143,9 @@ def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotRe
     outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")
     robots = []
+    nearest = _nearest(env, arrivals)
     for view in env.robot_list:
+        approach = nearest.get(view.row)
         ended = outcomes[view.name]
         goal = view.goal
         arrival = arrivals.get(view.name)
@@ -153,10 +158,30 @@ def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotRe
                 infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
                 distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
+                min_clearance=None if approach is None else approach.distance,
+                nearest=None if approach is None else approach.partner,
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
             )
         )
     return robots
+
+
+def _nearest(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | None]:
+    """For each robot, by row, what it came nearest to until it arrived; empty in very large runs."""
+    from irsim.metrics.clearance import least
+
+    state, rows, steps = env.simulation.state, [view.row for view in env.robot_list], int(env.simulation.count[0])
+    if not rows or (steps + 1) * env.simulation.objects > _MOST_POSES:
+        return {}
+    tracks = [state.trajectory(row)[:, :3] for row in range(env.simulation.objects)]  # empty of what is static
+    if any(len(track) not in (0, steps) for track in tracks):  # objects came or went
+        return {}
+    poses = np.empty((steps + 1, len(tracks), 3))
+    for row, track in enumerate(tracks):
+        poses[0, row] = state.initial_state(row)[:3]
+        poses[1:, row] = track if len(track) else poses[0, row]
+    ends = [arrivals[view.name].step + 1 if view.name in arrivals else steps + 1 for view in env.robot_list]
+    return dict(zip(rows, least(poses, env.simulation, rows, ends), strict=True))
 
 
 def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str]]:
@@ -206,8 +231,9 @@ def _arrivals(robots: list[RobotResult], sim_time: float) -> str:
         return count + (f", the last at {seconds(max(arrived))}" if everybody else f" within {seconds(sim_time)}")
     if arrived:
         return f"the robot arrived at {seconds(arrived[0])}"
-    told = "collided" if robots[0].outcome == "collision" else "did not arrive"
-    return f"the robot {told} within {seconds(sim_time)}"
+    if robots[0].outcome == "collision":
+        return "the robot collided"  # when is told by what it hit
+    return f"the robot did not arrive within {seconds(sim_time)}"
 
 
 def _gone_again(env: Env, robots: list[RobotResult]) -> str | None:

@@ -20,4 +20,11 @@ void clearances(const World& world, const Shapes& shapes, const Fixed& fixed, co
                 const std::vector<int>& robots, const std::vector<Company>& company, double* distance,
                 std::int32_t* partner);
 
+/// For each of `robots` the least distance [m] to any other footprint over its first `ends` rows, whose it is, and the
+/// first such row. As `clearances` otherwise. Pairs are looked at again only once they can have come nearer than the
+/// least so far.
+void least_clearances(const World& world, const Shapes& shapes, const Fixed& fixed, const Pose* poses, std::size_t rows,
+                      const std::vector<int>& robots, const std::vector<Company>& company, const std::vector<int>& ends,
+                      double* distance, std::int32_t* partner, std::int32_t* row);
+
 }  // namespace irsim

@@ -16,7 +16,7 @@ from irsim.simulation import Simulation
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest"]
+__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least"]
 
 _MOST_WORK = 20_000_000
 """Bodies placed at most to tell more than the nearest of each kind."""
@@ -164,3 +164,24 @@ def approaches(
                 break
         found.append(sorted(mine, key=lambda approach: approach.distance))
     return found
+
+
+def least(
+    poses: NDArray[np.float64], simulation: Simulation, robots: Sequence[int], ends: Sequence[int], world: int = 0
+) -> list[Approach | None]:
+    """For each of some objects the moment at which it was closest to anything, quickly; None without anything.
+
+    Args:
+        poses: (T, N, 3) as in :func:`clearance`.
+        simulation: In the scene that they are of.
+        robots: Whose, as indices.
+        ends: For each how many rows count.
+        world: Which of its worlds.
+    """
+    records = simulation.scenario.objects
+    company = company_of(records)
+    found = core.least_clearances(simulation.world, simulation.state, world, poses, robots, company, ends)
+    return [
+        None if partner < 0 else Approach(row, distance, records[partner].name, KINDS[company[partner]])
+        for distance, partner, row in zip(*(column.tolist() for column in found), strict=True)
+    ]

@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import irsim
+from irsim import templates
 from irsim.benchmarks import BenchmarkError
 from irsim.cli.app import app
 from irsim.errors import OverLimitError, ScenarioError
@@ -170,3 +171,26 @@ def test_moving_obstacles_that_have_goals_are_counted() -> None:
     report = irsim.validate(text=walkers, simulate=True)
     assert report.dry_run is not None
     assert "of 2 moving obstacles arrived" in report.dry_run.summary
+
+
+def test_what_a_robot_came_nearest_to() -> None:
+    posts = "obstacle:\n  - {name: post, shape: {name: circle, radius: 0.5}, state: [3, 4.2]}\n"
+    posts += "  - {name: beyond, shape: {name: circle, radius: 0.5}, state: [6, 3.9]}\n"
+    [robot] = irsim.run(text=text(goal=4) + posts).robots
+    assert (robot.nearest, robot.min_clearance) == ("post", pytest.approx(1.2 - 0.3 - 0.5, abs=1e-3))
+    [alone] = irsim.run(text=text()).robots
+    assert (alone.nearest, alone.min_clearance) == (None, None)
+    [hit] = irsim.run(text=text(goal=6) + posts.replace("4.2", "3.2")).robots
+    assert hit.nearest == "post"
+    assert hit.min_clearance is not None
+    assert hit.min_clearance <= 0
+
+
+@pytest.mark.parametrize("name", ["circle-swap", "bottleneck", "mixed-fleet"])
+def test_the_nearest_is_that_of_the_metrics(name: str) -> None:
+    file = templates.scenario_file(name)
+    found = irsim.run(file, seed=2, steps=100)
+    [episode] = irsim.benchmark(str(file), seeds=[2], steps=100).episodes
+    least = [robot.min_clearance for robot in found.robots if robot.min_clearance is not None]
+    assert len(least) == len(found.robots)
+    assert min(least) == pytest.approx(episode.metrics["min_clearance"])

@@ -150,3 +150,27 @@ def test_arguments_that_do_not_fit() -> None:
         core.clearances(world, state, 0, np.zeros((1, 2, 3)), [0], np.zeros(3, dtype=np.uint8))
     with pytest.raises(IndexError):
         core.clearances(world, state, 0, np.zeros((1, 2, 3)), [2], kinds)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    bodies=st.lists(shape(), min_size=2, max_size=5),
+    ways=st.lists(st.tuples(POSE, POSE), min_size=5, max_size=5),
+    end=st.integers(1, 12),
+)
+def test_the_least_of_all_rows_is_that_of_the_rows(bodies, ways, end) -> None:
+    world, state = scene(*(robot(parts=[part]) for part, *_ in bodies), obstacle(parts=[circle(0.5)]))
+    share = np.linspace(0, 1, 12)[:, None]
+    moving = [np.array(a) + share * (np.array(b) - np.array(a)) for (a, b), _ in zip(ways, bodies, strict=False)]
+    poses = np.ascontiguousarray(np.stack([*moving, np.tile([3.0, 2.0, 0.0], (12, 1))], axis=1))
+    kinds = np.array([ROBOT] * len(bodies) + [STATIC], dtype=np.uint8)
+    robots = list(range(len(bodies)))
+    every, _ = core.clearances(world, state, 0, poses, robots, kinds)
+    ends = [end] * len(robots)
+    distance, partner, row = core.least_clearances(world, state, 0, poses, robots, kinds, ends)
+    for index in robots:
+        assert distance[index] == pytest.approx(np.nanmin(every[:end, index]), abs=1e-9)
+        assert np.nanmin(every[row[index], index]) == pytest.approx(distance[index], abs=1e-9)
+        assert partner[index] not in (index, -1)
+    nobody = np.full(len(kinds), NOBODY, dtype=np.uint8)
+    assert core.least_clearances(world, state, 0, poses, robots, nobody, ends)[1].tolist() == [-1] * len(robots)

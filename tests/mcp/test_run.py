@@ -82,6 +82,7 @@ async def test_unsuccessful_robots_come_first_and_long_lists_are_cut(empty: Path
     assert [robot["outcome"] for robot in data["robots"]][:3] == ["timeout", "timeout", "success"]
     assert len(full["robots"]) == 14
     assert {"pose", "path_length"} <= set(full["robots"][0])
+    assert (data["robots"][0]["min_clearance"], data["robots"][0]["nearest"]) == (1.6, "robot_11")
 
 
 async def test_command_line_and_server_say_the_same(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:

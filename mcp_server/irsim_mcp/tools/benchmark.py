@@ -66,7 +66,7 @@ def tool(services: Services) -> StrictTool:
             ),
         ] = None,
         seeds: Annotated[int, Field(description=f"How many, 1-{SEEDS}.")] = 10,
-        first_seed: Annotated[int, Field(ge=0, le=10**9, description="Tune on others than you report.")] = 0,
+        first_seed: Annotated[int, Field(ge=0, description="Tune on others than you report.")] = 0,
         max_steps: Annotated[int | None, Field(ge=1, le=STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:

@@ -108,7 +108,8 @@ def _line(scene: dict[str, Any], run_id: str | None) -> str:
 
 def _moving(item: dict[str, Any]) -> str:
     x, y, heading = item["pose"]
-    return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad"
+    moving = " moving ({:.2f}, {:.2f}) m/s".format(*item["velocity"]) if any(item["velocity"]) else ""
+    return f"{clean(item['name'])!r} at ({x:.2f}, {y:.2f}) heading {heading:.2f} rad{moving}"
 
 
 def _plan(plan: dict[str, Any]) -> str:

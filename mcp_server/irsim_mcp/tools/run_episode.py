@@ -42,6 +42,8 @@ class Robot(BaseModel):
     outcome: Literal["success", "collision", "timeout"]
     time_to_goal: float | None = None
     distance_to_goal: float | None = None
+    min_clearance: float | None = None
+    nearest: str | None = None
     collision_count: int
     infeasible_steps: int | None = None
     path_length: float | None = None
@@ -183,6 +185,8 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         outcome=robot["outcome"],
         time_to_goal=_rounded(robot["time_to_goal"]),
         distance_to_goal=_rounded(robot["distance_to_goal"]),
+        min_clearance=_rounded(robot["min_clearance"]),
+        nearest=None if robot["nearest"] is None else clean(robot["nearest"]),
         collision_count=robot["collision_count"],
         infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
@@ -244,6 +248,8 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"arrived at {robot.time_to_goal:g} s")
     if robot.distance_to_goal is not None:
         facts.append(f"{robot.distance_to_goal:g} m from its goal")
+    if robot.min_clearance is not None:
+        facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
         facts.append(f"{robot.infeasible_steps} steps in which its behavior saw no way to avoid everybody")
