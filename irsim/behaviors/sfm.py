@@ -16,7 +16,8 @@ class Sfm(BehaviorOptions):
     """Walk like a pedestrian: pulled to the goal, pushed away by others and by walls (social force model).
 
     Starts from rest and does not brake at its goal: it runs past and swings back, so give it a `goal_threshold` of
-    about 0.3 m. It stays caught in dead ends.
+    about 0.3 m, and goals of several a metre apart. Who touches somebody stands for ever, unless
+    `world.collision_mode` is `unobstructed_obstacles`. It stays caught in dead ends.
     """
 
     in_group: ClassVar[bool] = True
@@ -37,7 +38,8 @@ class Sfm(BehaviorOptions):
     force_factor_obstacle: Number = 10.0
     """Weight of the push away from walls."""
     sigma_obstacle: Annotated[Meters, Field(gt=0)] = 0.8
-    """Reach of the push away from walls."""
+    """Reach of the push away from walls: in corridors about a twentieth of their width (0.15 m for 3 m), or everybody is
+    pushed into the middle and people who come from both sides meet there."""
     lambda_importance: Number = 2.0
     """Weight of relative velocity against relative position in the interaction."""
     gamma: Annotated[Number, Field(gt=0)] = 0.35
