@@ -16,7 +16,7 @@ from irsim_mcp.worker import Progress, Workers
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services"]
 
 ScenarioPath = Annotated[str | None, Field(description="Scenario file: path relative to the workspace.")]
-ScenarioYaml = Annotated[str | None, Field(description="Or the scenario itself as YAML text (at most 256 KiB).")]
+ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,
     Field(ge=0, le=2**53, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),

@@ -44,7 +44,7 @@ def tool(services: Services) -> StrictTool:
         ] = None,
         seed: Seed = None,
         size_px: Annotated[
-            int, Field(ge=200, le=1024, description="Longer side; 600 px cost a model about 480 tokens.")
+            int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")
         ] = 600,
         overlays: Annotated[
             list[Literal["names", "goals", "paths", "sensors", "clearance", "plan"]] | None,
@@ -54,7 +54,7 @@ def tool(services: Services) -> StrictTool:
             list[float] | None,
             Field(min_length=4, max_length=4, description="Zoom in: [x_min, y_min, x_max, y_max] in m."),
         ] = None,
-        return_image: Annotated[bool, Field(description="false: only the line of text.")] = True,
+        return_image: Annotated[bool, Field(description="false: text only.")] = True,
     ) -> list[TextContent | ImageContent]:
         what: dict[str, Any] = {
             "seconds": services.limits.draw_seconds,
