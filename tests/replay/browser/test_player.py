@@ -51,8 +51,7 @@ def time_of(page: Any) -> int:
 
 def scrub(page: Any, row: int) -> None:
     """Drag the scrubber to a row."""
-    page.evaluate("([row]) => { document.getElementById('time').value = row }", [row])
-    page.dispatch_event("#time", "input")
+    page.locator("#time").evaluate("(time, row) => { time.value = row; time.dispatchEvent(new Event('input')) }", row)
 
 
 def settled(page: Any) -> None:
