@@ -185,10 +185,15 @@ CODES: dict[str, Code] = {
     "state-truncated": Code(
         "state has more numbers than rows", "The surplus numbers are dropped: three rows, four for acker."
     ),
+    "surplus-states": Code(
+        "more states than objects",
+        "An entry makes as many objects as 'number' says, one without it. Of a longer list of states the rest is left "
+        "out. Example: state: [[1, 1, 0], [1, 3, 0], [1, 5, 0]] makes one object; add number: 3.",
+    ),
     "default-state": Code(
-        "vertices are shifted by the default state",
-        "Vertices are in the body frame. An object without 'state' stands at [1, 1, 0]; write 'state: [0, 0, 0]' for "
-        "vertices in world coordinates.",
+        "no state given",
+        "An object without 'state' stands at [1, 1, 0]. Vertices are in the body frame, so that shifts them by (1, 1); "
+        "write 'state: [0, 0, 0]' for vertices in world coordinates.",
     ),
     "default-goal": Code(
         "no goal given", "Every object has a goal; without one of its own it is [1, 9, 0], whatever the world's size."
@@ -208,8 +213,9 @@ CODES: dict[str, Code] = {
     ),
     "looks-like-centimetres": Code(
         "length looks like centimetres",
-        "Lengths are in metres, and the robot does not fit into its world or is larger than any vehicle. Example: "
-        "shape: {name: circle, radius: 20} in a world of 10 m; 20 cm are radius: 0.2.",
+        "Lengths are in metres, and something does not fit into its world or is larger than any vehicle: a body, beams "
+        "(range_max), the offset of a sensor, an obstacle's place far outside. Example: shape: {name: circle, radius: "
+        "20} in a world of 10 m; 20 cm are radius: 0.2.",
     ),
     "step-time-long": Code(
         "a step of a second or more",
@@ -222,7 +228,8 @@ CODES: dict[str, Code] = {
     "default-vertices": Code("polygon without vertices", "The default is a square of 2 m around the position."),
     "stacked": Code(
         "objects start at the same place",
-        "Without a distribution all objects of an entry share its 'state'. Give a list of states, or a distribution.",
+        "Without a distribution all objects of an entry share its 'state'. Give a list of states, or a distribution. "
+        "A hint says that the same obstacle stands in two entries.",
     ),
     "initial-overlap": Code(
         "objects start in collision",
@@ -271,26 +278,34 @@ CODES: dict[str, Code] = {
     "dash-into-obstacle": Code(
         "straight into an obstacle",
         "'dash' drives straight to the goal and looks at nobody, and something stands on that line. Example: an "
-        "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo, sfm or orca to get round single things, and 'follow' "
-        "to plan a way through a building.",
+        "obstacle at [5, 5] between [1, 1] and [9, 9]; use rvo or orca to get round single round things, and 'follow' "
+        "round walls and through buildings.",
     ),
     "needs-planning": Code(
         "a behavior that plans no way round",
-        "'rvo', 'sfm' and 'orca' choose a velocity for the next seconds. Before a long wall, or in a dead end, they "
-        "stand still. The finding compares the way round with the straight line. Example: a maze with 'rvo'; write "
+        "'rvo', 'sfm' and 'orca' choose a velocity for the next seconds. Before a flat wall, or in a dead end, they "
+        "stand still where every step aside leads away from the goal. The finding names that place, or compares the "
+        "way round with the straight line. Example: a maze with 'rvo'; write "
         "behavior: {name: follow, planner: astar, local: rvo}, or give waypoints.",
     ),
     "time-too-short": Code(
         "too little time for the way",
         "The shortest way to the last goal, at top speed without a halt, takes longer than the run lasts: until "
-        "'world.time_limit', or else 30 s or four times the straight line. A hint says that it hardly suffices. "
-        "Example: 12 m at 1 m/s with time_limit: 10; write time_limit: 24, or raise vel_max.",
+        "'world.time_limit', or else 30 s or four times the straight line; 'acce' counts. A hint says that it hardly "
+        "suffices. Example: 12 m at 1 m/s with time_limit: 10; write time_limit: 24, or raise vel_max.",
     ),
     "goal-overshoot": Code(
         "steps longer than the goal is wide",
         "'dash' drives at full speed until the goal is within 'goal_threshold'. When one step (vel_max × step_time) "
         "is longer than twice the threshold, the object can hop over its goal, turn, and hop again. Example: 3 m/s × "
         "0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05.",
+    ),
+    "turning-circle": Code(
+        "goal inside of the turning circle",
+        "A car turns in circles whose radius is its wheelbase over the tangent of its largest steering angle. 'dash' "
+        "steers towards a goal inside of such a circle as far as it can and drives round it for ever. Example: "
+        "wheelbase 2.6, steering up to 1 rad and a goal 1.2 m to the left; start heading towards it, or write a "
+        "larger goal_threshold. 'follow' finds a way.",
     ),
     "static-behavior": Code(
         "behavior of something static",
@@ -321,7 +336,10 @@ CODES: dict[str, Code] = {
         "= 2 m against a wall of 0.1 m; lower step_time, or the speed: limits are in m/s.",
     ),
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
-    "outside-world": Code("start or goal outside the world", "Nothing stops objects at the edge; check the numbers."),
+    "outside-world": Code(
+        "start or goal outside the world",
+        "Nothing stops objects at the edge; check the numbers of 'state', 'goal' or the 'distribution'.",
+    ),
     "behavior-without-kinematics": Code(
         "behavior without kinematics", "What has no kinematics never moves by itself, so its behavior has no effect."
     ),
@@ -336,8 +354,19 @@ CODES: dict[str, Code] = {
         "rvo's acce is not per second",
         "The object's 'acce' is in m/s². The one of rvo is the change of velocity considered in one step, in m/s.",
     ),
+    "speed-capped": Code(
+        "the drive is slower than its behavior may want",
+        "'vmax' of sfm, 'vxmax' and 'vymax' of rvo and 'maxSpeed' of orca say how fast the behavior may want to be; "
+        "the object drives no faster than its 'vel_max' and 'vel_min' allow, 1 by default. Example: behavior: {name: "
+        "orca, maxSpeed: 3}; write vel_max: [3, 1] beside it.",
+    ),
     "vel-min-default": Code(
         "vel_min keeps its default", "Raising vel_max alone leaves vel_min at -1 for each component."
+    ),
+    "wheelbase-over-length": Code(
+        "axles farther apart than the body is long",
+        "The wheelbase is the distance between the axles, and sets the turning circle. Example: length 1 with "
+        "wheelbase 2.6; write wheelbase: 0.6.",
     ),
     "wheelbase-default": Code("no wheelbase given", "Ackermann steering without a wheelbase uses 1 m."),
     "omni-noise": Code(

@@ -176,9 +176,12 @@ class Select:
     def _unknown(self, name: Any) -> PydanticCustomError:
         names, kind = self.names(), self.registry.kind
         near = nearest(name, names)
+        message = f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}"
+        if name in self.exclude:
+            message = f"'{name}' is a {kind}, but not one that can stand here"
         return problem(
             f"unknown-{kind}",
-            f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}",
+            message,
             allowed=names,
             fix=f"name: {near}" if near else None,
             replace=near,

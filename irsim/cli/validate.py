@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.guard import INVALID
-from irsim.cli.options import Imports, MaxObjects, Seed
+from irsim.cli.options import Imports, MaxObjects
 from irsim.errors import ScenarioNotFoundError
 
 if TYPE_CHECKING:
@@ -35,7 +35,10 @@ def validate(
     simulate: Annotated[
         bool, typer.Option("--simulate", help="Also try it for some steps and say what happens; about a second.")
     ] = False,
-    seed: Seed = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, max=2**64 - 1, help="Seed of --simulate; default: the scenario's, else 0."),
+    ] = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:

@@ -64,7 +64,7 @@ def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits
             problem.code, path, problem.message, given=problem.given, allowed=problem.allowed, fix=problem.fix
         )
         return LoadedMap(None, world, [found])
-    return LoadedMap(grid, world, [*_notes(site, written), *_share(grid)])
+    return LoadedMap(grid, world, [*_notes(site, written), *_share(grid, world)])
 
 
 def _simulated(name: str) -> bool:
@@ -150,7 +150,7 @@ def _notes(site: MapSite, written: Any) -> list[Finding]:
     return [hint(code, path, message) for code, message in site.notes]
 
 
-def _share(grid: MapGrid) -> list[Finding]:
+def _share(grid: MapGrid, world: WorldModel) -> list[Finding]:
     if grid.cells is None:
         return []
     total = grid.size[0] * grid.size[1]
@@ -168,8 +168,10 @@ def _share(grid: MapGrid) -> list[Finding]:
             warning(
                 "map-full",
                 _PATH,
-                f"all {total:,} cells are occupied: nothing can move",
-                fix="black is occupied and white is free: invert the picture",
+                f"{'the only cell is' if total == 1 else f'all {total:,} cells are'} occupied: nothing can move",
+                fix=f"a smaller 'mdownsample' ; now every {world.mdownsample}th row and column is kept"
+                if (world.mdownsample or 1) > 1
+                else "black is occupied and white is free: invert the picture",
             )
         ]
     return []

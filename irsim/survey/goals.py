@@ -37,13 +37,19 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             what = f"waypoint {index + 1}" if len(goals) > 1 else "the goal"
             place = free_place(room_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
+            fix = f"a goal with {mover.around:.3g} m of free space around it{instead}"
+            if scene.rough:  # what is free under one seed is not under the next
+                fix = (
+                    f"'range_low' and 'range_high' of what is placed at random that keep {mover.around:.3g} m off the "
+                    "goal, or a goal outside of them"
+                )
             tally.add(
                 "goal-blocked",
                 mover.path,
                 mover.record,
                 f"'{mover.record.name}' has no room at {what} ({goal[0]:g}, {goal[1]:g}): "
                 + _why(context, scene, mover, goal),
-                f"a goal with {mover.around:.3g} m of free space around it{instead}",
+                fix,
                 scene.seed,
                 serious=mover.record.role == "robot",
             )

@@ -66,15 +66,13 @@ def check(
     legs: dict[int, list[Leg]] = {}
     kept, queries = scene.owner.kept, 0
     wanderers: set[object] = set()
-    for mover in movers:
+    for mover in sorted(movers, key=lambda m: m.record.role != "robot"):  # robots first: not all is looked at
         pose = scene.pose[mover.record.id]
         start = mover.centre(pose)
         if mover.record.wander:
             if room is not None and mover.record.path not in wanderers and room.holds(start):
                 wanderers.add(mover.record.path)
                 _wander(room, scene, mover, start, tally)
-            continue
-        if mover.record.role != "robot":
             continue
         made = legs.setdefault(mover.record.id, [])
         for index, goal in enumerate(scene.goals[mover.record.id]):
@@ -109,7 +107,7 @@ def check(
                 found = kept[key]
                 _no_way(context, room, scene, movers, mover, start, index, found, tally)
                 break
-            if found is not None:
+            if found is not None and mover.record.role == "robot":
                 _narrow(mover, found, scene, tally)
             made.append(Leg(mover, start, to, _line(room, mover, start, to)))
             start = room.clearance.climb(arrival, mover.radius)
@@ -190,7 +188,7 @@ def _no_way(
     if hasattr(context.scenario.world.obstacle_map, "fill"):
         fix += ", or a map with another 'seed' or a lower 'fill'"
     place = reached_place(room, (goal[0], goal[1]), mover.radius, start, max(need / 2, _TIGHT * need / 2 - room.half))
-    if place is not None:
+    if place is not None and not scene.rough:
         fix += f", or another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"
     if context.scenario.world.boundary == "none":
         wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
@@ -203,6 +201,7 @@ def _no_way(
         f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
         fix,
         scene.seed,
+        serious=mover.record.role == "robot",
     )
 
 

@@ -1,8 +1,8 @@
 """Every file in ``tests/bad`` gives exactly the findings its header announces, and the schema refuses it too.
 
 Header lines: ``# expect: <severity> <code> <path> <line>`` for each finding, and ``# schema accepts: <rule>`` where the
-schema cannot tell, with the entry of ``INEXPRESSIBLE`` that says why. Features that are only not simulated yet are left
-out, so that a file stays bad for its own reason.
+schema cannot tell, with the entry of ``INEXPRESSIBLE`` that says why. Features that are only not simulated yet,
+and states left out, do not count, so that a file stays bad for its own reason.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from irsim.scenario.report import format_diagnostics
 from irsim.scenario.schema import INEXPRESSIBLE, json_schema
 
 FILES = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
-LATER = "not-yet-simulated"
+LATER = ("not-yet-simulated", "default-state")
 
 
 def header(path: Path, word: str) -> list[str]:
@@ -44,7 +44,7 @@ def test_findings(path: Path) -> None:
     found = [
         f"{item.severity} {item.code} {format_path(item.path)} {item.line}"
         for item in reading.diagnostics
-        if item.code != LATER or any(LATER in line for line in expected)
+        if item.code not in LATER or any(item.code in line for line in expected)
     ]
     assert found == expected
     assert (reading.scenario is None) == any(item.severity == "error" for item in reading.diagnostics)

@@ -18,7 +18,8 @@ Found = list[tuple[str, str, tuple[str | int, ...]]]
 
 def findings(data: Any, *, strict: bool = True, hints: bool = True) -> Found:
     reading = read(data, strict=strict)
-    return [(d.severity, d.code, d.path) for d in reading.diagnostics if hints or d.severity != "hint"]
+    shown = [d for d in reading.diagnostics if (d.severity, d.code) != ("hint", "default-state")]
+    return [(d.severity, d.code, d.path) for d in shown if hints or d.severity != "hint"]
 
 
 def robot(**keys: Any) -> dict[str, Any]:
@@ -41,8 +42,13 @@ SANE: list[dict[str, Any]] = [
     robot(state=[2, 3]),
     robot(goal=[[[2, 2], [5, 5]]]),
     robot(waypoints=[[2, 2], [5, 5]]),
-    robot(number=2, state=[[1, 1], [3, 3], [5, 5]], goal=[[2, 2], [4, 4], [6, 6]]),
     robot(vel_max=[1, 1]),
+    robot(behavior={"name": "rvo", "vxmax": 1.5, "vymax": 1.5}),
+    robot(behavior={"name": "orca", "maxSpeed": 2}, vel_max=[2, 1], vel_min=[-2, -1]),
+    robot(kinematics={"name": "acker", "wheelbase": 2.6}, state=[5, 5, 1.57], goal=[5, 6.2]),
+    robot(sensors=[{"number": 9, "range_max": 300, "offset": [0.5, 0, 0]}]),
+    {"obstacle": [{"shape": {"name": "circle"}, "state": [5, 2]}, {"shape": {"name": "rectangle"}, "state": [5, 2]}]},
+    {"world": {"collision_mode": "unobstructed"}, **robot(number=6, distribution={"name": "circle", "radius": 5})},
     robot(vel_max=[0.5, 3], vel_min=[-0.5, -3]),
     robot(vel_max=[0.5, 0.5]),
     robot(acce=[math.inf, 2]),
@@ -122,6 +128,30 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (robot(state=[1, 1, 90]), "hint", "heading-in-degrees", ("robot", 0, "state")),
     (robot(goal=[[[2, 2, 0], [3, 3, -180]]]), "hint", "heading-in-degrees", ("robot", 0, "goal", 0)),
     (robot(state=[20, 1]), "hint", "outside-world", ("robot", 0, "state")),
+    (robot(number=6, distribution={"name": "circle", "radius": 8}),
+        "hint", "outside-world", ("robot", 0, "distribution")),
+    (robot(number=3, distribution={"name": "random", "range_low": [1, 1, 0], "range_high": [20, 20, 1]}),
+        "hint", "outside-world", ("robot", 0, "distribution", "range_high")),
+    ({"world": {"offset": [-5, -5]}, **robot(number=4, distribution={"name": "circle", "center": [5, 5]})},
+        "hint", "outside-world", ("robot", 0, "distribution")),
+    (robot(state=[[1, 1], [3, 3]], goal=[[9, 1], [9, 3]]), "warning", "surplus-states", ("robot", 0, "state")),
+    (robot(number=2, state=[[1, 1], [3, 3], [5, 5]], goal=[[2, 2], [4, 4], [6, 6]]),
+        "hint", "surplus-states", ("robot", 0, "state")),
+    (obstacle(shape={"name": "circle", "radius": 50}, state=[5, 5]),
+        "hint", "looks-like-centimetres", ("obstacle", 0, "shape")),
+    (obstacle(state=[500, 300]), "hint", "looks-like-centimetres", ("obstacle", 0, "state")),
+    (robot(sensors=[{"range_max": 5000}]),
+        "hint", "looks-like-centimetres", ("robot", 0, "sensors", 0, "range_max")),
+    (robot(sensors=[{"offset": [20, 0, 0]}]), "hint", "looks-like-centimetres", ("robot", 0, "sensors", 0, "offset")),
+    (robot(behavior={"name": "sfm", "vmax": 5}), "hint", "speed-capped", ("robot", 0, "behavior", "vmax")),
+    (robot(behavior={"name": "rvo", "vxmax": 3, "vymax": 3}),
+        "hint", "speed-capped", ("robot", 0, "behavior", "vxmax")),
+    (robot(behavior={"name": "orca", "maxSpeed": 3}), "hint", "speed-capped", ("robot", 0, "behavior", "maxSpeed")),
+    (robot(kinematics={"name": "acker"}, shape={"name": "rectangle", "wheelbase": 2.6}),
+        "hint", "wheelbase-over-length", ("robot", 0, "shape")),
+    (robot(kinematics={"name": "acker", "wheelbase": 2.6}, state=[5, 5, 0], goal=[5, 6.2]),
+        "warning", "turning-circle", ("robot", 0, "state")),
+    ({"obstacle": 2 * [{"shape": {"name": "circle"}, "state": [5, 2]}]}, "hint", "stacked", ("obstacle", 1, "state")),
     (robot(goal=[20, 1]), "hint", "outside-world", ("robot", 0, "goal")),
     (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints")),
     (
@@ -210,7 +240,7 @@ def test_rvo_acce_that_limits_nothing() -> None:
 
 
 def test_behaviors_of_user_code(monkeypatch: pytest.MonkeyPatch) -> None:
-    data = robot(behavior={"name": "zigzag", "width": 2})
+    data = robot(behavior={"name": "zigzag", "width": 2}, state=[1, 1, 0])
     path = ("robot", 0, "behavior", "name")
     assert findings(data) == [("error", "unknown-behavior", path)]
     assert findings(data, strict=False) == [("warning", "unknown-behavior", path)]
@@ -331,3 +361,45 @@ def test_missing_images(tmp_path: Path) -> None:
     assert findings(robot(description="car_red.png")) == []
     near = next(d for d in read(robot(description="car_rde.png")).diagnostics if d.code == "image-not-found")
     assert near.fix == "description: car_red.png"
+
+
+def test_a_state_left_out_is_told_as_a_hint() -> None:
+    (item,) = read(robot(), strict=True).diagnostics
+    assert (item.severity, item.code, item.path) == ("hint", "default-state", ("robot", 0))
+    assert "[1, 1, 0]" in item.message
+
+
+def test_in_unobstructed_mode_sharing_a_place_is_a_hint() -> None:
+    data = {"robot": [{**DIFF, "state": [1, 1]}, {**DIFF, "state": [1.1, 1], "goal": [9, 5]}]}
+    for mode, severity in (("stop", "warning"), ("unobstructed", "hint")):
+        (item,) = read({"world": {"collision_mode": mode}, **data}, strict=True).diagnostics
+        assert (item.code, item.severity) == ("initial-overlap", severity)
+
+
+def test_touching_is_not_measured() -> None:
+    """Rounding may leave a sliver of an overlap, of which no depth is worth telling."""
+    post = {"shape": {"name": "rectangle", "length": 0.2, "width": 0.2}, "state": [1.3, 1, 0]}
+    found = read({"robot": [{**DIFF, "state": [1, 1, 0]}], "obstacle": [post]}, strict=True).diagnostics
+    assert all("e-" not in item.message for item in found)
+
+
+def test_a_ship_is_no_lorry() -> None:
+    ship = {"name": "rectangle", "length": 220, "width": 30}
+    for size, severity in ((2000, "hint"), (300, "warning")):
+        data = {"world": {"width": 2000, "height": size}, **robot(shape=ship, state=[200, 150], goal=[900, 150])}
+        (item,) = [d for d in read(data, strict=True).diagnostics if d.code == "looks-like-centimetres"]
+        assert item.severity == severity
+
+
+def test_fixes_name_numbers() -> None:
+    def fix(data: dict[str, Any]) -> str | None:
+        return next(d.fix for d in read(data, strict=True).diagnostics if d.code != "default-state")
+
+    assert fix(robot(number=6, distribution={"name": "circle", "radius": 8})) == "radius: 5 or less"
+    assert fix(robot(state=[[1, 1], [3, 3]], goal=[[9, 1], [9, 3]])) == "number: 2"
+    shape = {"name": "circle", "random_shape": True, "radius_range": [1, 0.2]}
+    assert fix(obstacle(shape=shape, state=[5, 5])) == "radius_range: [0.2, 1]"
+    thinned = {"obstacle_map": "cave.png", "mdownsample": 500}
+    assert "mdownsample" in str(fix({"world": thinned}))
+    follows = read(robot(behavior={"name": "follow", "local": "follow"}), strict=True).errors[0]
+    assert follows.message == "'follow' is a behavior, but not one that can stand here"

@@ -35,6 +35,7 @@ def test_a_report_reads_like_a_compiler() -> None:
         "    shape: {name: circle}\n"
         "    behavior: {name: rov}\n"
         "    goal: [9, 9]\n"
+        "    state: [1, 1, 0]\n"
     )
     reading = read(text, strict=True, name="crossing.yaml")
     assert format_diagnostics(reading.diagnostics, text) == (

@@ -21,12 +21,12 @@ from irsim.survey import survey
 ROOT = Path(__file__).parents[2]
 SCENARIOS = [*ROOT.glob("templates/*/scenario.yaml"), *ROOT.glob("tests/parity/scenarios/*.yaml")]
 SHOWN = {
+    "acker-goal-behind": {"turning-circle"},
     "arrive-at-start": {"goal-reached"},
     "collide-initial": {"initial-overlap"},
     "collide-inside": {"initial-overlap"},
     "collide-thin": {"jumps-through"},
     "lidar-full-circle": {"angle-over-full-turn"},
-    "lidar-inside": {"initial-overlap"},
     "lidar-scan-header": {"angle-over-full-turn"},
     "limits-zero": {"no-speed", "no-turning"},
     "make-overlap": {"initial-overlap"},
@@ -405,3 +405,51 @@ def test_it_stays_quick(name: str) -> None:
     middle = time.process_time()
     read(data, strict=True, survey=survey)
     assert time.process_time() - middle < (middle - before) + 3.0
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "sfm", "orca"])
+def test_a_flat_wall_stops_who_plans_no_way(behavior: str) -> None:
+    """Where the goal lies straight behind the wall: the engine says the same."""
+    robot = {**ROBOT, "behavior": {"name": behavior}}
+    for middle, stuck in ((5.0, True), (7.2, False)):
+        wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 4}, "state": [6, middle, 0]}
+        data = scenario(robot, wall)
+        told = [d for d in found(data) if d.code == "needs-planning"]
+        assert bool(told) is stuck
+        assert not told or "(5.90, 5.00)" in told[0].message
+        env = Env(read(data).scenario, headless=True, seed=0)
+        for _ in range(400):
+            env.step()
+        assert env.robot.arrive != stuck or behavior == "rvo"
+        env.end()
+
+
+def test_before_a_wall_dash_is_told_to_follow() -> None:
+    dash = {**ROBOT, "behavior": {"name": "dash"}}
+    wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 4}, "state": [6, 5, 0]}
+    post = {"shape": {"name": "circle", "radius": 0.3}, "state": [6, 5, 0]}
+    assert "stop before a flat wall" in str(one(scenario(dash, wall), "dash-into-obstacle").fix)
+    assert "get round single round things" in str(one(scenario(dash, post), "dash-into-obstacle").fix)
+
+
+def test_speeding_up_takes_time() -> None:
+    robot = {**ROBOT, "behavior": {"name": "dash"}, "acce": [0.05, 1]}
+    item = one(scenario(robot, time_limit=12), "time-too-short")
+    assert "needs 17.8 s or more" in item.message
+    assert "larger acce" in str(item.fix)
+    assert codes(scenario(robot, time_limit=60)) == []
+
+
+def test_walkers_behind_a_wall_are_a_hint() -> None:
+    walker = {"kinematics": {"name": "omni"}, "shape": {"name": "circle", "radius": 0.3}, "behavior": {"name": "sfm"}}
+    wall = {"shape": {"name": "rectangle", "length": 12, "width": 0.2}, "state": [6, 3, 0]}
+    data = scenario(ROBOT, {**walker, "state": [3, 8, 0], "goal": [3, 1]}, wall, boundary="walls")
+    item = one(data, "goal-unreachable")
+    assert (item.severity, item.path) == ("hint", ("obstacle", 0, "goal"))
+
+
+def test_in_random_scenes_no_single_place_is_named() -> None:
+    boxes = {"number": 30, "shape": {"name": "circle", "radius": 0.4}, "distribution": {"name": "random"}}
+    item = one(scenario(ROBOT, boxes), "goal-blocked")
+    assert "'range_low' and 'range_high'" in str(item.fix)
+    assert "is free" not in str(item.fix)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +12,10 @@ from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, 
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.wording import flow
+
+_SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
+"""Keys with the speed that a behavior wants at most."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -34,6 +39,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield from _common(context, record, key, options)
         if options.name == "rvo":
             yield from _rvo(context, record, key, options)
+        yield from _capped(context, record, key, options)
     if record.behavior is not None and record.kinematics is None:
         yield warning(
             "behavior-without-kinematics",
@@ -122,6 +128,28 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
             f"random goals may lie outside the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]",
             fix="leave range_low and range_high out to use the world's own extent",
         )
+
+
+def _capped(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+    """Speeds that a behavior is given and the drive does not have."""
+    drive = getattr(record.kinematics, "name", "")
+    limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
+    if drive not in ("diff", "acker", "omni", "omni_angular") or len(limits) < 2 or record.static:
+        return
+    top = limits[0] if drive in ("diff", "acker") else math.hypot(*limits[:2])
+    for name in _SPEEDS.get(options.name, ()):
+        value, usual = getattr(options, name), type(options).model_fields[name].default
+        if name not in options.model_fields_set or value is None or not max(top, usual or 0.0) < value < math.inf:
+            continue
+        faster = [value, *record.vel_max[1:]] if top == limits[0] else [value, value, *record.vel_max[2:]]
+        yield hint(
+            "speed-capped",
+            (*context.entry_path(record, key), name),
+            f"'{options.name}' may want {value:g} m/s, but the limits of '{record.name}' allow {top:.3g} m/s",
+            given=value,
+            fix=f"'vel_max: {flow(faster)}' of the object, or {name}: {top:.3g}",
+        )
+        return
 
 
 def _rvo(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:

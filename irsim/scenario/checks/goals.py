@@ -11,7 +11,7 @@ from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit, Path
 from irsim.registry import KINEMATICS
 from irsim.scenario.checks._context import Context
-from irsim.scenario.expand import DEFAULT_GOAL
+from irsim.scenario.expand import DEFAULT_GOAL, DEFAULT_STATE
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
@@ -36,7 +36,10 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _ignored(path, entry)
         elif records:
             yield from _state(context, path, entry, records)
-        if records and (entry.distribution is None or entry.distribution.name == "manual"):
+        if records and entry.distribution is not None and entry.distribution.name != "manual":
+            yield from _placed_outside(context, path, entry, records)
+        elif records:
+            yield from _surplus(path, entry)
             yield from _outside(context, records)
             yield from _default_goal(path, entry, records)
             yield from _degrees(context, records)
@@ -143,6 +146,14 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
                 fix="add 'state: [0, 0, 0]' if the vertices are world coordinates",
                 edit=Edit("add", (*path, "state"), [0, 0, 0], safe=False),
             )
+        elif len(records) == 1 and not getattr(shape, "random_shape", False):
+            yield hint(
+                "default-state",
+                path,
+                f"without 'state' it stands at {flow(DEFAULT_STATE)}",
+                fix="add 'state: [x, y, theta]'",
+                edit=Edit("add", (*path, "state"), DEFAULT_STATE),
+            )
     elif records[0].role == "robot":
         states: Any = [entry.state] if is_vector(entry.state) else entry.state
         longest = max((len(state) for state in states[: entry.number] if state is not None), default=0)
@@ -182,6 +193,58 @@ def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                     fix=f"angles are in radians: {angle:g} degrees are {math.radians(angle):.5g}",
                 )
                 break
+
+
+def _surplus(path: Path, entry: Entry) -> Iterator[Finding]:
+    """States of objects that are not made."""
+    state: Any = entry.state
+    count = len(state) if isinstance(state, list) and not is_vector(state) else 0
+    if count <= entry.number or entry.number == 0:
+        return
+    written = "number" in entry.model_fields_set
+    makes = "1 object" if entry.number == 1 else f"{entry.number} objects"
+    yield (hint if written else warning)(
+        "surplus-states",
+        (*path, "state"),
+        f"{count} states, but the entry makes {makes}"
+        + ("" if written else ", because it has no 'number'")
+        + ": the other states are left out",
+        fix=f"number: {count}",
+        edit=Edit("replace" if written else "add", (*path, "number"), count, safe=False),
+    )
+
+
+def _placed_outside(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+    """Starts and goals that a distribution puts outside of the world."""
+    x0, y0, x1, y1 = context.scenario.world.bounds
+    world, options = f"the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]", entry.distribution
+    placement = next((p for p in context.resolved.placements if p.path == path), None)
+    if placement is not None:
+        (left, low), (right, high) = placement.range_low[:2], placement.range_high[:2]
+        if left < x0 or low < y0 or right > x1 or high > y1:
+            key = "range_high" if right > x1 or high > y1 else "range_low"
+            written = getattr(options, key, None) is not None
+            yield hint(
+                "outside-world",
+                (*path, "distribution", key) if written else (*path, "distribution"),
+                f"places are drawn with x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
+                + world,
+                fix="leave 'range_low' and 'range_high' out: they end half a metre inside the world",
+            )
+        return
+    lost = [r for r in records if not (x0 <= r.state[0] <= x1 and y0 <= r.state[1] <= y1)]
+    if not lost:
+        return
+    center = getattr(options, "center", None) or context.scenario.world.center
+    room = min(center[0] - x0, x1 - center[0], center[1] - y0, y1 - center[1])
+    fix = f"radius: {room:g} or less" if room > 0 else f"center: {flow(list(context.scenario.world.center))}"
+    yield hint(
+        "outside-world",
+        (*path, "distribution"),
+        f"{len(lost)} of {len(records)} objects start outside {world}, '{lost[0].name}' at "
+        f"({lost[0].state[0]:.4g}, {lost[0].state[1]:.4g}) for one",
+        fix=fix if options.name == "circle" else "places inside of the world, or a larger world",
+    )
 
 
 def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:

@@ -45,6 +45,14 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "no wheelbase is given: it counts as 1 m",
             fix="add 'wheelbase' to the shape or to the kinematics",
         )
+    length = getattr(record.shape, "length", None)
+    if options.name == "acker" and record.wheelbase and length is not None and record.wheelbase > length:
+        yield hint(
+            "wheelbase-over-length",
+            context.entry_path(record, "shape" if record.shape.wheelbase is not None else "kinematics"),
+            f"the axles are {record.wheelbase:g} m apart, and the body is only {length:g} m long",
+            fix=f"a length of more than {record.wheelbase:g}, or a wheelbase of about {round(0.6 * length, 3):g}",
+        )
     steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
     if not wrong and options.name == "acker" and options.mode == "steer" and steering >= math.pi / 2:
         key = "vel_max" if context.given(record, "vel_max") else "vel_min"

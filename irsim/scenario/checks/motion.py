@@ -20,6 +20,8 @@ from irsim.scenario.wording import flow
 
 Point = tuple[float, float]
 _PASSABLE = ("unobstructed", "reactive")
+_ROUNDS, _MOST_STEPS = 3, 5000
+"""Of a car on its turning circle."""
 _LOOKING = ("rvo", "sfm", "orca", "follow")
 
 
@@ -42,6 +44,7 @@ def _all(context: Context) -> Iterator[Finding]:
         yield from _cannot_move(context, record)
         yield from _nobody(context, record, counts)
         yield from _overshoot(context, record)
+        yield from _circles(context, record)
     if context.scenario.world.collision_mode not in _PASSABLE:
         yield from _jumps(context)
 
@@ -153,6 +156,46 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         f"'{record.name}' drives {step:.3g} m per step and 'dash' does not slow down: it may hop over its goal, which "
         f"counts as reached within {record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
+    )
+
+
+def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """A dashing car steers as far as it can towards a goal inside of its turning circle, and drives round it."""
+    drive: Any = record.kinematics
+    options: Any = record.behavior if record.group_behavior is None else None
+    if getattr(options, "name", "") != "dash" or drive.name != "acker" or drive.mode != "steer" or drive.noise:
+        return
+    if record.static or record.wander or not record.goals or len(record.vel_max) < 2:
+        return
+    wheelbase, psi = record.wheelbase or 1.0, drive.psi_max or math.inf
+    low, high = max(record.vel_min[1], -abs(record.vel_max[1]), -psi), min(record.vel_max[1], psi)
+    speed, (x, y), goal = record.vel_max[0], record.state[:2], record.goals[0]
+    if not -math.pi / 2 < low < 0 < high < math.pi / 2 or not 0 < speed < math.inf or record.acce[1] < math.inf:
+        return
+    radius = wheelbase / math.tan(min(high, -low))
+    if math.dist((x, y), goal[:2]) > 2 * radius:
+        return
+    least, step = math.inf, speed * context.scenario.world.step_time
+    steps = math.ceil(_ROUNDS * 2 * math.pi * radius / step)
+    if steps > _MOST_STEPS:
+        return
+    theta, steering = record.state[2], record.state[3] if len(record.state) > 3 else 0.0
+    for _ in range(steps):
+        least = min(least, math.dist((x, y), goal[:2]))
+        if least < record.goal_threshold:
+            return
+        error = math.remainder(math.atan2(goal[1] - y, goal[0] - x) - theta, 2 * math.pi)
+        x, y = x + step * math.cos(theta), y + step * math.sin(theta)
+        theta += step * math.tan(steering) / wheelbase
+        steering = min(max(error, low), high)
+    towards = math.atan2(goal[1] - record.state[1], goal[0] - record.state[0])
+    yield warning(
+        "turning-circle",
+        context.entry_path(record, "state") if context.given(record, "state") else record.path,
+        f"'{record.name}' turns in circles of radius {radius:.3g} m at least, and ({goal[0]:g}, {goal[1]:g}) lies "
+        f"inside of one from the start: it drives round it for ever, {least:.2g} m off at best",
+        fix=f"start towards the goal, with heading {towards:.4g}, or goal_threshold: "
+        f"{math.ceil(least * 100 + 1) / 100:g}, or more steering in 'vel_max' and 'vel_min'",
     )
 
 

@@ -11,7 +11,7 @@ from irsim.maps._grid import MapCells, Walls
 from irsim.registry import SHAPES
 from irsim.scenario.checks._context import Context
 from irsim.scenario.extent import parts_of
-from irsim.scenario.findings import Finding, warning
+from irsim.scenario.findings import Finding, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
 from irsim.vectors import is_vector
@@ -22,6 +22,8 @@ _MOST_PAIRS = 300_000
 
 
 _DIRECTIONS, _HALVINGS, _RINGS = 16, 12, 30
+_TOUCHING = 1e-4
+"""Depth that nobody would see [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -45,10 +47,11 @@ def check(context: Context) -> Iterator[Finding]:
         where = context.entry_path(mover, "state") if context.given(mover, "state") else mover.path
         deep, place = _depth(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
         instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
-        yield warning(
+        harmless = context.scenario.world.collision_mode == "unobstructed"
+        yield (hint if harmless else warning)(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts in collision with {_named(other)}{deep}"
+            f"'{mover.name}' starts {'in one place' if harmless else 'in collision'} with {_named(other)}{deep}"
             + (f", and {count - 1} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
@@ -78,6 +81,8 @@ def _depth(a: _Body, b: _Body) -> str:
             middle = (low + high) / 2
             low, high = (middle, high) if meets(angle, middle) else (low, middle)
         least = high
+    if least < _TOUCHING:
+        return ": they touch"
     return f", {least:.2g} m deep" if least < most else ", all of it"
 
 

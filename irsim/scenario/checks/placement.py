@@ -9,11 +9,13 @@ from typing import Any
 
 from irsim.diagnostics import Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, warning
+from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
 
 _NEAR = 1e-9
+_MOST_ALIKE = 50
+"""Obstacles in one place that are compared with each other."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -26,6 +28,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _circle(path, records)
         elif name == "manual" and len(records) > 1:
             yield from _stacked(path, entry, records)
+    yield from _twice(context)
 
 
 def _ranges(context: Context, path: Path) -> Iterator[Finding]:
@@ -58,6 +61,29 @@ def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
             (*path, "distribution"),
             f"neighbours on the circle are {gap:.3g} m apart and overlap",
             fix="a larger 'radius', fewer objects or smaller ones",
+        )
+
+
+def _twice(context: Context) -> Iterator[Finding]:
+    """The same obstacle written twice, in two entries."""
+    drawn = {index for placement in context.resolved.placements for index in placement.objects}
+    places: dict[tuple[float, ...], list[ObjectRecord]] = defaultdict(list)
+    told: set[Path] = set()
+    for record in context.written:
+        if record.role == "robot" or not record.static or record.id in drawn or record.path in told:
+            continue
+        same = places[tuple(round(v, 9) for v in record.state[:3])]
+        twin = next((other for other in same if other.path != record.path and other.shape == record.shape), None)
+        if twin is None or getattr(record.shape, "random_shape", False) or twin.unobstructed != record.unobstructed:
+            same[_MOST_ALIKE:] = []
+            same.append(record)
+            continue
+        told.add(record.path)
+        yield hint(
+            "stacked",
+            context.entry_path(record, "state") if context.given(record, "state") else record.path,
+            f"'{record.name}' has the shape and the place of '{twin.name}': one of them is not needed",
+            fix="another 'state', or one entry less",
         )
 
 

@@ -50,6 +50,7 @@ def _shape(path: Path, shape: Any) -> Iterator[Finding]:
                 (*path, key),
                 f"the lower bound {values[0]:g} is above the upper bound {values[1]:g}",
                 given=values,
+                fix=f"{key}: {flow([values[1], values[0]])}",
                 edit=Edit("replace", (*path, key), [values[1], values[0]]),
             )
     if shape.name == "polygon":

@@ -22,6 +22,12 @@ _FASTEST = 45.0
 _LONGEST_STEP = 1.0
 _WIDEST = 20.0
 """The longest lorries [m]."""
+_OF_WORLD = 0.5
+"""Something as long as that share of its world may be a ship."""
+_FAR = 2.0
+"""So many times the size of the world outside of it is nowhere."""
+_LONG_BEAM, _OFF, _LEAST_BODY = 100.0, 5.0, 0.1
+"""Beams so many times as long as the world; offsets so many times the reach of the body, of 0.1 m at least."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -62,6 +68,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         for index, sensor in enumerate(record.sensors):
             where = (*context.entry_path(record, "sensors"), index)
             yield from _heading((*where, "offset"), list(getattr(sensor, "offset", None) or []))
+            yield from _sensor(context, record, where, sensor)
     shape: Any = record.shape
     if shape.name == "compound":
         for index, part in enumerate(shape.parts):
@@ -70,7 +77,10 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     """Bodies that have no room in their world, or that no robot has."""
-    if not context.given(record, "shape") or record.role != "robot" or not has_fixed_shape(record.shape):
+    if not context.given(record, "shape") or not has_fixed_shape(record.shape):
+        return
+    if record.role != "robot":
+        yield from _obstacle(context, record)
         return
     world = context.scenario.world
     reach = reach_of(record.shape)
@@ -83,11 +93,65 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             if width >= min(world.width, world.height)
             else "is longer than any lorry"
         )
-        yield warning(
+        may_be = width < min(world.width, world.height) and 2 * reach < _OF_WORLD * min(world.width, world.height)
+        yield (hint if may_be else warning)(
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
             f"'{record.name}' is about {2 * reach:.3g} m long and {why}",
             fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
+        )
+
+
+def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Obstacles that fill their world, and those far from it."""
+    world, reach = context.scenario.world, reach_of(record.shape)
+    if record.unobstructed or not math.isfinite(reach):
+        return
+    side = min(world.width, world.height)
+    width = 2 * inner_disc(parts_of(record.shape))[2] if 2 * reach > side else 0.0
+    if width >= side:
+        yield hint(
+            "looks-like-centimetres",
+            context.entry_path(record, "shape"),
+            f"'{record.name}' is {width:.3g} m thick, and the world is {world.width:g} m × {world.height:g} m",
+            fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
+        )
+    x0, y0, x1, y1 = world.bounds
+    x, y = record.state[:2]
+    if not context.given(record, "state"):
+        return
+    far = math.hypot(max(x0 - x, 0.0, x - x1), max(y0 - y, 0.0, y - y1)) - reach
+    if far > _FAR * max(world.width, world.height) and x0 <= x / 100 <= x1 and y0 <= y / 100 <= y1:
+        yield hint(
+            "looks-like-centimetres",
+            context.entry_path(record, "state"),
+            f"'{record.name}' stands {far:.3g} m outside of the world, which is {world.width:g} m × {world.height:g} m",
+            fix=f"lengths are in metres: ({x:g}, {y:g}) cm are ({x / 100:g}, {y / 100:g})",
+        )
+
+
+def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> Iterator[Finding]:
+    """Beams far longer than the world, and sensors far off their robot."""
+    world: Any = context.scenario.world
+    written: Any = getattr(sensor, "model_fields_set", ())
+    reach, offset = getattr(sensor, "range_max", 0.0), getattr(sensor, "offset", None) or [0.0, 0.0]
+    if "range_max" in written and _LONG_BEAM * max(world.width, world.height) < reach < math.inf:
+        yield hint(
+            "looks-like-centimetres",
+            (*path, "range_max"),
+            f"the beams are {reach:g} m long in a world of {world.width:g} m × {world.height:g} m",
+            given=reach,
+            fix=f"lengths are in metres: {reach:g} cm are {reach / 100:g}, {reach:g} mm are {reach / 1000:g}",
+        )
+    away = math.hypot(*offset[:2])
+    if has_fixed_shape(record.shape) and away > _OFF * max(reach_of(record.shape), _LEAST_BODY):
+        yield hint(
+            "looks-like-centimetres",
+            (*path, "offset"),
+            f"this sensor is {away:g} m off the middle of '{record.name}', whose body reaches "
+            f"{reach_of(record.shape):.3g} m",
+            given=offset,
+            fix=f"lengths are in metres: {away:g} cm are {away / 100:g}",
         )
 
 
