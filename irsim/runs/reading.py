@@ -114,7 +114,8 @@ class Run:
     @property
     def extent(self) -> str:
         """Which steps there are, and why no more."""
-        return "; ".join([f"it has the steps 0 to {self.last_step}", *self.notes])
+        why = [note for note in self.notes if note.startswith("recorded")]
+        return "; ".join([f"it has the steps 0 to {self.last_step}", *why])
 
     @property
     def last_step(self) -> int:

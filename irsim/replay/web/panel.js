@@ -16,7 +16,8 @@ export function fillPanel(player, goToEvent) {
   badge.className = `badge ${head.outcome ?? ""}`;
   $("facts").textContent = $("facts").title = factsOf(run);
   unfold(false);
-  note($("recordnote"), (head.notes ?? []).join("; "));
+  const lacks = (head.notes ?? []).join("; ");
+  note($("recordnote"), lacks && `This run: ${lacks}.`);
   $("events").style.setProperty("--time", `${seconds(run.time[run.rows - 1]).length}ch`);
   const movers = run.objects.filter(({ track, role }) => track >= 0 && role !== "robot").map(({ index }) => index);
   $("robot").replaceChildren(

@@ -43,9 +43,7 @@ def tool(services: Services) -> StrictTool:
             Field(ge=FEWEST, le=MOST, description="Moments on one sheet, from 0 to `step` (0: the end)."),
         ] = None,
         seed: Seed = None,
-        size_px: Annotated[
-            int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")
-        ] = 600,
+        size_px: Annotated[int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")] = 600,
         overlays: Annotated[
             list[Literal["names", "goals", "paths", "sensors", "clearance", "plan"]] | None,
             Field(description=_OVERLAYS),

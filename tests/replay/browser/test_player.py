@@ -431,7 +431,7 @@ def test_it_says_what_the_record_lacks(run: Run, watched: Watched) -> None:
     path.write_text(json.dumps({**json.loads(path.read_text()), "trace_until": 7}))
     watched.requests.clear()
     watched.open(Path(irsim.replay(open_run(run.id)).file))
-    assert shown.inner_text("#recordnote") == f"recorded until step 7 of {run.last_step}: size limit"
+    assert shown.inner_text("#recordnote") == f"This run: recorded until step 7 of {run.last_step}: size limit."
 
 
 def test_more_is_offered_only_where_there_is_more(shown: Any) -> None:
