@@ -251,7 +251,7 @@ class RobotResult(Result):
     """Steps in which its behavior found no velocity that avoids everybody (only ``orca`` says so); None
     if there were none."""
     path_length: float
-    """Distance travelled [m]."""
+    """Distance travelled [m], to the end of the run."""
     distance_to_goal: float | None
     """Distance to the present goal at the end [m]; None without a goal."""
     min_clearance: float | None = None

@@ -17,7 +17,7 @@ from irsim.metrics.outcome import outcome
 from irsim.metrics.progress import progress
 from irsim.metrics.social import social
 from irsim.metrics.space import space
-from irsim.metrics.track import Track, tracks
+from irsim.metrics.track import HOLONOMIC, Track, tracks
 from irsim.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -143,4 +143,4 @@ def _top_speed(vel_max: Sequence[float], kinematics: object) -> float:
     name = getattr(kinematics, "name", None)
     if name is None:
         return 0.0
-    return math.hypot(vel_max[0], vel_max[1]) if name in ("omni", "omni_angular") else float(vel_max[0])
+    return float(max(vel_max[:2]) if name in HOLONOMIC else vel_max[0])  # not both at once: most behaviors never do

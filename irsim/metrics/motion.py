@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.metrics.track import Track
+from irsim.metrics.track import Track, spaced
 
 __all__ = ["curvatures", "motion", "runs_of"]
 
 _STILL, _UNTURNED = 0.05, 0.05  # m/s, rad/s: slower in both is stalled
 _FREEZE = 2.0  # a stall of as long is freezing [s]
-_APART = 0.05  # points of a path that curvature is taken of [m]
 
 
 def motion(track: Track) -> dict[str, float]:
@@ -23,7 +22,8 @@ def motion(track: Track) -> dict[str, float]:
     - ``acceleration_*``, ``jerk_*``: magnitudes of the second and third differences of position over dt^2 and dt^3,
       that is vector derivatives by central differences of the executed velocity, unfiltered. NaN for less than 3 and 4
       positions.
-    - ``cumulative_heading_change`` [rad], and divided by the path ``angle_over_length`` [rad/m].
+    - ``cumulative_heading_change`` [rad], and divided by the path ``angle_over_length`` [rad/m]: of the body, but of
+      the direction of motion for drives that need not turn to move (see ``Track.bends``).
     - ``curvature``, ``roughness`` [1/m]: see :func:`curvatures`.
     - ``motion_energy`` [m^2/s]: sum of squared speed times dt (unit mass).
     - ``control_effort`` [s]: sum over steps and controls of (executed control / its greatest magnitude)^2 times dt, of
@@ -33,7 +33,7 @@ def motion(track: Track) -> dict[str, float]:
     dt, speed = track.step_time, track.speed
     stalled = (speed < _STILL) & (np.abs(track.turning) < _UNTURNED * dt)
     long = [run for run in runs_of(stalled) if (run[1] - run[0]) * dt >= _FREEZE - 1e-9]
-    turned = float(np.abs(track.turning).sum())
+    turned = float(np.abs(track.bends).sum())
     length = track.path_length
     bends = curvatures(track.position)
     found = {
@@ -77,11 +77,7 @@ def curvatures(points: NDArray[np.float64]) -> NDArray[np.float64]:
     A point is kept once it is 0.05 m from the last that was. Curvature of three points: 4 x area of their triangle /
     product of its sides.
     """
-    chosen: list[NDArray[np.float64]] = []
-    for point in points:
-        if not chosen or np.hypot(*(point - chosen[-1])) >= _APART:
-            chosen.append(point)
-    kept = np.asarray(chosen)
+    kept = spaced(points)
     if len(kept) < 3:
         return np.zeros(0)
     a, b, c = kept[:-2], kept[1:-1], kept[2:]

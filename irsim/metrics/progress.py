@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.metrics.geodesic import Geodesics
-from irsim.metrics.track import Track
+from irsim.metrics.track import Track, wrapped
 
 __all__ = ["UNREACHABLE", "progress"]
 
@@ -23,9 +23,11 @@ def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[st
     - ``failure_to_progress``: windows of 5 s, one after the other, in which the shortest way to the present goal became
       less than 0.1 m shorter; a window in which the goal changed is progress.
     - ``spl``: success x L*/max(path length, L*) (Anderson et al., arXiv 1807.06757). ``path_efficiency``: path length /
-      L*, of robots that arrived. ``stl``: success x T*/max(T, T*), T* = L*/top speed. ``barn_score``: success x
+      L*, of robots that arrived. ``stl``: success x T*/max(T, T*), T* = L*/top speed, the greatest of its
+      limits forward and sideways. ``barn_score``: success x
       T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5).
     - ``path_irregularity`` [rad]: absolute heading changes minus those of the shortest way, of robots that arrived.
+      Where the body has to turn to move, the shortest way begins with the turn towards it.
     - ``min_distance_to_goal``, ``final_distance_to_goal`` [m]: to the present goal, straight.
 
     Args:
@@ -59,10 +61,10 @@ def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[st
     shortest = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     path, time = track.path_length, track.arrival * track.step_time
     found["path_efficiency"] = path / shortest if shortest > 0 else nan
-    found["path_irregularity"] = float(np.abs(track.turning).sum()) - _turns(way, track.pose[0, 2])
+    found["path_irregularity"] = float(np.abs(track.bends).sum()) - _turns(way, track)
     if track.success:
         found["spl"] = shortest / max(path, shortest) if shortest > 0 else 1.0
-        ideal = shortest / track.top_speed if track.top_speed > 0 else nan
+        ideal = shortest / track.top_speed if 0 < track.top_speed < math.inf else nan
         found["stl"] = ideal / max(time, ideal) if time > 0 else 1.0
         ideal = shortest / 2.0
         found["barn_score"] = ideal / min(max(time, 2 * ideal), 8 * ideal) if ideal > 0 else nan
@@ -94,9 +96,10 @@ def _without_progress(track: Track, geodesics: Geodesics, radius: float) -> int:
     return count
 
 
-def _turns(way: NDArray[np.float64], heading: float) -> float:
-    """Absolute heading changes of one who turns towards a way and goes it [rad]."""
+def _turns(way: NDArray[np.float64], track: Track) -> float:
+    """Absolute heading changes of one who goes a way [rad]; if it cannot go sideways, it first turns towards it."""
     legs = np.diff(way, axis=0)
     legs = legs[np.linalg.norm(legs, axis=1) > 0]
-    angles = np.concatenate([[heading], np.arctan2(legs[:, 1], legs[:, 0])])
-    return float(np.abs((np.diff(angles) + np.pi) % (2 * np.pi) - np.pi).sum())
+    before = [] if track.holonomic else [track.pose[0, 2]]
+    angles = np.concatenate([before, np.arctan2(legs[:, 1], legs[:, 0])])
+    return float(np.abs(wrapped(np.diff(angles))).sum())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,9 +17,11 @@ if TYPE_CHECKING:
     from irsim.observers.trace import Trace
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["Track", "tracks"]
+__all__ = ["HOLONOMIC", "Track", "spaced", "tracks", "wrapped"]
 
 Floats = NDArray[np.float64]
+HOLONOMIC = ("omni", "omni_angular")
+_APART = 0.05  # points of a path that directions and curvature are taken of [m]
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,8 @@ class Track:
         groups: Of each social group its members, as columns of ``others``.
         reaches: (M,) bounding radii of the humans [m].
         reach: Its own bounding radius [m].
-        top_speed: What it may do at most [m/s].
+        top_speed: The greatest of its limits of speed, forward or sideways [m/s].
+        holonomic: It need not turn to go another way.
     """
 
     name: str
@@ -66,6 +70,7 @@ class Track:
     reaches: Floats
     reach: float
     top_speed: float
+    holonomic: bool
 
     @property
     def position(self) -> Floats:
@@ -85,8 +90,19 @@ class Track:
     @property
     def turning(self) -> Floats:
         """(K - 1,) heading change of each step [rad], in [-pi, pi)."""
-        turned = np.diff(self.pose[:, 2])
-        return np.asarray((turned + np.pi) % (2 * np.pi) - np.pi)
+        return wrapped(np.diff(self.pose[:, 2]))
+
+    @property
+    def bends(self) -> Floats:
+        """Heading changes [rad] on its way, in [-pi, pi).
+
+        Those of its body, step by step; of a holonomic drive, whose body may look anywhere, those of the direction in
+        which it goes, from each point of its path to the next that is 0.05 m on.
+        """
+        if not self.holonomic:
+            return self.turning
+        legs = np.diff(spaced(self.position), axis=0)
+        return wrapped(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
 
     @property
     def path_length(self) -> float:
@@ -97,6 +113,21 @@ class Track:
     def success(self) -> bool:
         """Arrived, and no contact until then."""
         return self.arrival is not None and not self.collisions
+
+
+def wrapped(angles: Floats) -> Floats:
+    """Angles [rad] in [-pi, pi)."""
+    return np.asarray((angles + np.pi) % (2 * np.pi) - np.pi)
+
+
+def spaced(points: Floats) -> Floats:
+    """Those of the points (T, 2) of a path that are 0.05 m from the last that was kept, (K, 2); the first is."""
+    kept = [0]
+    x, y = points[:, 0].tolist(), points[:, 1].tolist()
+    for row in range(1, len(x)):
+        if math.hypot(x[row] - x[kept[-1]], y[row] - y[kept[-1]]) >= _APART:
+            kept.append(row)
+    return points[kept]
 
 
 def tracks(
@@ -163,6 +194,7 @@ def tracks(
                 reaches=radii[them],
                 reach=float(radii[robot]),
                 top_speed=top_speeds[place],
+                holonomic=getattr(record.kinematics, "name", None) in HOLONOMIC,
             )
         )
     return found

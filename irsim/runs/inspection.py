@@ -82,9 +82,10 @@ def inspect_run(
         view: ``rows``: positions and more, step by step; ``collisions``: who touched whom, where and how fast;
             ``closest``: for each robot whom it came how near and when, the nearest five robots, humans and things that
             stand still, edge to edge (between footprints; negative: overlap);
-            ``speeds``: for each robot how far and fast it went, and where it stood still longest. ``speed`` is a
-            magnitude everywhere, never negative; ``min_forward_speed`` is that along the heading and negative where it
-            drove backwards (None for omnidirectional drives); ``max_turn_rate`` is a magnitude, too.
+            ``speeds``: for each robot how far and fast it went, and where it stood still longest, until it arrived
+            (all of the part asked for if that begins after). ``speed`` is a magnitude everywhere, never negative;
+            ``min_forward_speed`` is that along the heading and negative where it drove backwards (None for
+            omnidirectional drives); ``max_turn_rate`` is a magnitude, too.
         robot: Name of one robot, or of another object; by default all robots.
         from_step: First step.
         to_step: Last step; by default the last there is.
@@ -269,21 +270,22 @@ def _closest(asked: _Question) -> _Found:
 
 
 def _speeds_of_robots(asked: _Question) -> _Found:
-    """How far and how fast each robot went, and its longest stand before it arrived."""
+    """How far and how fast each robot went until it arrived, and its longest stand."""
     trace, rows = asked.trace, list[list[Cell]]()
     for index in asked.objects:
-        speeds = _speeds(trace, index, asked.first, asked.last)
-        way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
         arrived = trace.arrived[asked.first : asked.last + 1, index]
         first = int(np.argmax(arrived)) if arrived.any() else len(arrived)
+        last = asked.first + first if 0 < first < len(arrived) else asked.last
+        speeds = _speeds(trace, index, asked.first, last)
+        way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
         begin, length = _longest_stand(speeds[:first])
         stand: list[Cell] = [_number(length * trace.step_time), None]
         if length:
             stand[1] = int(trace.step[asked.first + begin])
         mean = way / (max(1, len(speeds) - 1) * trace.step_time)
         fast: list[Cell] = [_number(mean), _number(float(speeds.max()))]
-        turning = max((abs(_turn_rate(trace, index, row)) for row in range(asked.first, asked.last + 1)), default=0.0)
-        extremes: list[Cell] = [_least_forward(asked, index), _number(turning)]
+        turning = max((abs(_turn_rate(trace, index, row)) for row in range(asked.first, last + 1)), default=0.0)
+        extremes: list[Cell] = [_least_forward(asked, index, last), _number(turning)]
         rows.append([trace.names[index], _number(way), *fast, *extremes, *stand, bool(arrived.any())])
     columns = [
         *("robot", "path_length", "mean_speed", "max_speed", "min_forward_speed", "max_turn_rate"),
@@ -318,11 +320,11 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
     return speeds
 
 
-def _least_forward(asked: _Question, index: int) -> Cell:
+def _least_forward(asked: _Question, index: int, last: int) -> Cell:
     """Least velocity along the heading [m/s]; None for drives whose heading is not where they go, and without steps."""
     drive = asked.run.resolved["objects"][index].get("kinematics")
     name = drive.get("name") if isinstance(drive, dict) else None
-    pose = asked.trace.pose[max(0, asked.first - 1) : asked.last + 1, index]
+    pose = asked.trace.pose[max(0, asked.first - 1) : last + 1, index]
     if len(pose) < 2 or not isinstance(name, str) or name.startswith("omni"):
         return None
     moved, heading = np.diff(pose[:, :2], axis=0), pose[:-1, 2]

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+import irsim
 from irsim.episode import read_scenario
 from irsim.metrics import EPISODE_METRICS, METRICS, episode_metrics, robot_metrics
 from irsim.metrics.motion import curvatures, runs_of
@@ -15,14 +16,18 @@ from irsim.observers.events import Event
 from irsim.observers.trace import Trace
 
 ROBOT = (
-    "  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.2}}, state: {state}, goal: {goal}, "
-    "vel_max: [1, 0]}}\n"
+    "  - {{kinematics: {{name: {drive}}}, shape: {{name: circle, radius: 0.2}}, state: {state}, goal: {goal}, "
+    "vel_max: {top}}}\n"
 )
 NAN = math.nan
 
 
-def scenario(*robots: tuple[list[float], list[float]], rest: str = "", world: str = "width: 20, height: 20"):
-    text = f"world: {{{world}}}\nrobot:\n" + "".join(ROBOT.format(state=s, goal=g) for s, g in robots) + rest
+def scenario(
+    *robots: tuple[list[float], list[float]], rest: str = "", world: str = "width: 20, height: 20", drive="omni"
+):
+    top = [1, 0, 1] if drive == "omni_angular" else [1, 0]
+    entries = [ROBOT.format(drive=drive, state=state, goal=goal, top=top) for state, goal in robots]
+    text = f"world: {{{world}}}\nrobot:\n" + "".join(entries) + rest
     return read_scenario(text=text, strict=True)[0]
 
 
@@ -165,7 +170,59 @@ def test_stalls_freezing_and_no_progress() -> None:
     turning[:, 0, 2] = 0.1 * np.arange(21)
     found = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
     assert found["stalled_time"] == 0
+    assert found["cumulative_heading_change"] == 0  # an omni that turns where it stands goes no other way
+    resolved = scenario(([1, 5], [15, 5]), drive="diff")
+    found = robot_metrics(trace(resolved, turning, [[15, 5]]), resolved, [])[0]
     assert found["cumulative_heading_change"] == pytest.approx(2.0)
+
+
+ARC = 0.05 * np.arange(31)  # of a circle of radius 2, 1.5 rad of it in 3 s
+
+
+def on_an_arc(drive: str, heading: np.ndarray) -> dict[str, float]:
+    """Metrics of a drive from (2, 0) round (0, 0), shifted to (5, 5), with a goal at its end."""
+    path = 5 + 2 * np.stack([np.cos(ARC), np.sin(ARC)], axis=1)
+    resolved = scenario(([*path[0].tolist(), float(heading[0])], path[-1].tolist()), drive=drive)
+    done = trace(resolved, np.column_stack([path, heading])[:, None], [path[-1]])
+    return robot_metrics(done, resolved, [event("arrival", 30, resolved.objects[0].name)])[0]
+
+
+@pytest.mark.parametrize("drive", ["omni", "omni_angular"])
+@pytest.mark.parametrize("looking", [0.0, 0.3])
+def test_who_need_not_turn_to_move_turns_where_its_path_does(drive: str, looking: float) -> None:
+    found = on_an_arc(drive, looking * np.arange(31))
+    length = 30 * 4 * math.sin(0.025)
+    assert found["path_length"] == pytest.approx(length)
+    assert found["cumulative_heading_change"] == pytest.approx(29 * 0.05)  # from chord to chord
+    assert found["angle_over_length"] == pytest.approx(29 * 0.05 / length)
+    assert found["curvature"] == pytest.approx(0.5)
+    assert found["path_irregularity"] == pytest.approx(29 * 0.05)  # the shortest way is straight
+
+
+def test_who_must_turn_to_move_is_measured_by_its_heading() -> None:
+    found = on_an_arc("diff", ARC + math.pi / 2)
+    assert found["cumulative_heading_change"] == pytest.approx(1.5)
+    # the chord leads 0.75 rad to the left of the first heading
+    assert found["path_irregularity"] == pytest.approx(1.5 - 0.75)
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.0, math.pi])
+def test_a_straight_drive_sideways_or_backwards_is_not_irregular(heading: float) -> None:
+    resolved = scenario(([9, 5, heading], [1, 5]))
+    done = trace(resolved, np.insert(straight(80)[::-1, None], 2, heading, axis=2), [[1, 5]])
+    found = robot_metrics(done, resolved, [event("arrival", 80, resolved.objects[0].name)])[0]
+    assert (found["path_irregularity"], found["cumulative_heading_change"]) == (0, 0)
+
+
+@pytest.mark.parametrize("drive", ["omni", "omni_angular", "diff"])
+@pytest.mark.parametrize("goal", [[1, 5], [15, 5], [12, 9]])
+def test_a_straight_run_at_full_speed_is_perfect(drive: str, goal: list[float]) -> None:
+    heading = math.atan2(goal[1] - 5, goal[0] - 9) if drive == "diff" else 0.0
+    robot = f"{{kinematics: {{name: {drive}}}, state: [9, 5, {heading}], goal: {goal}, behavior: {{name: dash}}}}"
+    result = irsim.benchmark(f"world: {{width: 20, height: 20}}\nrobot: {robot}\n", "as-written", 1, workers=1)
+    found = result.rows[0].metrics
+    expected = {"stl": 1.0, "spl": 1.0, "path_irregularity": 0.0, "velocity_max": 1.0}
+    assert {key: found[key].mean for key in expected} == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_detour_costs_what_it_is_longer() -> None:
