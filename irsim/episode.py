@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import importlib
 import itertools
+import json
 import math
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics import Diagnostic, Edit, format_path
 from irsim.env import Env
@@ -22,6 +23,7 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.randomness import random_parts
 from irsim.scenario.read import read
+from irsim.text import clean
 
 if TYPE_CHECKING:
     from irsim.runs.recorder import Recorder
@@ -46,6 +48,7 @@ Progress = Callable[[int, int], None]
 MIN_HORIZON = 30.0
 HORIZON_FACTOR = 4.0
 _CHUNK_STEPS = 50
+_LONGEST_GIVEN = 200
 
 
 def import_modules(names: Iterable[str]) -> None:
@@ -142,12 +145,21 @@ def as_finding(diagnostic: Diagnostic) -> Finding:
         column=diagnostic.column,
         length=diagnostic.length,
         message=diagnostic.message,
-        given=diagnostic.given,
+        given=_short(diagnostic.given),
         allowed=allowed if allowed is None or isinstance(allowed, str) else list(allowed),
         fix=diagnostic.fix,
         edit=_edit(diagnostic.edit),
         tolerated=diagnostic.tolerated,
     )
+
+
+def _short(given: Any) -> Any:
+    """A value as written; the beginning of its JSON where that is long."""
+    try:
+        text = json.dumps(given, default=str)
+    except (ValueError, RecursionError):  # it holds itself
+        return clean(type(given).__name__)
+    return given if len(text) <= _LONGEST_GIVEN else clean(text, _LONGEST_GIVEN)
 
 
 def _edit(edit: Edit | None) -> EditRecord | None:

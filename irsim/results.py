@@ -75,7 +75,7 @@ class Finding(Result):
     message: str
     """What is wrong."""
     given: Any = None
-    """The value as written."""
+    """The value as written; of a long one the beginning, as text."""
     allowed: list[str] | str | None = None
     """What would be accepted."""
     fix: str | None = None

@@ -38,8 +38,8 @@ class Sfm(BehaviorOptions):
     force_factor_obstacle: Number = 10.0
     """Weight of the push away from walls."""
     sigma_obstacle: Annotated[Meters, Field(gt=0)] = 0.8
-    """Reach of the push away from walls: in corridors about a twentieth of their width (0.15 m for 3 m), or everybody is
-    pushed into the middle and people who come from both sides meet there."""
+    """Reach of the push away from walls: in corridors about a twentieth of their width (0.15 m for 3 m), or everybody
+    is pushed into the middle and people who come from both sides meet there."""
     lambda_importance: Number = 2.0
     """Weight of relative velocity against relative position in the interaction."""
     gamma: Annotated[Number, Field(gt=0)] = 0.35

@@ -99,7 +99,7 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api import validate
 
     report = validate(**job["arguments"], strict=True, limits=_limits(job))
-    return report.model_dump_json(exclude={"findings": {"__all__": {"given"}}})
+    return report.model_dump_json()
 
 
 def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
@@ -129,7 +129,7 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
             raise
         print(f"irsim-mcp: no record of this run: {error.message}", file=sys.stderr)
         result = run(**arguments)
-    return result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})
+    return result.model_dump_json()
 
 
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
@@ -148,7 +148,7 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
         os.chdir(job["workspace"])
     result = snapshot_of(scenario, path, warnings=warnings, strict=True, limits=limits, progress=progress, **arguments)
     png = base64.b64encode(result.png).decode()
-    return f'{{"png": "{png}", "scene": {result.model_dump_json(exclude={"warnings": {"__all__": {"given"}}})}}}'
+    return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
 
 
 def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
@@ -209,7 +209,7 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
 
     result = benchmark(**job["arguments"], strict=True, limits=_limits(job), progress=progress)
-    return result.model_dump_json(exclude={"warnings": {"__all__": {"__all__": {"given"}}}})
+    return result.model_dump_json()
 
 
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {

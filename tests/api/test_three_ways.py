@@ -1,12 +1,11 @@
 """Shell, Python and server give the same bytes for the same scenario, seed and options.
 
-The server's tools answer with a shorter structure; what is compared is what they make it of, the full answer of the
-worker (for a benchmark, ``result.json`` of its job).
+Of the server, what is compared is the text that its tools give for ``response_format=json`` (for a benchmark,
+``result.json`` of its job).
 """
 
 from __future__ import annotations
 
-import functools
 import json
 import shutil
 from pathlib import Path
@@ -17,15 +16,15 @@ import pytest
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
-from irsim_mcp.worker import Workers
 from typer.testing import CliRunner
 
 import irsim
 from irsim import templates
 from irsim.cli.app import app
+from tests.mcp.conftest import connected, text_of
 
-LEFT_OUT = frozenset({"run_id", "artifacts", "files", "given"})
-"""Names and files of a record; the value as written in findings, which a server does not repeat: it may be large."""
+LEFT_OUT = frozenset({"run_id", "artifacts", "files"})
+"""Names and files of a record."""
 QUICK = ("crossing", "random-polygons", "fmcw-watch")
 SEED, STEPS = 5, 40
 
@@ -46,10 +45,14 @@ def shell(*words: object) -> bytes:
     return bytes_of(result.stdout)
 
 
-def worker(workspace: Path, task: str, **arguments: Any) -> bytes:
-    workers = Workers(Workspace(workspace), ServerLimits())
-    answer = anyio.run(functools.partial(workers.call, task, arguments, seconds=45))
-    return bytes_of(json.dumps(answer["result"]))
+def tool(workspace: Path, name: str, **arguments: Any) -> bytes:
+    async def call() -> str:
+        async with connected(workspace, text=10_000_000) as client:
+            result = await client.call_tool(name, {**arguments, "response_format": "json"})
+        assert not result.is_error, result.content
+        return text_of(result)
+
+    return bytes_of(anyio.run(call))
 
 
 def all_templates() -> list[Any]:
@@ -69,7 +72,7 @@ def test_validate(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"
     expected = bytes_of(irsim.validate(file).model_dump_json())
     assert shell("validate", file) == expected
-    assert worker(workspace, "validate", path=file) == expected
+    assert tool(workspace, "validate_scenario", scenario_path=file, simulate=False) == expected
 
 
 @pytest.mark.parametrize("name", all_templates())
@@ -77,14 +80,14 @@ def test_run(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"
     expected = bytes_of(irsim.run(file, seed=SEED, steps=STEPS, strict=True).model_dump_json())
     assert shell("run", file, "--seed", SEED, "--steps", STEPS, "--strict") == expected
-    assert worker(workspace, "run", path=file, seed=SEED, steps=STEPS) == expected
+    assert tool(workspace, "run_episode", scenario_path=file, seed=SEED, max_steps=STEPS) == expected
 
 
 def test_run_with_another_behavior(workspace: Path) -> None:
     file, behavior = "crossing/scenario.yaml", "{name: orca, timeHorizon: 3}"
     expected = bytes_of(irsim.run(file, behavior=behavior, steps=STEPS, strict=True).model_dump_json())
     assert shell("run", file, "--behavior", behavior, "--steps", STEPS, "--strict") == expected
-    assert worker(workspace, "run", path=file, behavior=behavior, steps=STEPS) == expected
+    assert tool(workspace, "run_episode", scenario_path=file, behavior=behavior, max_steps=STEPS) == expected
 
 
 @pytest.mark.parametrize("name", ["crossing", "random-polygons"])

@@ -12,6 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from irsim.cli.app import app
+from irsim.results import RunResult
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -120,11 +121,11 @@ async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -
         told.append((time.monotonic(), done, total))
 
     async with connected(empty, era) as client:
-        arguments = {"scenario_yaml": LONG, "max_wall_s": 3, "max_steps": 4000}
+        arguments = {"scenario_yaml": LONG, "max_wall_s": 6, "max_steps": 4000}
         result = await client.call_tool("run_episode", arguments, progress_callback=on_progress)
     assert "out-of-time" in error_of(result)
     assert len(told) >= 2
-    assert len(told) <= 6
+    assert len(told) <= 9
     assert all(total == 4000 for _, _, total in told)
     assert all(a[1] < b[1] and b[0] - a[0] > 0.9 for a, b in itertools.pairwise(told))
 
@@ -194,3 +195,15 @@ async def test_no_seed_is_shown_where_it_decides_nothing(workspace: Path) -> Non
         assert "nothing is random" in told
         assert "seed" not in told
     assert "seed" in text_of(scenes[1])
+
+
+async def test_the_whole_result_on_request(empty: Path) -> None:
+    async with connected(empty) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "response_format": "json"})
+        whole = json.loads(text_of(result))
+        assert RunResult.model_validate(whole).outcome == data_of(result)["outcome"] == "success"
+    async with connected(empty, text=500) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "response_format": "json"})
+        line = error_of(result)
+        assert "over-limit" in line
+        assert "result.json" in line

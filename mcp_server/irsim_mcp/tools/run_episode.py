@@ -15,6 +15,7 @@ from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.whole import whole
 
 __all__ = ["Episode", "tool"]
 
@@ -53,7 +54,7 @@ class Robot(BaseModel):
 class Event(BaseModel):
     """Something that happened."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
 
     time: float
     step: int
@@ -79,7 +80,7 @@ class Episode(BaseModel):
     steps: int
     sim_time: float
     time_limit: float
-    time_limit_from: Literal["argument", "scenario", "default", "limits"]
+    time_limit_from: str
     robots: list[Robot]
     robot_count: int
     events: list[Event]
@@ -107,9 +108,10 @@ def tool(services: Services) -> StrictTool:
         ] = None,
         max_wall_s: Annotated[int, Field(ge=1, le=RUN_SECONDS, description="Seconds of computing.")] = RUN_SECONDS,
         response_format: Annotated[
-            Literal["concise", "detailed"],
+            Literal["concise", "detailed", "json"],
             Field(
-                description=f"detailed: paths, poses, waypoints; {_DETAILED} robots and events instead of {_CONCISE}."
+                description=f"detailed: paths, poses, waypoints; {_DETAILED} robots and events instead of {_CONCISE}. "
+                "json: as irsim run --json."
             ),
         ] = "concise",
     ) -> Annotated[CallToolResult, Episode]:
@@ -125,6 +127,8 @@ def tool(services: Services) -> StrictTool:
         )
         episode = _episode(found, response_format == "detailed")
         text = TextContent(type="text", text=_text(episode))
+        if response_format == "json":
+            text = whole(found, services.limits.text, f"read {uri(found['run_id'] or 'ID', 'result.json')}")
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
     return strict(

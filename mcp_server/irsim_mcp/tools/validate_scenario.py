@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from irsim.text import clean, pair, seconds
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
+from irsim_mcp.whole import whole
 
 __all__ = ["Report", "tool"]
 
@@ -76,7 +77,8 @@ def tool(services: Services) -> StrictTool:
         simulate: Annotated[bool, Field(description="Try it, if valid.")] = True,
         max_issues: Annotated[int, Field(ge=1, le=100)] = 20,
         response_format: Annotated[
-            Literal["concise", "detailed"], Field(description="detailed: with hints, columns, all allowed values.")
+            Literal["concise", "detailed", "json"],
+            Field(description="detailed: with hints, columns, all allowed values. json: as irsim validate --json."),
         ] = "concise",
     ) -> Annotated[CallToolResult, Report]:
         found = await services.scenario_job(
@@ -89,6 +91,8 @@ def tool(services: Services) -> StrictTool:
         )
         report = _report(found, max_issues, response_format == "detailed", services.limits.text)
         text = TextContent(type="text", text=_text(report))
+        if response_format == "json":
+            text = whole(found, services.limits.text, "mend what is found so far, or ask for detailed")
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
     return strict(
