@@ -100,13 +100,14 @@ class FreeSpace:
         return low
 
     def way(self, start: Floats, goal: Floats, radius: float, reach: float) -> Floats | None:
-        """(K, 2) cells that a disc passes to get within ``reach`` of a goal; None if there is no way."""
+        """(K, 2) points that a disc passes to get within ``reach`` of a goal; None if there is no way."""
         here, there = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
         if self._clearance.widest(here, there, reach)[0] < radius - self.half:
             return None
-        there = self._clearance.climb(there, reach)
-        found = self._clearance.way(here, there, min(radius, float(self.at(np.array([there]))[0])) - self.half)
-        return np.asarray(found) if len(found) else None
+        end = there if self.exactly_at(there) >= radius else self._clearance.climb(there, reach)
+        least = min(radius, float(self.at(np.array([here, end])).min())) - self.half
+        found = np.asarray(self._clearance.way(here, end, least))
+        return np.concatenate([[here], found[1:-1], [end]]) if len(found) else None
 
 
 def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None:

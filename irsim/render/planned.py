@@ -24,6 +24,7 @@ __all__ = ["Planned", "draw_plans", "plans"]
 _MOST = 40
 """Ways that are looked for."""
 _SMALLEST = 0.01
+_SLACK = 2e-3
 _LOOKED_AT = 50
 """Points of a way that are nearly the tightest."""
 _WIDTH, _ALPHA, _ZORDER = 1.4, 0.9, 2.5
@@ -101,9 +102,7 @@ def _plan(
         if number == 0 and view.id in routes:
             way, own = routes[view.id], 1
         else:
-            way = geodesics.way(start, goal, outer, coarse=True)
-            if way is None and outer > inner:
-                way = geodesics.way(start, goal, inner, coarse=True)
+            way = _shortest(geodesics, space, start, goal, (outer, inner))
             if way is None:
                 way = space.way(start, goal, inner, view.record.goal_threshold)
         if way is None:
@@ -118,6 +117,18 @@ def _plan(
     places = [(float(x), float(y)) for x, y in near[:: max(1, len(near) // _LOOKED_AT)]]
     margin, place = min((space.exactly_at(place) - inner, place) for place in places)
     return Planned(view.id, view.name, line, view.id in routes, own, lost, max(0.0, margin), place)
+
+
+def _shortest(
+    geodesics: Geodesics, space: FreeSpace, start: Floats, goal: Floats, radii: tuple[float, float]
+) -> Floats | None:
+    """The shortest way of a disc of the first radius that there is one for; None where there is no room at the goal."""
+    room = space.exactly_at((float(goal[0]), float(goal[1])))
+    for radius in dict.fromkeys(radii):
+        way = geodesics.way(start, goal, radius, coarse=True) if room > radius - _SLACK else None
+        if way is not None:
+            return np.concatenate([[start], way[1:-1], [goal]])  # its ends are the middles of cells
+    return None
 
 
 def draw_plans(scene: Scene, ways: Sequence[Planned]) -> None:

@@ -68,6 +68,18 @@ def test_no_way(behavior: str) -> None:
     assert found["length"] == 0
 
 
+@pytest.mark.parametrize("goal", ["[5, 2]", "[5.3, 2]"])
+def test_no_room_at_the_goal(goal: str) -> None:
+    assert plan(room(goal))["lost"] == tuple(float(value) for value in goal.strip("[]").split(","))
+
+
+def test_ways_end_at_the_goal() -> None:
+    text = room("[9.07, 3.03]").replace("width: 10, height: 6", "width: 90, height: 90")
+    start, goal, corner = (1, 3), (9.07, 3.03), (5, 4.3)
+    least = math.dist(start, corner) + math.dist(corner, goal)
+    assert plan(text)["length"] == pytest.approx(least, abs=0.5)
+
+
 def test_several_goals() -> None:
     text = room().replace("goal: [9, 3]", "waypoints: [[1, 5], [9, 5], [9, 1]]")
     assert plan(text)["length"] == pytest.approx(2 + 8 + 4, abs=0.3)
@@ -91,6 +103,24 @@ def test_distances_are_those_of_geometry(tmp_path: Path) -> None:
     exact = [1.0, 0.8, 1.0, 0.5]
     assert space.at(points) == pytest.approx(exact, abs=2 * space.half)
     assert [space.exactly_at((float(x), float(y))) for x, y in points] == pytest.approx(exact, abs=1e-3)
+    env.end(ending_time=0.0)
+
+
+def test_a_way_over_cells_leads_from_start_to_goal(tmp_path: Path) -> None:
+    file = tmp_path / "room.yaml"
+    file.write_text(room(), encoding="utf-8")
+    env = make(str(file), headless=True, log_level="ERROR")
+    space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
+    start, goal = np.array([1.01, 3.02]), np.array([9.03, 2.99])
+    way = space.way(start, goal, 0.3, 0.1)
+    assert way is not None
+    assert way[0] == pytest.approx(start)
+    assert way[-1] == pytest.approx(goal)
+    assert space.at(way).min() > 0.25
+    by_the_wall = space.way(start, np.array([9.8, 3.0]), 0.3, 0.2)
+    assert by_the_wall is not None
+    assert 9.5 < by_the_wall[-1, 0] < 9.75
+    assert space.way(start, np.array([5.0, 2.0]), 0.3, 0.1) is None
     env.end(ending_time=0.0)
 
 
