@@ -15,7 +15,7 @@ import yaml
 from numpy.typing import NDArray
 
 from irsim.maps._picture import open_picture, upright
-from irsim.maps._site import MapProblem, MapSite, Raster
+from irsim.maps._site import MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
@@ -183,7 +183,7 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
         site.height if site.height is not None else height,
         site.origin if site.origin is not None else origin,
     )
-    size = max(1, round(wanted[0] / meta.resolution)), max(1, round(wanted[1] / meta.resolution))
+    size = cells_along(wanted[0], meta.resolution), cells_along(wanted[1], meta.resolution)
     site.check_cells(*size)
     plain = meta.origin[2] == 0.0 and size == values.shape and wanted[2] == origin
     if not (plain and abs(wanted[0] - width) <= _SQUARE * width and abs(wanted[1] - height) <= _SQUARE * height):

@@ -15,7 +15,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-__all__ = ["MapProblem", "MapSite", "Noise", "Raster"]
+__all__ = ["MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
+
+_COUNTABLE = 1e15
+
+
+def cells_along(length: float, size: float) -> int:
+    """Cells of about a size over a length [m], at least one; a number too large for any map where there is none."""
+    return max(1, round(min(length / size, _COUNTABLE)))
 
 
 class MapProblem(Exception):

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from irsim import _core as core
 from irsim.maps._options import MapOptions
-from irsim.maps._site import MapSite, Noise, Raster
+from irsim.maps._site import MapSite, Noise, Raster, cells_along
 from irsim.registry import MAPS
 from irsim.units import Fraction, Integer, Meters, Number
 
@@ -45,7 +45,7 @@ def cells_of(site: MapSite, resolution: float) -> tuple[int, int]:
         MapProblem: Too many.
     """
     width, height = site.width or 0.0, site.height or 0.0
-    nx, ny = max(1, round(width / resolution)), max(1, round(height / resolution))
+    nx, ny = cells_along(width, resolution), cells_along(height, resolution)
     site.check_cells(nx, ny, "resolution")
     return nx, ny
 

@@ -10,6 +10,7 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, warning
 from irsim.scenario.objects import ObjectRecord, Placement
 
+_COUNTABLE = 1e15
 _JAM = 0.5
 """Share of the ground from which random placement of discs mostly fails; it cannot pass 0.547."""
 
@@ -28,7 +29,7 @@ def _crowded(placement: Placement, records: list[ObjectRecord]) -> Iterator[Find
     if width < 0 or height < 0 or distance <= 0:
         return
     count, most = len(records), most_points(width, height, distance)
-    density = count * math.pi * (distance / 2) ** 2 / ((width + distance) * (height + distance))
+    density = count * math.pi / 4 / ((width / distance + 1) * (height / distance + 1))
     why = f"{count} objects keep {distance:g} m between their middles"
     room = f"middles may lie in {width:g} m × {height:g} m (range_low to range_high)"
     fix = f"fewer objects, smaller ones, a smaller 'min_distance' (now {placement.min_distance:g} m), or a larger range"
@@ -53,8 +54,8 @@ def _crowded(placement: Placement, records: list[ObjectRecord]) -> Iterator[Find
 
 def most_points(width: float, height: float, distance: float) -> int:
     """No rectangle holds more points at this mutual distance (Groemer 1960: a bound for convex regions)."""
-    area = 2 * width * height / (math.sqrt(3) * distance**2)
-    return math.floor(area + (width + height) / distance + 1 + 1e-9)
+    along, up = width / distance, height / distance
+    return math.floor(min(2 / math.sqrt(3) * along * up + along + up + 1 + 1e-9, _COUNTABLE))
 
 
 def _thickness(shape: Any) -> float:

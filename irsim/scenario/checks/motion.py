@@ -165,7 +165,8 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     options: Any = record.behavior if record.group_behavior is None else None
     if getattr(options, "name", "") != "dash" or drive.name != "acker" or drive.mode != "steer" or drive.noise:
         return
-    if record.static or record.wander or not record.goals or len(record.vel_max) < 2:
+    pairs = min(len(record.vel_max), len(record.vel_min), len(record.acce))
+    if record.static or record.wander or not record.goals or pairs < 2:
         return
     wheelbase, psi = record.wheelbase or 1.0, drive.psi_max or math.inf
     low, high = max(record.vel_min[1], -abs(record.vel_max[1]), -psi), min(record.vel_max[1], psi)
@@ -176,9 +177,9 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if math.dist((x, y), goal[:2]) > 2 * radius:
         return
     least, step = math.inf, speed * context.scenario.world.step_time
-    steps = math.ceil(_ROUNDS * 2 * math.pi * radius / step)
-    if steps > _MOST_STEPS:
+    if _ROUNDS * 2 * math.pi * radius > _MOST_STEPS * step:
         return
+    steps = math.ceil(_ROUNDS * 2 * math.pi * radius / step)
     theta, steering = record.state[2], record.state[3] if len(record.state) > 3 else 0.0
     for _ in range(steps):
         least = min(least, math.dist((x, y), goal[:2]))
