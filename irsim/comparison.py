@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import difflib
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -100,7 +101,11 @@ def _keys(a: Any, b: Any, path: Path) -> Iterator[KeyChange]:
                 yield from _keys(a[key], b[key], (*path, str(key)))
         return
     if isinstance(a, list) and isinstance(b, list) and path[-1:] and path[-1] in _LISTS:
-        for i, j in _aligned(a, b):
+        pairs = _aligned(a, b)
+        for old, new in _moved(pairs):
+            was, now = (format_path((*path, place)) for place in (old, new))
+            yield KeyChange(change="moved", path=now, before=was, after=now)
+        for i, j in pairs:
             if j is None:
                 yield _change("removed", (*path, i or 0), a[i or 0], None)
             elif i is None:
@@ -172,6 +177,24 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
     return sorted([*pairs, *rest], key=lambda pair: (pair[1] if pair[1] is not None else pair[0] or 0, pair[1] is None))
 
 
+def _moved(pairs: Sequence[tuple[int | None, int | None]]) -> list[tuple[int, int]]:
+    """Of pairs of places, sorted by the second, as few as possible without which the first are in order, too."""
+    both = [(i, j) for i, j in pairs if i is not None and j is not None]
+    ends: list[int] = []  # the least end of a run of each length
+    length = []
+    for i, _ in both:
+        at = bisect.bisect_left(ends, i)
+        ends[at : at + 1] = [i]
+        length.append(at)
+    wanted, moved, bound = len(ends) - 1, list[tuple[int, int]](), float("inf")
+    for (i, j), at in zip(reversed(both), reversed(length), strict=True):
+        if at == wanted and i < bound:
+            wanted, bound = wanted - 1, i
+        else:
+            moved.append((i, j))
+    return moved[::-1]
+
+
 def _name_of(item: Any) -> str | None:
     name = item.get("name") if isinstance(item, Mapping) else None
     return name if isinstance(name, str) else None
@@ -217,7 +240,19 @@ def _worlds(
         item = new["objects"][j]
         direct = _alone(item, "added", new["objects"], keys)
         changes.append(WorldChange(object=item["name"], change="added", after=_brief(item), direct=direct))
-    for i, j in sorted(twins, key=lambda pair: pair[1]):
+    twins.sort(key=lambda pair: pair[1])
+    changes += [
+        WorldChange(
+            object=new["objects"][j]["name"],
+            change="changed",
+            key="number",
+            before=i,
+            after=j,
+            direct=any(key.change == "moved" for key in keys),
+        )
+        for i, j in _moved(twins)
+    ]
+    for i, j in twins:
         name, entry = new["objects"][j]["name"], _listed(new["objects"][j]["entry"])
         changes += [
             WorldChange(
@@ -234,11 +269,11 @@ def _direct(entry: str, fact: str, now: Any, keys: Sequence[KeyChange]) -> bool:
     for written in _WRITTEN.get(root, (root,)):
         place = f"{entry}.{written}{fact[len(root) :]}"
         for key in keys:
-            if key.change != "removed" and key.path == place:
+            if key.change not in ("removed", "moved") and key.path == place:
                 return _says(key.after, now)
             if key.path.startswith((f"{place}.", f"{place}[")):  # a part of what is told as a whole
                 return True
-            if key.change != "removed" and place.startswith((f"{key.path}.", f"{key.path}[")):
+            if key.change not in ("removed", "moved") and place.startswith((f"{key.path}.", f"{key.path}[")):
                 return True
     return False
 
@@ -388,12 +423,22 @@ def _comments(text: str) -> list[str]:
 
 
 def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why: str, comments: str) -> str:
-    if not keys:
-        text = "no key differs"
+    moved = [change for change in keys if change.change == "moved"]
+    written = [change for change in keys if change.change != "moved"]
+    if not written:
+        text = "no key differs but for the order" if moved else "no key differs"
     else:
-        named = ", ".join(change.path for change in keys[:_NAMED])
-        more = f" and {len(keys) - _NAMED} more" if len(keys) > _NAMED else ""
-        text = f"{len(keys)} key{'s' * (len(keys) != 1)} differ{'s' * (len(keys) == 1)}: {named}{more}"
+        named = ", ".join(change.path for change in written[:_NAMED])
+        more = f" and {len(written) - _NAMED} more" if len(written) > _NAMED else ""
+        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}{more}"
+    if moved:
+        told = ", ".join(f"{change.before} is now {change.after}" for change in moved[:_NAMED])
+        text += f"{'; the order differs' * bool(written)}: {told}"
+        text += f" and {len(moved) - _NAMED} more" if len(moved) > _NAMED else ""
+        if any(change.path.startswith(("robot[", "obstacle[")) and change.path.count("[") == 1 for change in moved):
+            text += ", which changes ids and labels"
+        if any(change.path.startswith("robot[") and change.path.count("[") == 1 for change in moved):
+            text += " and which robot env.step(action) drives"
     if world is None:
         text += f"; the worlds are not compared: {why}"
     else:

@@ -10,27 +10,21 @@ from numpy.typing import NDArray
 
 from irsim.env import Env
 from irsim.episode import horizon_of
-from irsim.metrics import clearance
 from irsim.observers.events import Event, collision_of, passable_names
 from irsim.observers.trace import Trace, record
 from irsim.results import DryRun, EventRecord, Left, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 from irsim.scenario.randomness import random_parts
+from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed
 from irsim.text import seconds
-from irsim.verdict import others_arrived
+from irsim.verdict import has_one_end, others_arrived
 
 __all__ = ["BUDGET", "dry_run"]
 
 BUDGET = 300_000
 """Steps times objects of a look; as many rows are in memory for a moment."""
 _MOST = 10
-_WINDOW = 5.0
-"""A robot that has moved by less than ``_LITTLE`` for so long gets nowhere [s]."""
-_LITTLE = 0.1
-"""[m]"""
-_CLOSE = 0.5
-"""What is nearer than this is in the way of a robot that stands [m]."""
 
 Flags = NDArray[np.bool_]
 
@@ -59,28 +53,30 @@ def dry_run(
         seed = scenario.world.seed if scenario.world.seed is not None else 0
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     try:
-        horizon, _ = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
+        horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
         affordable = max(1, budget // max(1, len(scenario.objects)))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
         trace = record(env.simulation, wanted, until_done=True)
-        return _told(env, scenario, trace, seed, horizon)
+        return _told(env, scenario, trace, seed, None if source == "limits" else horizon)
     finally:
         env.end(ending_time=0.0)
 
 
-def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int) -> DryRun:
+def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int | None) -> DryRun:
     steps = len(trace) - 1
     events, passable = env.events, passable_names(env.simulation)
     robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
     names = {scenario.objects[index].name for index in robots}
     hits = [e for e in events if any(collision_of(e, name, passable) for name in names)]
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
-    stuck = _stuck(env, trace, robots, events)
+    parked = [record.name for record in scenario.robots() if scenario.parked(record)]
+    held = jammed(env.simulation, events)
+    stuck, count = _stuck(env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held)
     left = _left(scenario, trace)
     ended: Literal["done", "horizon", "budget"] = "budget"
     if bool(env.simulation.done()[0]):
         ended = "done"
-    elif steps >= horizon:
+    elif horizon is not None and steps >= horizon:
         ended = "horizon"
     return DryRun(
         seed=seed,
@@ -88,36 +84,54 @@ def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon
         steps=steps,
         sim_time=float(trace.time[-1]),
         ended=ended,
-        summary=_summary(trace, len(robots), arrived, hits, stuck, left, others_arrived(scenario, events), ended),
+        summary="; ".join(
+            [
+                _begin(trace, len(robots), arrived, parked, ended),
+                *_troubles(hits, stuck, count),
+                *filter(None, (others_arrived(scenario, events), jam_told(env.simulation, held))),
+                *_gone(left),
+            ]
+        ),
         arrived=arrived,
         collisions=[EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MOST]],
         stuck=stuck,
-        left=left,
+        left=left[:_MOST],
+        parked=parked,
+        jammed=list(held),
     )
 
 
-def _stuck(env: Env, trace: Trace, robots: Sequence[int], events: Sequence[Event]) -> list[Stuck]:
-    """Robots under way that have hardly moved for some seconds at the end of the trace."""
-    window = max(1, round(_WINDOW / trace.step_time))
-    if len(trace) <= window:
-        return []
-    found = []
-    records = env.scenario.objects
+def _stuck(
+    env: Env, trace: Trace, robots: Sequence[int], events: Sequence[Event], held: dict[str, Event]
+) -> tuple[list[Stuck], int]:
+    """Robots under way that get nowhere at the end of the trace, the first ones, and how many there are."""
+    found, count = list[Stuck](), 0
+    records, views = env.scenario.objects, {view.row: view for view in env.robot_list}
     for index in robots:
         if trace.arrived[-1, index]:
             continue
-        away = np.linalg.norm(trace.pose[:, index, :2] - trace.pose[-1, index, :2], axis=1)
-        far = np.flatnonzero(away >= _LITTLE)
-        since = int(far[-1]) + 1 if far.size else 0
-        if len(trace) - 1 - since < window:
-            continue
-        x, y = (float(value) for value in trace.pose[-1, index, :2])
-        why = _why(records[index], trace, index, events)
-        why = why or _blocked(env, trace, index) or "its behavior keeps it where it is"
-        found.append(Stuck(name=records[index].name, since=float(trace.time[since]), x=x, y=y, why=why))
-        if len(found) >= _MOST:
-            break
-    return found
+        record, place = records[index], trace.pose[-1, index]
+        since = gets_nowhere_since(trace.pose[:, index, :2], trace.step_time, views[index].max_speed)
+        doing: Literal["stands", "circles its goal"] = "stands"
+        why = None
+        if since is None:
+            begin = _present_goal(trace, index)
+            circle = circling(trace.pose[begin:, index], trace.goal[-1, index, :2]) if has_one_end(record) else None
+            if circle is None:
+                continue
+            since, doing, why = begin + circle.since, "circles its goal", circle.told
+        count += 1
+        if len(found) < _MOST:
+            why = why or _why(record, trace, index, events) or _blocked(env, trace, index, held)
+            time, (x, y) = float(trace.time[since]), (float(value) for value in place[:2])
+            found.append(Stuck(name=record.name, doing=doing, since=time, x=x, y=y, why=why))
+    return found, count
+
+
+def _present_goal(trace: Trace, index: int) -> int:
+    """The row since which an object has the goal that it has at the end."""
+    others = np.flatnonzero((trace.goal[:, index, :2] != trace.goal[-1, index, :2]).any(axis=1))
+    return int(others[-1]) + 1 if others.size and others[-1] + 1 < len(trace) else 0
 
 
 def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]) -> str | None:
@@ -138,16 +152,12 @@ def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]
     return None
 
 
-def _blocked(env: Env, trace: Trace, index: int) -> str | None:
-    """What stands close to it at the end."""
-    found = clearance(trace.pose[-1:], env.simulation)
-    row = int(np.flatnonzero(found.robots == index)[0])
-    distance, partner = found.distance[0, row], found.partner[0, row]
-    near = [k for k in np.argsort(np.nan_to_num(distance, nan=np.inf)) if distance[k] < _CLOSE]
-    if not near:
-        return None
-    k = int(near[0])
-    return f"'{found.names[int(partner[k])]}' is {distance[k]:.2f} m from it, in the way of its behavior"
+def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
+    """What stands close to it at the end, or that there is no telling."""
+    near = in_the_way(env.simulation, index, held, trace.pose[-1])
+    if near is None:
+        return "its behavior keeps it where it is"
+    return near if "since a collision" in near else f"{near}, in the way of its behavior"
 
 
 def _left(scenario: ResolvedScenario, trace: Trace) -> list[Left]:
@@ -166,35 +176,35 @@ def _left(scenario: ResolvedScenario, trace: Trace) -> list[Left]:
         if out.size and inside[0, column]:
             px, py = (float(value) for value in trace.pose[out[0], index, :2])
             found.append(Left(name=scenario.objects[index].name, time=float(trace.time[out[0]]), x=px, y=py))
-    return sorted(found, key=lambda item: item.time)[:_MOST]
+    return sorted(found, key=lambda item: item.time)
 
 
-def _summary(
-    trace: Trace,
-    robots: int,
-    arrived: Sequence[str],
-    hits: Sequence[Event],
-    stuck: Sequence[Stuck],
-    left: Sequence[Left],
-    others: str | None,
-    ended: str,
-) -> str:
-    more = ", more was not tried" if ended == "budget" else ""
-    parts = [
-        f"in {seconds(trace.time[-1])}{more}: "
-        + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots")
-    ]
+def _begin(trace: Trace, robots: int, arrived: Sequence[str], parked: Sequence[str], ended: str) -> str:
+    """How far it went and who arrived."""
+    time = seconds(trace.time[-1])
+    begin = f"in the first {time} only: " if ended == "budget" else f"in {time}: "
+    still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked (cannot move, no goal written)"
+    return begin + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots") + (still if parked else "")
+
+
+def _troubles(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list[str]:
+    """Who collided and who gets nowhere."""
+    parts = []
     if hits:
         first = hits[0]
-        count = f"{len(hits)} collisions, the first of " if len(hits) > 1 else "collision of "
+        several = f"{len(hits)} collisions, the first of " if len(hits) > 1 else "collision of "
         place = f"at {seconds(first.time)} near ({first.x:.2f}, {first.y:.2f})"
-        parts.append(f"{count}'{first.object}' with '{first.partner}' {place}")
+        parts.append(f"{several}'{first.object}' with '{first.partner}' {place}")
     if stuck:
-        parts.append(f"'{stuck[0].name}' stands since {seconds(stuck[0].since)}: {stuck[0].why}")
-    if len(stuck) > 1:
-        parts.append(f"{len(stuck) - 1} more stand still")
-    if others:
-        parts.append(others)
-    if left:
-        parts.append(f"'{left[0].name}' left the world at {seconds(left[0].time)}")
-    return "; ".join(parts)
+        parts.append(f"'{stuck[0].name}' {stuck[0].doing} since {seconds(stuck[0].since)}: {stuck[0].why}")
+    if count > 1:
+        parts.append(f"{count - 1} more get{'s' * (count == 2)} nowhere")
+    return parts
+
+
+def _gone(left: Sequence[Left]) -> list[str]:
+    """Who left the world."""
+    if not left:
+        return []
+    more = f" and {len(left) - 1} more after it" if len(left) > 1 else ""
+    return [f"'{left[0].name}' left the world at {seconds(left[0].time)}{more}"]

@@ -120,7 +120,8 @@ class Fix(Result):
 class KeyChange(Result):
     """A key that differs between two files."""
 
-    change: Literal["added", "removed", "changed"]
+    change: Literal["added", "removed", "changed", "moved"]
+    """``moved``: an entry that stands before or after others now; ``before`` and ``after`` are its places."""
     path: str
     """Where it is now; where it was if it was removed."""
     before: Any = None
@@ -172,6 +173,7 @@ class Stuck(Result):
     """A robot that gets nowhere."""
 
     name: str
+    doing: Literal["stands", "circles its goal"] = "stands"
     since: float
     """When it began [s]."""
     x: float
@@ -206,7 +208,12 @@ class DryRun(Result):
     collisions: list[EventRecord]
     """The first ones, in order."""
     stuck: list[Stuck]
+    """The first ones; ``summary`` has how many there are."""
     left: list[Left]
+    parked: list[str] = Field(default_factory=list)
+    """Robots that cannot move and have no goal of their own."""
+    jammed: list[str] = Field(default_factory=list)
+    """Moving obstacles that stand at the end since they hit another obstacle."""
 
 
 class ValidationReport(Result):
@@ -290,6 +297,10 @@ class RunResult(Result):
     """Where the horizon comes from; ``limits``: cut to the most steps of one run."""
     robots: list[RobotResult]
     """One entry per robot."""
+    parked: list[str] = Field(default_factory=list)
+    """Robots that cannot move and have no goal of their own; they never arrive."""
+    jammed: list[str] = Field(default_factory=list)
+    """Moving obstacles that stand at the end since they hit another obstacle."""
     events: list[EventRecord]
     """The first events in order; of the arrivals of an object at the same goal only the first."""
     event_count: int

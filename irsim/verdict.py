@@ -15,6 +15,7 @@ from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
 from irsim.scenario.randomness import random_parts
+from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, moves_by_itself
 from irsim.text import clean, seconds
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
     from irsim.views import ObjectView
 
-__all__ = ["command", "others_arrived", "region_words", "run_result", "strip_words"]
+__all__ = ["command", "has_one_end", "others_arrived", "region_words", "run_result", "strip_words"]
 
 _MAX_EVENTS = 100
 _NAMED = 3
@@ -32,7 +33,7 @@ _LONGEST_NAME = 40
 _MOST_POSES = 2_000_000
 """Poses of all objects in all steps, up to which the least distances of robots are told."""
 _STANDING = 1e-3
-"""Slower than this is standing still [m/s]."""
+"""Slower than this is standing still [m/s], unless it is a tenth of its top speed."""
 _NO_FILE = "scenario.yaml"
 _LIMITS: dict[HorizonSource, str] = {
     "argument": "the steps asked for",
@@ -72,7 +73,9 @@ def run_result(
     events = env.events
     hits, counts = _collisions(env, events)
     told = _without_repeats(env.scenario, events)
-    robots = _robots(env, events, counts)
+    held = jammed(env.simulation, events)
+    parked = [record.name for record in env.scenario.robots() if env.scenario.parked(record)]
+    robots = _robots(env, events, counts, parked)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -87,13 +90,15 @@ def run_result(
         random=random_parts(env.scenario),
         behavior=behavior,
         outcome=outcome,
-        summary=_summary(env, robots, hits, behavior),
-        reason=None if outcome == "success" else _reason(env, robots, hits, events[-_MAX_EVENTS:], source),
+        summary=_summary(env, robots, hits, behavior, parked, held),
+        reason=None if outcome == "success" else _reason(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
         time_limit=horizon * env.step_time,
         time_limit_from=source,
         robots=robots,
+        parked=parked,
+        jammed=list(held),
         events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in told[:_MAX_EVENTS]],
         event_count=len(told),
         warnings=warnings,
@@ -139,7 +144,7 @@ def strip_words(moments: int | None) -> list[str]:
     return [] if moments is None else ["--strip", str(moments)]
 
 
-def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotResult]:
+def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequence[str]) -> list[RobotResult]:
     outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")
     robots = []
@@ -147,7 +152,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str]) -> list[RobotRe
     for view in env.robot_list:
         approach = nearest.get(view.row)
         ended = outcomes[view.name]
-        goal = view.goal
+        goal = None if view.name in parked else view.goal
         arrival = arrivals.get(view.name)
         robots.append(
             RobotResult(
@@ -208,29 +213,44 @@ def _path_length(env: Env, row: int) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _summary(env: Env, robots: list[RobotResult], hits: Sequence[Event], behavior: str | None) -> str:
-    told = [_arrivals(robots, env.sim_time)]
+def _summary(
+    env: Env,
+    robots: list[RobotResult],
+    hits: Sequence[Event],
+    behavior: str | None,
+    parked: Sequence[str],
+    held: dict[str, Event],
+) -> str:
+    told = [_arrivals(robots, env.sim_time, parked)]
     if hit := _first_hit({robot.name for robot in robots}, hits):
         told.append(hit)
     if gone := _gone_again(env, robots):
         told.append(gone)
     if others := others_arrived(env.scenario, env.events):
         told.append(others)
+    if jam := jam_told(env.simulation, held):
+        told.append(jam)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
     return changed + "; ".join(told)
 
 
-def _arrivals(robots: list[RobotResult], sim_time: float) -> str:
-    """How many robots arrived, and by when."""
+def _arrivals(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:
+    """How many robots arrived, and by when; with or without a collision before."""
     if not robots:
         return f"no robots; {seconds(sim_time)} simulated"
-    arrived = [robot.time_to_goal or 0.0 for robot in robots if robot.outcome == "success"]
+    arrived = [robot.time_to_goal for robot in robots if robot.time_to_goal is not None]
+    touched = sum(robot.outcome == "collision" for robot in robots if robot.time_to_goal is not None)
     if len(robots) > 1:
-        count = f"{len(arrived)} of {len(robots)} robots arrived"
         everybody = len(arrived) == len(robots)
-        return count + (f", the last at {seconds(max(arrived))}" if everybody else f" within {seconds(sim_time)}")
+        when = f", the last at {seconds(max(arrived))}" if everybody else f" within {seconds(sim_time)}"
+        who = "all" if touched == len(arrived) else str(touched)
+        after = f", {who} of them after a collision" if touched else ""
+        still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked" if parked else ""
+        return f"{len(arrived)} of {len(robots)} robots arrived{when}{after}{still}"
     if arrived:
-        return f"the robot arrived at {seconds(arrived[0])}"
+        return f"the robot arrived at {seconds(arrived[0])}{', after a collision' * touched}"
+    if parked and robots[0].outcome == "timeout":
+        return f"the robot is parked; {seconds(sim_time)} simulated"
     if robots[0].outcome == "collision":
         return "the robot collided"  # when is told by what it hit
     return f"the robot did not arrive within {seconds(sim_time)}"
@@ -242,7 +262,7 @@ def _gone_again(env: Env, robots: list[RobotResult]) -> str | None:
     gone = [
         _quoted(robot.name)
         for robot in robots
-        if robot.outcome == "success" and not views[robot.name].arrive and _has_one_end(views[robot.name].record)
+        if robot.outcome == "success" and not views[robot.name].arrive and has_one_end(views[robot.name].record)
     ]
     if len(gone) < 2:
         return f"{gone[0]} left its goal again" if gone else None
@@ -250,7 +270,7 @@ def _gone_again(env: Env, robots: list[RobotResult]) -> str | None:
     return f"{', '.join(gone[:_NAMED])}{more} left their goals again"
 
 
-def _has_one_end(record: ObjectRecord) -> bool:
+def has_one_end(record: ObjectRecord) -> bool:
     """Whether it has a last goal that stays."""
     return not (record.wander or record.loop)
 
@@ -263,10 +283,7 @@ def others_arrived(scenario: ResolvedScenario, events: Sequence[Event]) -> str |
         events: What happened.
     """
     walking = {
-        record.name
-        for record in scenario.objects
-        if record.role == "obstacle" and not record.static and record.goals and _has_one_end(record)
-        if record.behavior is not None or record.group_behavior is not None
+        record.name for record in scenario.objects if moves_by_itself(record) and record.goals and has_one_end(record)
     }
     if not walking:
         return None
@@ -276,7 +293,7 @@ def others_arrived(scenario: ResolvedScenario, events: Sequence[Event]) -> str |
 
 def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> list[Event]:
     """Of the arrivals of an object at a goal that stays only the first: swinging about it gives many."""
-    staying = {record.name for record in scenario.objects if _has_one_end(record)}
+    staying = {record.name for record in scenario.objects if has_one_end(record)}
     seen, kept = set[str](), []
     for event in events:
         if event.kind == "arrival" and event.object in staying:
@@ -288,7 +305,13 @@ def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> lis
 
 
 def _reason(
-    env: Env, robots: list[RobotResult], hits: Sequence[Event], last: Sequence[Event], source: HorizonSource
+    env: Env,
+    robots: list[RobotResult],
+    hits: Sequence[Event],
+    events: Sequence[Event],
+    source: HorizonSource,
+    parked: Sequence[str],
+    held: dict[str, Event],
 ) -> str:
     """Why it is no success: the first collision, and who was still on the way."""
     if not robots:
@@ -299,11 +322,19 @@ def _reason(
         others = len(collided) - 1
         reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
     views = {view.name: view for view in env.robot_list}
-    late = [robot for robot in robots if robot.outcome == "timeout"]
+    late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in parked]
     if late:
-        named = [f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot, last)}" for robot in late[:_NAMED]]
+        named = [
+            f"{_quoted(robot.name)} {_state_of(env, views[robot.name], robot, events, held)}" for robot in late[:_NAMED]
+        ]
         more = f" and {len(late) - _NAMED} robots more" if len(late) > _NAMED else ""
         reasons.append(f"at {seconds(env.sim_time)} ({_LIMITS[source]}) {', '.join(named)}{more}")
+    if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in parked]:
+        who = ", ".join(_quoted(robot.name) for robot in still[:_NAMED])
+        who += f" and {len(still) - _NAMED} more" if len(still) > _NAMED else ""
+        reasons.append(f"{who} {'is' if len(still) == 1 else 'are'} parked (cannot move, no goal written)")
+        if len(reasons) == 1:
+            reasons.append(f"the run ended at {seconds(env.sim_time)} ({_LIMITS[source]})")
     return "; ".join(reasons)
 
 
@@ -319,22 +350,44 @@ def _quoted(name: object) -> str:
     return f"'{clean(name, _LONGEST_NAME)}'"
 
 
-def _state_of(env: Env, view: ObjectView, robot: RobotResult, last: Sequence[Event]) -> str:
+def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Event], held: dict[str, Event]) -> str:
     """What a robot is doing that has not arrived: ``stands still 3.21 m from its goal``."""
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
+    standing = min(_STANDING, view.max_speed / 10 or _STANDING)
+    last = events[-_MAX_EVENTS:]
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
-    if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < _STANDING:
+    if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
-    if speed >= _STANDING:
-        return f"still moved at {speed:.2g} m/s, {place}"
+    if speed >= standing:
+        if circle := _circle(env, view, events):
+            return f"circles its goal: {circle}"
+        if gets_nowhere_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
+            return f"still moved at {speed:.2g} m/s, {place}"
+        return f"hardly moves {place}{_held_up(env, view, held)}"
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:
         return f"has no behavior, so it stands still {place}"
-    return f"stands still {place}"
+    return f"stands still {place}{_held_up(env, view, held)}"
+
+
+def _held_up(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
+    """That someone who stands since a collision is in the way of a robot; empty if nobody is."""
+    near = in_the_way(env.simulation, view.row, held) if held else None
+    return f", and {near}" if near is not None and "since a collision" in near else ""
+
+
+def _circle(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
+    """Why a robot circles its goal, if it does."""
+    if view.goal is None or not has_one_end(view.record):
+        return None
+    turns = (e.step for e in reversed(events) if e.kind == "waypoint" and e.object == view.name)
+    track = env.simulation.state.trajectory(view.row)[next(turns, 0) :, :3]
+    circle = circling(track, view.goal[:2, 0])
+    return None if circle is None else circle.told
 
 
 def _inside(env: Env, robot: RobotResult) -> bool:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["diff"]
 
-_SIGNS = {"added": ("+", "green"), "removed": ("-", "red"), "changed": ("~", "yellow")}
+_SIGNS = {"added": ("+", "green"), "removed": ("-", "red"), "changed": ("~", "yellow"), "moved": ("~", "yellow")}
 _LONGEST = 100
 
 
@@ -68,7 +68,8 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
         if kind == "changed":
             was, now = pair(was, now, _LONGEST)
         was, now = clean(was, _LONGEST), clean(now, _LONGEST)
-        change = {"added": now, "removed": was, "changed": f"{was} -> {now}"}[kind]
+        moved = f"{was} -> {now}"
+        change = {"added": now, "removed": was, "changed": moved, "moved": moved}[kind]
         out.print(Text.assemble((f"{sign} {clean(where, 120)}", color), f"  {change}"), soft_wrap=True)
 
     if found.keys:

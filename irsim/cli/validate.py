@@ -122,7 +122,9 @@ def show_dry_run(found: DryRun, out: Console) -> None:
     lines = [
         f"'{e.object}' with '{e.partner}' at {seconds(e.time)}, ({e.x:.2f}, {e.y:.2f})" for e in found.collisions[1:]
     ]
-    lines += [f"'{s.name}' stands since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]]
+    lines += [
+        f"'{s.name}' {s.doing} since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]
+    ]
     lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in found.left[1:]]
     out.print(Text.assemble(("tried", "bold"), f"{seed}: {clean(found.summary, 600)}"), soft_wrap=True)
     for line in lines:

@@ -44,10 +44,13 @@ def make_legible(scene: Scene, simulation: Simulation, world: int) -> None:
 
     Paths become thin lines, arrows are never tiny and have an edge, what moves without a heading gets one towards
     where it moves or will, obstacles that move show their goals faintly, beams are paler, and sensors that see less
-    than a full turn show between which directions. Labels stand on what they name; where there are too many to be
-    read, some are left out.
+    than a full turn show between which directions. What cannot move and has no goal written shows none. Labels stand
+    on what they name; where there are too many to be read, some are left out.
     """
     objects = {view.id: view for view in views(simulation, world)}
+    parked = {view.id for view in objects.values() if simulation.scenario.parked(view.record)}
+    scene.marks = [mark for mark in scene.marks if mark.part != "goal" or mark.object not in parked]
+    scene.labels = [label for label in scene.labels if label.part != "goal" or label.object not in parked]
     scene.marks = [_legible(mark, objects[mark.object]) for mark in scene.marks if _is_shown(mark, objects)]
     scene.marks += _directions(scene, objects)
     scene.marks += _sectors(scene, objects)

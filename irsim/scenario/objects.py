@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -104,3 +104,21 @@ class ResolvedScenario:
     def robots(self) -> Sequence[ObjectRecord]:
         """The robots, in id order."""
         return [o for o in self.objects if o.role == "robot"]
+
+    def parked(self, record: ObjectRecord) -> bool:
+        """Whether an object cannot move and no goal is written for it: the one that it has is only the default."""
+        if record.kinematics is not None and not record.static:
+            return False
+        entry: Any = self.document
+        for key in record.path:
+            if key not in _keys(entry):
+                return False
+            entry = entry[key]
+        return isinstance(entry, Mapping) and all(entry.get(key) is None for key in _GIVE_GOALS)
+
+
+_GIVE_GOALS = ("goal", "waypoints", "distribution")
+
+
+def _keys(value: Any) -> Any:
+    return value if isinstance(value, Mapping) else range(len(value) if isinstance(value, list) else 0)

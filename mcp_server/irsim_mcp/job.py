@@ -266,7 +266,7 @@ def _described(error: Exception) -> dict[str, Any]:
     return {
         "code": "internal-error",
         "what": f"{type(error).__name__}: {error} at {place}",
-        "fix": "please report it with the scenario; another way to write the scenario may avoid it",
+        "fix": "none in the scenario: this is a fault of the simulator; please report it with the scenario",
     }
 
 

@@ -167,4 +167,6 @@ def _as_failure(error: dict[str, Any], source: str) -> Exception:
             where=argument,
             fix="validate_scenario lists every problem with its fix",
         )
-    return failure(error["code"], error["what"], where=error.get("where") or argument, fix=error.get("fix"))
+    ours = error["code"] == "internal-error"  # nothing that was given is to blame
+    where = error.get("where") or (None if ours else argument)
+    return failure(error["code"], error["what"], where=where, fix=error.get("fix"))

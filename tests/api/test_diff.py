@@ -146,3 +146,21 @@ def test_validation_can_say_what_changed(tmp_path: Path) -> None:
 def test_templates_equal_themselves(name: str) -> None:
     text = templates.load(name).text
     assert diff(text, text).same
+
+
+def test_a_change_of_order_is_told() -> None:
+    entry = "  - {name: %s, kinematics: {name: diff}, state: [%d, 1, 0], goal: [%d, 5], behavior: {name: dash}}\n"
+    lines = [entry % (name, x, x) for name, x in (("a", 1), ("b", 3), ("c", 5))]
+    before, swapped = ("robot:\n" + "".join(lines[i] for i in order) for order in ((0, 1, 2), (1, 0, 2)))
+    found = irsim.diff(before_text=before, after_text=swapped)
+    assert not found.same
+    assert [(key.change, key.before, key.after) for key in found.keys] == [("moved", "robot[1]", "robot[0]")]
+    assert found.summary.startswith("no key differs but for the order: robot[1] is now robot[0], which changes ids")
+    assert found.summary.endswith("which robot env.step(action) drives")
+    without = "robot:\n" + "".join(lines[1:])
+    assert [key.change for key in irsim.diff(before_text=before, after_text=without).keys] == ["removed"]
+    edited = swapped.replace("[1, 5]", "[2, 5]")
+    told = irsim.diff(before_text=before, after_text=edited)
+    assert sorted(key.change for key in told.keys) == ["changed", "moved"]
+    assert told.summary.startswith("1 key differs: robot[1].goal")
+    assert "; the order differs: robot[1] is now robot[0]" in told.summary

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import irsim
+from irsim.scenario.limits import Limits
 
 ROBOT = """\
   - name: rover
@@ -100,3 +101,111 @@ def test_a_seed_without_room_is_a_finding() -> None:
     assert report.dry_run is None
     assert not report.valid
     assert report.findings[0].code == "placement-crowded"
+
+
+PEOPLE = """\
+world: {width: 12, height: 8, time_limit: 20}
+robot:
+  - {name: r, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 7.4], goal: [11, 7.4],
+     behavior: {name: dash}}
+obstacle:
+  - {name: [east, west], number: 2, distribution: {name: manual}, kinematics: {name: omni},
+     shape: {name: circle, radius: 0.3}, state: [[1, 3, 0], [11, 3, 0]], goal: [[11, 3, 0], [1, 3, 0]],
+     behavior: {name: dash}}
+"""
+
+
+def test_people_who_stand_since_they_met_are_counted_though_all_robots_arrived() -> None:
+    report = irsim.validate(text=PEOPLE, simulate=True)
+    assert report.dry_run is not None
+    told = "2 of 2 moving obstacles stand since a collision ('east' hit 'west' at "
+    assert report.dry_run.jammed == ["east", "west"]
+    assert told in report.dry_run.summary
+    result = irsim.run(text=PEOPLE)
+    assert (result.outcome, result.jammed) == ("success", ["east", "west"])
+    assert told in result.summary
+    passing = irsim.run(text=PEOPLE.replace("20}", "20, collision_mode: unobstructed_obstacles}", 1))
+    assert passing.jammed == []
+    assert "since a collision" not in passing.summary
+
+
+def test_a_robot_that_stands_before_them_is_told_that_they_stand_since_a_collision() -> None:
+    blocked = """\
+world: {width: 12, height: 8, time_limit: 30}
+robot:
+  - {name: r, kinematics: {name: omni}, shape: {name: circle, radius: 0.2}, state: [6, 7], goal: [6, 1],
+     behavior: {name: orca}}
+obstacle:
+  - {name: [a, b], number: 2, distribution: {name: manual}, kinematics: {name: omni},
+     shape: {name: rectangle, length: 6, width: 0.5}, state: [[2.4, 4, 0], [9.6, 4, 0]], goal: [[9, 4, 0], [1, 4, 0]],
+     behavior: {name: dash}}
+"""
+    report = irsim.validate(text=blocked, simulate=True)
+    assert report.dry_run is not None
+    assert "m from it and stands since a collision at " in report.dry_run.stuck[0].why
+    assert "m from it and stands since a collision at " in str(irsim.run(text=blocked).reason)
+
+
+def test_more_robots_that_stand_than_are_listed_are_counted() -> None:
+    robot = (
+        "  - {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.2}}, state: [{x}, 2, 0], goal: [{x}, 8],"
+        " behavior: {{name: dash}}, vel_max: [0, 0], vel_min: [0, 0]}}\n"
+    )
+    many = "world: {width: 40, height: 10, time_limit: 10}\nrobot:\n"
+    many += "".join(robot.format(x=x) for x in range(1, 26))
+    report = irsim.validate(text=many, simulate=True)
+    assert report.dry_run is not None, report.findings
+    assert len(report.dry_run.stuck) == 10
+    assert "; 24 more get nowhere" in report.dry_run.summary
+
+
+def test_a_slow_robot_does_not_stand_and_a_cut_look_says_so() -> None:
+    text = """\
+world: {width: 10, height: 8, time_limit: 60}
+robot:
+  - {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [1, 4, 0], goal: [9, 4],
+     vel_max: [0.001, 1], behavior: {name: dash}}
+"""
+    report = irsim.validate(text=text, simulate=True, limits=Limits(steps=100))
+    found = report.dry_run
+    assert found is not None
+    assert (found.ended, found.stuck) == ("budget", [])
+    assert found.summary.startswith("in the first 10 s only: ")
+    assert "still moved at 0.001 m/s" in str(irsim.run(text=text, steps=50).reason)
+
+
+def test_a_robot_that_circles_its_goal_is_told_so() -> None:
+    car = """\
+world: {width: 12, height: 12, time_limit: 60}
+robot:
+  - {name: car, kinematics: {name: acker}, shape: {name: rectangle, length: 1, width: 0.5, wheelbase: 0.8},
+     state: [6, 6, 0, 0], goal: [6, 7.2, 0], goal_threshold: 0.1, vel_min: [0, -0.5], vel_max: [1, 0.5],
+     behavior: {name: dash}}
+"""
+    report = irsim.validate(text=car, simulate=True)
+    assert report.dry_run is not None
+    [found] = report.dry_run.stuck
+    assert found.doing == "circles its goal"
+    assert "raise goal_threshold" in found.why
+    assert "'car' circles its goal since" in report.dry_run.summary
+    result = irsim.run(text=car)
+    assert "'car' circles its goal: radius 1.5 m, never nearer than 1.16 m" in str(result.reason)
+    assert irsim.run(text=car.replace("goal_threshold: 0.1", "goal_threshold: 1.3")).outcome == "success"
+
+
+def test_what_cannot_move_and_has_no_goal_written_is_parked() -> None:
+    watcher = """\
+world: {width: 10, height: 10, time_limit: 2}
+robot:
+  - {name: watcher, shape: {name: circle, radius: 0.2}, state: [1, 5]}
+"""
+    report = irsim.validate(text=watcher, simulate=True)
+    assert report.dry_run is not None
+    assert (report.dry_run.parked, report.dry_run.stuck) == (["watcher"], [])
+    assert "1 is parked" in report.dry_run.summary
+    result = irsim.run(text=watcher)
+    assert str(result.reason).startswith("'watcher' is parked (cannot move, no goal written); the run ended at 2 s")
+    assert result.robots[0].distance_to_goal is None
+    assert irsim.api.snapshot(text=watcher).robots[0].goal is None
+    aimed = irsim.run(text=watcher.replace("[1, 5]}", "[1, 5], goal: [1, 9]}"))
+    assert (aimed.parked, aimed.robots[0].distance_to_goal) == ([], pytest.approx(4))

@@ -194,3 +194,17 @@ def test_the_nearest_is_that_of_the_metrics(name: str) -> None:
     least = [robot.min_clearance for robot in found.robots if robot.min_clearance is not None]
     assert len(least) == len(found.robots)
     assert min(least) == pytest.approx(episode.metrics["min_clearance"])
+
+
+def test_who_arrives_in_spite_of_a_collision_has_arrived() -> None:
+    crossing = """\
+world: {width: 12, height: 8, time_limit: 30, collision_mode: unobstructed}
+robot:
+  - {name: a, kinematics: {name: omni}, shape: {name: circle}, state: [1, 7], goal: [11, 7], behavior: {name: dash}}
+  - {name: b, kinematics: {name: omni}, shape: {name: circle}, state: [11, 7], goal: [1, 7], behavior: {name: dash}}
+  - {name: c, kinematics: {name: omni}, shape: {name: circle}, state: [1, 2], goal: [11, 2], behavior: {name: dash}}
+"""
+    result = irsim.run(text=crossing)
+    assert result.outcome == "collision"
+    assert result.summary.startswith("3 of 3 robots arrived, the last at ")
+    assert ", 2 of them after a collision; 'a' hit 'b' at " in result.summary

@@ -131,3 +131,15 @@ def test_errors_are_short_and_documented() -> None:
     assert told.endswith("Fix: wait.")
     with pytest.raises(LookupError, match="undocumented"):
         failure("no-such-code", "what")
+
+
+def test_a_fault_of_ours_points_at_no_argument() -> None:
+    from irsim_mcp.job import _described
+    from irsim_mcp.services import _as_failure
+
+    with pytest.raises(ZeroDivisionError) as crash:
+        _ = 1 / 0
+    told = str(_as_failure(_described(crash.value), "path"))
+    assert told.startswith("internal-error: ZeroDivisionError: division by zero")
+    assert "scenario_path" not in told
+    assert "a fault of the simulator" in told

@@ -207,3 +207,24 @@ async def test_the_whole_result_on_request(empty: Path) -> None:
         line = error_of(result)
         assert "over-limit" in line
         assert "result.json" in line
+
+
+async def test_next_after_people_stand_since_a_collision_and_after_what_is_parked(empty: Path) -> None:
+    people = ROOM + (
+        "obstacle:\n  - {number: 2, distribution: {name: manual}, kinematics: {name: omni},"
+        " shape: {name: circle, radius: 0.2}, state: [[4, 5, 0], [6, 5, 0]], goal: [[7, 5, 0], [3, 5, 0]],"
+        " behavior: {name: dash}}\n"
+    )
+    parked = "world: {time_limit: 1}\nrobot:\n  - {name: watcher, shape: {name: circle}, state: [1, 5]}\n"
+    async with connected(empty) as client:
+        jam = data_of(await client.call_tool("run_episode", {"scenario_yaml": people}))
+        tried = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": people}))
+        still = data_of(await client.call_tool("run_episode", {"scenario_yaml": parked}))
+        looked = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": parked}))
+    assert jam["outcome"] == "success"
+    assert "2 of 2 moving obstacles stand since a collision" in jam["summary"]
+    assert "view=collisions" in jam["next"]
+    assert "2 of 2 moving obstacles stand since a collision" in tried["dry_run"]
+    assert "dry_run" in tried["next"]
+    assert still["next"].startswith("Nothing to change")
+    assert "dry_run" not in looked["next"]

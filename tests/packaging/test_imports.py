@@ -83,6 +83,7 @@ LAYERS = (
     runs
     skills
     snapshot
+    standing
     strips
     survey
     templates

@@ -207,17 +207,28 @@ def _advice(found: dict[str, Any]) -> str:
     run = f" run_id={found['run_id']}"
     if found["run_id"] is None:
         run = f" seed={found['seed']}" if found["random"] else ""
-    if found["outcome"] == "success":
+    held = set(found["jammed"])
+    if found["outcome"] == "success" and not held:
         more = "; try other seeds" if found["random"] else ""
         return f"See the paths with render_snapshot{run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
         return "As it should be if it is meant to stand or a program drives it; to try the layout: behavior=dash."
-    hits = [event["step"] for event in found["events"] if event["kind"] == "collision"]
-    if found["outcome"] == "collision" and hits:
+    late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
+    if late and set(late) <= set(found["parked"]) and not held:
+        return f"Nothing to change if it is meant to stand; see it with render_snapshot{run} step=-1."
+    touches = [event for event in found["events"] if event["kind"] == "collision"]
+    hits = [
+        event["step"]
+        for event in touches
+        if found["outcome"] == "collision" or held & {event["object"], event["partner"]}
+    ]
+    if hits:
         look, view = f"step={hits[0]}", "collisions"
     else:
         look, view = "step=-1", "speeds"
     more = "" if found["run_id"] is None else f" and inspect_run view={view}"
+    if found["outcome"] == "success":
+        return f"Moving obstacles stand since a collision; not meant? Look with render_snapshot{run} {look}{more}."
     return f"Look with render_snapshot{run} {look}{more}, change the scenario, validate and run again."
 
 

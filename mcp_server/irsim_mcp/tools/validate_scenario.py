@@ -118,7 +118,10 @@ def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Repo
         fixable = "Apply the fixes and validate again; lookup explains a code or a key."
         advice = _GAPS if codes == {"not-yet-simulated"} else fixable
     elif found["warnings"]:
-        advice = "See whether the warnings are meant, look at it with render_snapshot, then run_episode."
+        advice = "See whether the warnings{} are meant, look at it with render_snapshot, then run_episode."
+        advice = advice.format(" and what dry_run tells" if _went_wrong(found) else "")
+    elif _went_wrong(found):
+        advice = "It is valid, but see whether all that dry_run tells is meant; look at it with render_snapshot."
     else:
         advice = "Look at it with render_snapshot, then run_episode."
     return Report(
@@ -135,12 +138,23 @@ def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Repo
     )
 
 
+def _went_wrong(found: dict[str, Any]) -> bool:
+    """Whether the dry run saw what is hardly meant; that it ended too early says nothing."""
+    tried = found["dry_run"]
+    if tried is None:
+        return False
+    late = len(tried["arrived"]) + len(tried["parked"]) < found["counts"]["robots"] and tried["ended"] != "budget"
+    return late or any(tried[key] for key in ("collisions", "stuck", "jammed", "left"))
+
+
 def _tried(found: dict[str, Any] | None, detailed: bool) -> str | None:
     """What happened, in words; in detail with everything that was noted."""
     if found is None:
         return None
     more = [f"'{e['object']}' hit '{e['partner']}' at {seconds(e['time'])}" for e in found["collisions"][1:]]
-    more += [f"'{item['name']}' stands since {seconds(item['since'])}: {item['why']}" for item in found["stuck"][1:]]
+    more += [
+        f"'{item['name']}' {item['doing']} since {seconds(item['since'])}: {item['why']}" for item in found["stuck"][1:]
+    ]
     more += [f"'{item['name']}' left the world at {seconds(item['time'])}" for item in found["left"][1:]]
     seed = f"seed {found['seed']}, " if found["random"] else ""
     return clean("; ".join([seed + found["summary"], *(more if detailed else [])]), 1500)
@@ -170,7 +184,9 @@ def _values(item: dict[str, Any]) -> str:
     if item["change"] == "changed":
         before, after = pair(before, after)
     before, after = clean(before), clean(after)
-    return {"added": after, "removed": before, "changed": f"{before} -> {after}"}[item["change"]]
+    return {"added": after, "removed": before, "changed": f"{before} -> {after}", "moved": f"{before} -> {after}"}[
+        item["change"]
+    ]
 
 
 def _fitting(issues: list[Issue], room: int) -> list[Issue]:
