@@ -93,8 +93,8 @@ def read_with_behavior(
 ) -> tuple[ResolvedScenario, list[Diagnostic]]:
     """The scenario in which every robot that can move follows one behavior, on its own.
 
-    Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``); one that
-    has the behavior already keeps its options unless other ones are given.
+    Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``). All other
+    options are those given, or defaults: also of robots that have the behavior already, with other ones.
 
     Args:
         document: As written.
@@ -129,9 +129,6 @@ def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
 
 def _merged(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
     own, group = _mapping(own), _mapping(group)
-    told: dict[str, Any] = group or own
-    if told.get("name") == behavior["name"] and len(behavior) == 1:
-        return told
     kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
     return {**kept, **behavior}
 

@@ -80,9 +80,10 @@ GUIDES: dict[str, Guide] = {
         "what cannot be simulated",
         "The world is flat and seen from above: no heights, altitude, flying, stairs, ramps, slopes, bridges, falling. "
         "A drone can only stand for one that keeps its height: omni or omni_angular, and nothing passes over or under "
-        "it (unobstructed lets others through). All is there and moves from t = 0: no start times, delays, spawning, "
-        "vanishing, or events at a time. To stagger arrivals start farther away, by speed x delay (template "
-        "crossing-pedestrians). Doors and walls "
+        "it. (unobstructed on the shelves lets it through, but then nothing is tested; on the drone it is no help.) A "
+        "side view with y as height is a drawing, not a flight: label it. All is there and moves from t = 0: no start "
+        "times, delays, spawning, vanishing, or events at a time. To stagger arrivals start farther away, by speed x "
+        "delay (template crossing-pedestrians). Doors and walls "
         "that open at a time or on a signal do not exist; a thing that slides to and fro is an obstacle with "
         "kinematics omni and behavior {name: dash, loop: true}. No weather, slippery floors, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio, cameras or arms; sensors are planar lidars. gravity, "

@@ -135,7 +135,7 @@ class Entry(Options):
     group_name: Annotated[Any, PerObject(Text | None)] = None
     """Name of the group; null is `<role>_<group>`."""
     unobstructed: Annotated[Bool, OrNull(False)] = False
-    """Others do not collide with it and lidars do not see it."""
+    """Others do not collide with it and lidars do not see it; it still collides with others."""
     fov: SpanAngle | None = None
     """Opening angle of the field of view; null is the lidar's."""
     fov_radius: Annotated[Meters, Field(ge=0)] | None = None

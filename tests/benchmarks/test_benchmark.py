@@ -155,7 +155,7 @@ def test_robots_keep_what_they_are_to_do() -> None:
     assert records[2].wander
     assert records[2].range_high[:2] == [3, 3]
     kept = scenario_of(job(text, "orca")).objects
-    assert kept[0].behavior.timeHorizon == 3
+    assert kept[0].behavior.timeHorizon == 20  # a bare name has its defaults
     written = scenario_of(job(text, AS_WRITTEN)).objects
     assert written[0].group_behavior.name == "orca"
 
