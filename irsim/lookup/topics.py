@@ -30,6 +30,7 @@ from irsim.lookup.walk import (
 from irsim.registry import REGISTRIES, Registry
 from irsim.scenario.schema import json_schema
 from irsim.templates import Template
+from irsim.text import clean
 
 __all__ = ["lookup", "schema_part"]
 
@@ -238,7 +239,7 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     keys.sort(key=lambda found: len(found[0].name))
     same = [hit for hit, _ in keys if _last(hit) == wanted]
     if same:
-        return _hits(wanted, same[:_MOST_NAMESAKES], f"{len(same)} keys are called '{wanted}'")
+        return _hits(wanted, same[:_MOST_NAMESAKES], f"{len(same)} keys are called '{clean(wanted)}'")
     code = next(
         (name for name in _all_codes() if sorted(name.split("-")) == sorted(re.split(r"[\s_-]+", wanted))), None
     )
@@ -250,13 +251,16 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
         raise TopicError(topic, _near(topics, words))
     hits = [lines[name] for name in found]
     return _hits(
-        wanted, hits, f"{len(hits)} topics fit '{wanted}' best" if len(hits) > 1 else f"About '{wanted}'", unknown
+        wanted,
+        hits,
+        f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'",
+        unknown,
     )
 
 
 def _hits(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:
-    text = f"Nothing about {', '.join(map(repr, unknown))}." if unknown else ""
-    return Answer(topic=wanted, kind="search", title=title, text=text, groups={"topics": hits})
+    text = f"Nothing about {', '.join(map(repr, map(clean, unknown)))}." if unknown else ""
+    return Answer(topic=clean(wanted), kind="search", title=title, text=text, groups={"topics": hits})
 
 
 def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_text.Document], dict[str, Key]]:

@@ -106,16 +106,15 @@ def inspect_run(
     if from_step > end or last < from_step:
         to = "on" if to_step is None else f"to {to_step}"
         what = f"run {opened.id} has no steps from {from_step} {to}"
-        raise RunError("step-out-of-range", what, opened.extent)
+        raise RunError("step-out-of-range", what, opened.extent, where="from_step" if from_step > end else "to_step")
     chosen = _fields(fields)
     objects = _objects(opened, trace, robot)
     start = _start(cursor)
     question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit, limits)
     found = VIEWS[view](question)
     if start and start >= found.total:
-        raise RunError(
-            "bad-argument", f"cursor {cursor!r} is beyond the last row", "use next_cursor of the page before"
-        )
+        what = f"cursor {cursor!r} is beyond the last row"
+        raise RunError("bad-argument", what, "use next_cursor of the page before", where="cursor")
     shown = start + len(found.rows)
     result = opened.result
     return RunTable(
@@ -141,11 +140,11 @@ def inspect_run(
 def _fields(names: Sequence[str] | None) -> Sequence[Field]:
     if names is None:
         return _SHOWN
-    for name in names:
+    for index, name in enumerate(names):
         if name not in FIELDS:
             near = nearest(name, FIELDS)
             fix = f"did you mean {near}?" if near else f"there are {', '.join(FIELDS)}"
-            raise RunError("bad-argument", f"there is no field {clean(name)!r}", fix)
+            raise RunError("bad-argument", f"there is no field {clean(name)!r}", fix, where=f"fields[{index}]")
     return [field for field in FIELDS if field in names]
 
 
@@ -159,14 +158,15 @@ def _objects(run: Run, trace: Trace, robot: str | None) -> list[int]:
     near = nearest(robot, trace.names)
     some = ", ".join(clean(name, 40) for name in trace.names[:5])
     fix = f"did you mean {clean(near, 40)!r}?" if near else f"there are {some}" + ", …" * (len(trace.names) > 5)
-    raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix)
+    raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix, where="robot")
 
 
 def _start(cursor: str | None) -> int:
     if cursor is None:
         return 0
     if not (cursor.isascii() and cursor.isdigit() and len(cursor) < 12):
-        raise RunError("bad-argument", f"{clean(cursor)!r} is no cursor", "use next_cursor of the page before")
+        fix = "use next_cursor of the page before"
+        raise RunError("bad-argument", f"{clean(cursor)!r} is no cursor", fix, where="cursor")
     return int(cursor)
 
 

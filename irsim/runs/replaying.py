@@ -76,7 +76,7 @@ def step_of(run: Run, step: int | None) -> int:
     last = run.last_step
     wanted = last if step is None or step == -1 else step
     if not 0 <= wanted <= last:
-        raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", run.extent)
+        raise RunError("step-out-of-range", f"run {run.id} has no step {wanted}", run.extent, where="step")
     return wanted
 
 

@@ -67,10 +67,11 @@ class RunError(IrsimError, ValueError):
         code: Code of the closed list in :mod:`irsim.codes`.
         message: What is wrong.
         fix: What to do instead.
+        where: Argument it is about, if it is not the run itself.
     """
 
-    def __init__(self, code: str, message: str, fix: str | None = None) -> None:
-        self.code, self.message, self.fix = code, message, fix
+    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
+        self.code, self.message, self.fix, self.where = code, message, fix, where
         super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
 
 

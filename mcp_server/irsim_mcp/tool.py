@@ -14,13 +14,21 @@ from mcp.server.mcpserver.utilities.func_metadata import FuncMetadata
 from mcp.types import ToolAnnotations
 from pydantic import ValidationError
 
-from irsim.diagnostics import nearest
+from irsim.diagnostics import format_path, nearest
 from irsim.text import clean
 from irsim_mcp.errors import failure
 
 __all__ = ["StrictTool", "strict"]
 
 _SHOWN = 60
+_KINDS = {
+    "integer": "an integer",
+    "number": "a number",
+    "string": "text",
+    "boolean": "true or false",
+    "object": "an object",
+}
+_PLURALS = {"integer": "integers", "number": "numbers", "string": "texts"}
 
 
 class StrictTool(Tool):
@@ -52,18 +60,23 @@ class StrictTool(Tool):
         from jsonschema import Draft202012Validator
 
         given = {name: value for name, value in arguments.items() if value is not None}
-        wrong = {
-            str(error.absolute_path[0]): None for error in Draft202012Validator(self.parameters).iter_errors(given)
-        }
+        missing = [name for name in self.parameters.get("required", ()) if name not in given]
+        if missing:
+            fix = "; ".join(f"{name}: {_accepted(self.parameters['properties'][name])}" for name in missing)
+            raise failure("bad-argument", f"{' and '.join(missing)} must be given", where=self.name, fix=fix)
+        wrong: dict[str, Any] = {}  # of each argument the first
+        for error in Draft202012Validator(self.parameters).iter_errors(given):
+            wrong.setdefault(str(error.absolute_path[0]), error)
         if not wrong:
             return
-        accepted = {name: _accepted(self.parameters["properties"][name]) for name in wrong}
-        if len(wrong) == 1:
-            (name,) = wrong
-            what, where, fix = f"{_shown(given[name])} is not accepted", name, accepted[name]
+        errors = {format_path(tuple(error.absolute_path)): error for error in wrong.values()}
+        accepted = {place: _accepted(error.schema, error.instance) for place, error in errors.items()}
+        if len(errors) == 1:
+            ((where, error),) = errors.items()
+            what, fix = f"{_shown(error.instance)} is not accepted", accepted[where]
         else:
-            what = "; ".join(f"{name} does not accept {_shown(given[name])}" for name in wrong)
-            where, fix = self.name, "; ".join(f"{name}: {text}" for name, text in accepted.items())
+            what = "; ".join(f"{place} does not accept {_shown(error.instance)}" for place, error in errors.items())
+            where, fix = self.name, "; ".join(f"{place}: {text}" for place, text in accepted.items())
         raise failure("bad-argument", what, where=where, fix=fix)
 
     def _refused(self, error: ValidationError, arguments: Mapping[str, Any]) -> ToolError:
@@ -170,16 +183,25 @@ def _slim(schema: Any) -> Any:
     return slim
 
 
-def _accepted(schema: Mapping[str, Any]) -> str:
-    """What an argument takes, in words."""
+def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
+    """What an argument takes, in words; of many names the one that was meant."""
     if "enum" in schema:
-        return f"give one of {', '.join(map(str, schema['enum']))}"
+        near = nearest(given, schema["enum"]) if isinstance(given, str) and len(schema["enum"]) > 2 else None
+        return f"did you mean {near}?" if near else f"give one of {', '.join(map(str, schema['enum']))}"
     if "items" in schema and "enum" in schema["items"]:
         return f"give a list of some of {', '.join(map(str, schema['items']['enum']))}"
+    if "items" in schema:
+        low, high = schema.get("minItems"), schema.get("maxItems")
+        count = f"{low} " if low is not None and low == high else ""
+        return f"give a list of {count}{_PLURALS.get(schema['items'].get('type', ''), 'values')}"
+    if "anyOf" in schema:
+        return f"give {' or '.join(_accepted(option).removeprefix('give ') for option in schema['anyOf'])}"
     low, high = schema.get("minimum"), schema.get("maximum")
-    kind = {"integer": "an integer", "number": "a number", "string": "text", "boolean": "true or false"}.get(
-        schema.get("type", ""), "an object" if schema.get("type") == "object" else "what the schema says"
-    )
+    kind = _KINDS.get(schema.get("type", ""), "what the schema says")
+    if "maxLength" in schema:
+        return f"give {kind} of at most {schema['maxLength']} characters"
     if low is not None and high is not None:
         return f"give {kind} from {low} to {high}"
+    if low is not None:
+        return f"give {kind} from {low} on"
     return f"give {kind}"

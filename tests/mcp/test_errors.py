@@ -54,6 +54,28 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "Fix: give one of concise, detailed.",
         ),
         ("validate_scenario", {"scenario_yaml": {"world": {}}}, "(scenario_yaml). Fix: give text."),
+        (
+            "inspect_run",
+            {"run_id": "a", "from_step": -1},
+            "-1 is not accepted (from_step). Fix: give an integer from 0 on",
+        ),
+        ("inspect_run", {}, "bad-argument: run_id must be given (inspect_run). Fix: run_id: give text of at most 100 "),
+        ("inspect_run", {"run_id": None}, "bad-argument: run_id must be given"),
+        ("inspect_run", {"run_id": "a", "every": 0}, "(every). Fix: give an integer from 1 on."),
+        ("inspect_run", {"run_id": "x" * 101}, "(run_id). Fix: give text of at most 100 characters."),
+        (
+            "inspect_run",
+            {"run_id": "a", "fields": ["x", "speeed"]},
+            'bad-argument: "speeed" is not accepted (fields[1]). Fix: did you mean speed?',
+        ),
+        ("inspect_run", {"run_id": "a", "fields": ["x", 3]}, "3 is not accepted (fields[1]). Fix: give one of x, y, "),
+        ("inspect_run", {"run_id": "a", "view": "row"}, '"row" is not accepted (view). Fix: did you mean rows?'),
+        ("render_snapshot", {"scenario_yaml": ROOM, "region": [1, 2]}, "(region). Fix: give a list of 4 numbers."),
+        (
+            "lookup",
+            {"topic": "crossing", "parameters": {"beams": [1]}},
+            "[1] is not accepted (parameters.beams). Fix: give text or true or false or an integer or a number.",
+        ),
         ("run_episode", {"scenario_yaml": ROOM, "seed": True}, "bad-argument: true is not accepted (seed)."),
         ("run_episode", {"scenario_yaml": ROOM, "max_steps": "10"}, 'bad-argument: "10" is not accepted (max_steps).'),
         (

@@ -55,9 +55,8 @@ def values(part: dict[str, Any]) -> st.SearchStrategy[Any]:
     if kind == "number":
         return st.floats(low, high)
     if kind == "array":
-        return st.lists(
-            values(part["items"]), min_size=part.get("minItems", 0), max_size=min(part.get("maxItems", 3), 3)
-        )
+        least = part.get("minItems", 0)
+        return st.lists(values(part["items"]), min_size=least, max_size=max(least, min(part.get("maxItems", 3), 3)))
     if kind == "boolean":
         return st.booleans()
     return words | st.text(max_size=min(part.get("maxLength", 20), 20)) if kind == "string" else junk

@@ -46,6 +46,19 @@ async def test_collision_names_both_the_place_and_the_step_to_look_at(empty: Pat
         assert "'rover' collided" in text_of(await client.call_tool("render_snapshot", look))
 
 
+async def test_events_of_robots_are_told_first_but_in_order(empty: Path) -> None:
+    start = "kinematics: {name: omni}, shape: {name: circle, radius: 0.1}, behavior: {name: dash}"
+    people = [f"  - {{{start}, state: [1, {y}, 0], goal: [{2 + y / 8}, {y}, 0]}}\n" for y in range(1, 12)]
+    text = f"world: {{width: 10, height: 20}}\nrobot:\n  - {{{start}, name: r, state: [1, 15, 0], goal: [4, 15, 0]}}\n"
+    async with connected(empty) as client:
+        result = await client.call_tool("run_episode", {"scenario_yaml": text + "obstacle:\n" + "".join(people)})
+    events = data_of(result)["events"]
+    assert len(events) == 10
+    assert "r" in [event["object"] for event in events]
+    assert [event["step"] for event in events] == sorted(event["step"] for event in events)
+    assert events[0]["object"] != "r"
+
+
 async def test_timeout_says_what_the_robot_was_doing(empty: Path) -> None:
     still = ROOM.replace("    behavior: {name: dash}\n", "")
     async with connected(empty) as client:

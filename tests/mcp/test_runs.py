@@ -95,8 +95,11 @@ async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
                 assert run_id in error
         error = error_of(await client.call_tool("inspect_run", {"run_id": run_id, "from_step": 4000}))
         assert error.startswith("step-out-of-range: ")
+        assert "(from_step)" in error
         error = error_of(await client.call_tool("inspect_run", {"run_id": run_id, "robot": "rovr"}))
-        assert "'rover'" in error
+        assert "(robot). Fix: did you mean 'rover'?" in error
+        error = error_of(await client.call_tool("inspect_run", {"run_id": run_id, "cursor": "x"}))
+        assert "(cursor)" in error
 
 
 async def test_a_picture_of_a_run_is_that_of_the_scenario(workspace: Path) -> None:

@@ -159,7 +159,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         time_limit_from=found["time_limit_from"],
         robots=[_robot(robot, detailed) for robot in robots[:most]],
         robot_count=len(robots),
-        events=[_event(event) for event in _chosen(found, detailed)[:most]],
+        events=[_event(event) for event in _chosen(found, detailed, most)],
         event_count=found["event_count"],
         warnings=[clean(line, 300) for line in told],
         artifacts=None if run_id is None else {name: uri(run_id, name) for name in _ARTIFACTS},
@@ -168,14 +168,15 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
     )
 
 
-def _chosen(found: dict[str, Any], detailed: bool) -> list[dict[str, Any]]:
-    """All events; in short what robots did and met first, as people who walk to and fro would crowd them out."""
+def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:
+    """The first events in order; in short rather those of robots: people who walk to and fro would crowd them out."""
     events: list[dict[str, Any]] = found["events"]
     if detailed:
-        return events
+        return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
     told = [event for event in events if event["kind"] != "waypoint"]
-    return sorted(told, key=lambda event: not robots & {event["object"], event["partner"]})
+    kept = sorted(told, key=lambda event: not robots & {event["object"], event["partner"]})[:most]
+    return sorted(kept, key=lambda event: int(event["step"]))  # stable: within a step as they were
 
 
 def _rounded(value: Any) -> Any:
