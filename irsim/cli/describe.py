@@ -21,13 +21,13 @@ def describe(
         list[str] | None,
         typer.Argument(
             metavar="[TOPIC]...",
-            help="Such as robot.sensors.lidar2d.range_max, behavior dash, vel_max, a template, a code.",
+            help="Such as robot.sensors.lidar2d.range_max, behavior dash, vel_max, a template, a metric, a code.",
             show_default=False,
         ),
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Explain a key, a component, a template or an error code; without a topic: what there is."""
+    """Explain a key, a component, a template, a metric or an error code; without a topic: what there is."""
     from irsim.cli.output import console, print_json
     from irsim.lookup import lookup
 

@@ -11,7 +11,7 @@ from irsim.errors import IrsimError
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
-Kind = Literal["index", "key", "component", "template", "code", "guide", "search"]
+Kind = Literal["index", "key", "component", "template", "code", "guide", "metric", "search"]
 
 
 class _Data(BaseModel):

@@ -14,6 +14,7 @@ from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError
 from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
+from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_line, metric_topic
 from irsim.lookup.walk import (
     COLOR,
     Node,
@@ -56,7 +57,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
 
     Args:
         topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of
-            component (``sensors``), a key, a template, a code, or a word to search for; empty for an index.
+            component (``sensors``), a key, a template, a metric, a code, or a word to search for; empty for an index.
         schema: That of the language, if it is at hand; making it is most of the work.
 
     Raises:
@@ -66,9 +67,12 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     name = " ".join(words)
     if not topic.strip():
         return _index()
-    lists = {"codes": _codes, "guides": _guides, "templates": _templates}
+    lists = {"codes": _codes, "guides": _guides, "metric": all_metrics, "metrics": all_metrics, "templates": _templates}
     if name in lists:
         return lists[name]()
+    metric = _metric_named(words)
+    if metric is not None:
+        return metric_answer(metric)
     if topic.strip() in _all_codes():
         return _code(topic.strip())
     if name in templates.names():
@@ -81,7 +85,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return _part(schema, *found)
     guide = next((known for known, guide in GUIDES.items() if topic.strip().lower() in (known, *guide.words)), None)
     if guide is not None:
-        return _guide(guide)
+        asked = f"metric {name}"
+        return _guide(guide, [asked] if asked in METRIC_TOPICS else [])
     return _search(schema, topic.strip(), words or topic.split())
 
 
@@ -107,6 +112,13 @@ def schema_part(topic: str) -> Node:
 
 def _words(topic: str) -> list[str]:
     return [word for word in re.split(r"[\s.\[\]:]+", topic.strip()) if word and not word.isdigit()]
+
+
+def _metric_named(words: list[str]) -> str | None:
+    """The topic of a metric that is asked for as ``spl``, ``metric spl`` or ``metrics.spl``."""
+    key = words[1] if len(words) == 2 and words[0] in ("metric", "metrics") else None
+    topic = metric_topic(key) if key is not None else " ".join(words)
+    return topic if topic in METRIC_TOPICS else None
 
 
 def _find(schema: Node, words: list[str]) -> tuple[tuple[str, ...], list[Node]] | None:
@@ -246,7 +258,11 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     if code is not None:
         return _code(code)
     topics, (documents, lines) = _topics(schema), _documents(schema, keys)
+    metrics = [full_text.Document(name, f"{m.key} metric", m.text) for name, m in METRIC_TOPICS.items()]
+    lines |= {name: Key(name=name, text=metric_line(metric)) for name, metric in METRIC_TOPICS.items()}
     found, unknown = full_text.best(documents, topic)
+    if not found or not full_text.best(metrics, topic)[1]:  # metrics are meant only by words of theirs
+        found, unknown = full_text.best(documents + metrics, topic)
     if not found or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _NEAR)):
         raise TopicError(topic, _near(topics, words))
     hits = [lines[name] for name in found]
@@ -327,6 +343,7 @@ def _topics(schema: Node) -> set[str]:
         *_all_codes(),
         *templates.names(),
         *GUIDES,
+        *METRIC_TOPICS,
         *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
     }
 
@@ -341,11 +358,14 @@ def _index() -> Answer:
         kind="index",
         title="What irsim describe knows",
         groups={
-            "sections of a scenario": [Key(name=section.name, text=section.text) for section in sections],
+            "sections of a scenario": [
+                Key(name=section.name, text=_one_sentence(section.text)) for section in sections
+            ],
             "components": kinds,
-            "templates": [Key(name=template.name, text=template.title) for template in templates.load_all()],
+            "templates": [Key(name="templates", text=", ".join(templates.names()))],
             "more": [
                 Key(name="guides", text=", ".join(GUIDES)),
+                Key(name="metrics", text=f"the {len(METRIC_TOPICS)} numbers that tell how good an episode was"),
                 Key(name="codes", text=f"the {len(_all_codes())} codes of errors and warnings"),
             ],
         },
@@ -367,9 +387,10 @@ def _guides() -> Answer:
     return Answer(topic="guides", kind="index", title="Guides", groups={"guides": lines})
 
 
-def _guide(name: str) -> Answer:
+def _guide(name: str, see: list[str]) -> Answer:
     guide = GUIDES[name]
-    return Answer(topic=name, kind="guide", title=f"{name}: {guide.title}", text=guide.text, example=guide.example)
+    title = f"{name}: {guide.title}"
+    return Answer(topic=name, kind="guide", title=title, text=guide.text, example=guide.example, see=see)
 
 
 def _difference(name: str) -> Answer:

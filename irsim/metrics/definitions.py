@@ -139,7 +139,7 @@ EPISODE_METRICS: tuple[Metric, ...] = (
     Metric(
         "aggregated_time",
         "s",
-        "when the last robot arrived, the greatest time_to_goal; undefined if one never did",
+        "when the last robot arrived, the greatest time_to_goal (makespan); undefined if one never did",
         "max",
         better="less",
     ),

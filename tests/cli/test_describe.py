@@ -7,6 +7,7 @@ import pytest
 from irsim import templates
 from irsim.codes import CODES, TOOL_CODES
 from irsim.lookup import lookup
+from irsim.metrics import EPISODE_METRICS, METRICS
 from irsim.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
 
@@ -76,6 +77,24 @@ def test_templates_show_their_parameters(irsim: Run) -> None:
     assert "irsim new corridor-passing --set width=1.6" in shown
 
 
+def test_metrics_are_explained(irsim: Run) -> None:
+    shown = irsim("describe", "aggregated_time").stdout
+    assert shown.startswith("metric aggregated_time")
+    assert "the greatest time_to_goal" in " ".join(shown.split())
+    assert "Less is better" in shown
+    assert "[s]" in shown
+    listed = [key.name for keys in lookup("metrics").groups.values() for key in keys]
+    assert len(listed) == len(METRICS) + len(EPISODE_METRICS)
+    for name in listed:
+        answer = lookup(name)
+        assert (answer.kind, answer.topic, answer.see) == ("metric", name, ["metrics"])
+    for metric in (*METRICS, *EPISODE_METRICS):
+        for asked in (f"metric {metric.key}", f"metrics.{metric.key}"):
+            assert lookup(asked).title == f"metric {metric.key}"
+    assert lookup("success").see == ["metric success"]  # the word has a guide of its own
+    assert lookup("success").kind == "guide"
+
+
 def test_a_key_alone_is_found_wherever_it_is() -> None:
     assert lookup("vel_max").topic in ("robot.vel_max", "obstacle.vel_max")
     several = lookup("radius")
@@ -94,6 +113,7 @@ def test_other_words_are_searched_for(irsim: Run) -> None:
         ("behavior dahs", "behavior.dash"),
         ("wrld.widht", "world.width"),
         ("unknwon-kye", "unknown-key"),
+        ("path_iregularity", "path_irregularity"),
     ],
 )
 def test_a_miss_names_what_is_near(irsim: Run, topic: str, near: str) -> None:
@@ -148,6 +168,8 @@ def test_words_are_found_whole_and_one_by_one(irsim: Run) -> None:
         ("lidar noise", "robot.sensors.lidar2d.noise"),
         ("car between walls", "avoidance"),
         ("door", "doorway"),
+        ("makespan greatest time", "aggregated_time"),
+        ("heading change", "cumulative_heading_change"),
     ],
 )
 def test_free_text_finds_the_few_topics_that_fit_best(words: str, among: str) -> None:

@@ -51,7 +51,7 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (
             "validate_scenario",
             {"scenario_yaml": ROOM, "response_format": "short"},
-            "Fix: give one of concise, detailed.",
+            "Fix: give one of concise, detailed, json.",
         ),
         ("validate_scenario", {"scenario_yaml": {"world": {}}}, "(scenario_yaml). Fix: give text."),
         (

@@ -29,7 +29,18 @@ async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
     index = await looked_up(empty, "")
     lines = index.splitlines()
     assert len(lines) <= 60
-    for name in ("world", "robot", "obstacle", "dash", "lidar2d", "diff", "rectangle", "codes", *templates.names()):
+    for name in (
+        "world",
+        "robot",
+        "obstacle",
+        "dash",
+        "lidar2d",
+        "diff",
+        "rectangle",
+        "codes",
+        "metrics",
+        *templates.names(),
+    ):
         assert name in index
     assert "irsim describe" not in index
 
@@ -46,6 +57,8 @@ async def test_index_fits_a_screen_and_leads_on(empty: Path) -> None:
         ("out-of-time", ["stopped"]),
         ("codes", ["unknown-key", "path-outside-workspace", "busy"]),
         ("parking", ["car-park"]),
+        ("aggregated_time", ["a number [s]", "the greatest time_to_goal", "Less is better"]),
+        ("metrics", ["spl", "metric success", "path_irregularity", "more is better"]),
         ("hallway", ["corridor-passing"]),
     ],
 )

@@ -18,9 +18,9 @@ _DESCRIPTION = """
     Explain what scenario files may contain, and give templates to start from. Call it first, without a topic: an index
     of sections, components (behaviors, drives, sensors, shapes), templates and error codes. Then with a topic: a
     template name gives a complete scenario as YAML, with `parameters` filled in on request; a key or path
-    ('robot.sensors.lidar2d', 'vel_max'), a component ('dash'), a code ('unknown-key') or any word ('parking') gives
-    meaning, unit, range, default and an example. Returns text. Start from the nearest template rather than from
-    nothing. Next: edit the YAML and call validate_scenario.
+    ('robot.sensors.lidar2d', 'vel_max'), a component ('dash'), a code ('unknown-key'), a metric ('spl') or any word
+    ('parking') gives meaning, unit, range, default and an example. Returns text. Start from the nearest template. Next:
+    edit the YAML and call validate_scenario.
 """
 _INDEX_TITLE = "What lookup knows"
 _INDEX_HELP = (
