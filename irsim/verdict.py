@@ -370,6 +370,8 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:
+        if not env.scenario.goal_written(record):
+            return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
     return f"stands still {place}{_held_up(env, view, held)}"
 

@@ -107,14 +107,16 @@ class ResolvedScenario:
 
     def parked(self, record: ObjectRecord) -> bool:
         """Whether an object cannot move and no goal is written for it: the one that it has is only the default."""
-        if record.kinematics is not None and not record.static:
-            return False
+        return (record.kinematics is None or record.static) and not self.goal_written(record)
+
+    def goal_written(self, record: ObjectRecord) -> bool:
+        """Whether the entry of an object gives it a goal; else the one that it has may be only the default."""
         entry: Any = self.document
         for key in record.path:
             if key not in _keys(entry):
-                return False
+                return True
             entry = entry[key]
-        return isinstance(entry, Mapping) and all(entry.get(key) is None for key in _GIVE_GOALS)
+        return not isinstance(entry, Mapping) or any(entry.get(key) is not None for key in _GIVE_GOALS)
 
 
 _GIVE_GOALS = ("goal", "waypoints", "distribution")

@@ -209,3 +209,9 @@ robot:
     assert irsim.api.snapshot(text=watcher).robots[0].goal is None
     aimed = irsim.run(text=watcher.replace("[1, 5]}", "[1, 5], goal: [1, 9]}"))
     assert (aimed.parked, aimed.robots[0].distance_to_goal) == ([], pytest.approx(4))
+
+
+def test_no_distance_is_told_to_a_goal_that_nobody_wrote() -> None:
+    idle = "robot:\n  - {name: r, kinematics: {name: diff}, state: [1, 5]}\n"
+    told = str(irsim.run(text=idle, steps=10).reason)
+    assert told.endswith("'r' has no behavior, so it stands still; no goal is written for it")
