@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
-from irsim.env import Env
 from irsim.results import RobotPlan
 
 if TYPE_CHECKING:
+    from irsim.env import Env
     from irsim.render.planned import Planned
     from irsim.render.scene import Floats
     from irsim.render.snapshot import Extra

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING
 
-from irsim.env import Env
-from irsim.episode import Progress, advance
 from irsim.errors import IrsimError
 from irsim.overlays import Overlay, additions, planned, plot_keys
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.episode import Progress
 
 __all__ = ["FEWEST", "MOST", "StripError", "drawn_strip", "moments_of"]
 
@@ -61,6 +64,7 @@ def drawn_strip(
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         progress: Told how far it is.
     """
+    from irsim.episode import advance
     from irsim.render.strip import Strip
 
     sheet = Strip(len(moments), size, region=region, overrides=plot_keys(overlays))
