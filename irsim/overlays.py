@@ -82,6 +82,8 @@ def _routes(env: Env) -> dict[int, Floats | None]:
         return {}
     ahead = env
     if int(env.simulation.count[0]) == 0:
+        from irsim.env import Env
+
         ahead = Env(env.scenario, seed=env.seed, headless=True, log_level="ERROR")
         ahead.step()
     places = {view.id: view.row for view in ahead.robot_list}

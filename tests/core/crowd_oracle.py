@@ -121,8 +121,8 @@ def sfm(o: Any, view: View, dt: float, companions: Sequence[tuple[np.ndarray, fl
 def forward(velocity: np.ndarray, theta: float, *, tolerance: float, guarantee_time: float, max_rate: float) -> tuple:
     """Forward speed, heading error and yaw rate for a wanted velocity (reference: 5.4)."""
     speed = float(np.hypot(*velocity))
-    if speed <= 0.02:
-        return 0.0, 0.0, 0.0
+    if speed <= 0.02:  # who must still turn, because the rate cannot change faster, does so in a stop, too
+        return 0.0, 0.0, float(np.clip(0.0, -max_rate, max_rate))
     error = -wrap(theta - math.atan2(velocity[1], velocity[0]))
     kept = 0.0 if abs(error) < tolerance else error
     return max(0.0, speed * math.cos(error)), kept, float(np.clip(kept / guarantee_time, -max_rate, max_rate))
