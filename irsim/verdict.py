@@ -90,7 +90,7 @@ def run_result(
         random=random_parts(env.scenario),
         behavior=behavior,
         outcome=outcome,
-        summary=_summary(env, robots, hits, behavior, parked, held),
+        summary=_summary(env, robots, hits, behavior, parked, held, events),
         reason=None if outcome == "success" else _reason(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -220,13 +220,14 @@ def _summary(
     behavior: str | None,
     parked: Sequence[str],
     held: dict[str, Event],
+    events: Sequence[Event],
 ) -> str:
     told = [_arrivals(robots, env.sim_time, parked)]
     if hit := _first_hit({robot.name for robot in robots}, hits):
         told.append(hit)
     if gone := _gone_again(env, robots):
         told.append(gone)
-    if others := others_arrived(env.scenario, env.events):
+    if others := others_arrived(env.scenario, events):
         told.append(others)
     if jam := jam_told(env.simulation, held):
         told.append(jam)

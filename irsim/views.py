@@ -257,7 +257,7 @@ class ObjectView(ObjectBody, ObjectHooks, ObjectMatter, ObjectStatus, ObjectAvoi
         if (handler := self._handler) is not None:
             return float(handler.compute_max_speed(self.vel_max))
         if self.kinematics in ("omni", "omni_angular"):
-            return math.hypot(top[0], top[1])
+            return math.hypot(*top[:2])
         return float(top[0])
 
     @property

@@ -115,7 +115,7 @@ DIFFERENCES: dict[str, Difference] = {
     "D20": Difference(
         "`collision_mode: contact` resolves overlaps in at most 32 sweeps; dense jams may stay inside each other",
         "the same sweeps, then up to 480 more while anything is deeper than 0.5 mm, the later ones with drivers that "
-        "stall and wedged bodies that stay put (fewer of both where more than 16,000 pairs touch at once); where 32 "
+        "stall and wedged bodies that stay put (fewer of both where more than 8,000 pairs touch at once); where 32 "
         "suffice both agree to rounding",
         "things should not stay inside each other",
     ),

@@ -29,14 +29,14 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
     size = np.array([mover.radius - mover.record.goal_threshold for mover, _ in last])
     gap = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1))
     near = np.triu(gap < size[:, None] + size[None] - 1e-9, 1)
-    told = set()
-    for a, b in np.argwhere(near):
+    codes = {path: code for code, path in enumerate(dict.fromkeys(mover.path for mover, _ in last))}
+    entry = np.array([codes[mover.path] for mover, _ in last])
+    pairs = np.argwhere(near)
+    _, firsts = np.unique(entry[pairs] @ [len(codes), 1], return_index=True)
+    for a, b in pairs[np.sort(firsts)]:
         first, second = last[a][0], last[b][0]
-        if (first.path, second.path) in told:
-            continue
-        told.add((first.path, second.path))
-        mine = near & (np.array([m.path == second.path for m, _ in last])[None])
-        count = len({int(k) for pair in np.argwhere(mine) for k in pair})
+        mine = near & (entry == entry[b])
+        count = int((mine.any(axis=0) | mine.any(axis=1)).sum())
         x, y = place[b]
         tally.add(
             "goals-overlap",

@@ -16,7 +16,7 @@ constexpr double kStraight = 1e-6;     // a push this near to the centroid does 
 constexpr double kVisible = 5e-4;      // overlap that is not left while extra sweeps may help [m]
 constexpr double kStill = 1e-12;       // smaller corrections are none [m]
 constexpr int kPatient = 120;          // extra sweeps before drivers stall and wedged bodies stay put
-constexpr int kMostPairs = 8'000'000;  // looked at in a step: hundreds of bodies in one place part over several steps
+constexpr int kMostPairs = 4'000'000;  // looked at in a step: hundreds of bodies in one place part over several steps
 
 const Vec2 kAxes[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};  // normals of a box
 
