@@ -107,5 +107,5 @@ def _meet(some: Floats, others: Floats) -> Floats:
     """(N, M) whether boxes overlap, as numbers."""
     a, b = some[:, None], others[None]
     apart = (a[..., 2:] <= b[..., :2]) | (a[..., :2] >= b[..., 2:])
-    meeting: Floats = 1.0 - np.any(apart, axis=2)
+    meeting: Floats = np.asarray(~np.any(apart, axis=2), dtype=np.float64)
     return meeting
