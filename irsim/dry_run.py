@@ -157,7 +157,7 @@ def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
     near = in_the_way(env.simulation, index, held, trace.pose[-1])
     if near is None:
         return "its behavior keeps it where it is"
-    return near if "since a collision" in near else f"{near}, in the way of its behavior"
+    return near.told if near.held else f"{near.told}, in the way of its behavior"
 
 
 def _left(scenario: ResolvedScenario, trace: Trace) -> list[Left]:

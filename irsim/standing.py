@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.metrics.clearance import approaches
+from irsim.metrics.track import wrapped
 from irsim.observers.events import Event, collision_of, passable_names
 from irsim.text import clean, seconds
 
@@ -18,7 +19,16 @@ if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord
     from irsim.simulation import Simulation
 
-__all__ = ["Circle", "circling", "gets_nowhere_since", "in_the_way", "jam_told", "jammed", "moves_by_itself"]
+__all__ = [
+    "Circle",
+    "Obstruction",
+    "circling",
+    "gets_nowhere_since",
+    "in_the_way",
+    "jam_told",
+    "jammed",
+    "moves_by_itself",
+]
 
 _WINDOW = 5.0
 """A robot that has moved by less than ``_LITTLE`` for so long gets nowhere [s]."""
@@ -55,6 +65,19 @@ class Circle:
             f"radius {self.radius:.1f} m, never nearer than {self.nearest:.2f} m "
             "(raise goal_threshold, or let it turn more sharply)"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Obstruction:
+    """What stands close to something that gets nowhere.
+
+    Attributes:
+        told: Who, how near, and since when it stands if it does since a collision, in words.
+        held: Whether it stands since a collision.
+    """
+
+    told: str
+    held: bool
 
 
 def moves_by_itself(record: ObjectRecord) -> bool:
@@ -119,8 +142,8 @@ def gets_nowhere_since(places: NDArray[np.float64], step_time: float, max_speed:
 
 def in_the_way(
     simulation: Simulation, index: int, held: dict[str, Event], pose: NDArray[np.float64] | None = None
-) -> str | None:
-    """What stands close to an object, in words; None if nothing does.
+) -> Obstruction | None:
+    """What stands close to an object; None if nothing does.
 
     Args:
         simulation: Where it is.
@@ -136,8 +159,8 @@ def in_the_way(
     near = next((near for near in close if near.partner in held), close[0])
     where = f"'{clean(near.partner, 40)}' is {near.distance:.2f} m from it"
     if near.partner in held:
-        return f"{where} and stands since a collision at {seconds(held[near.partner].time)}"
-    return where
+        return Obstruction(f"{where} and stands since a collision at {seconds(held[near.partner].time)}", held=True)
+    return Obstruction(where, held=False)
 
 
 def circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | None:
@@ -149,7 +172,7 @@ def circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | 
     """
     if len(poses) < 3:
         return None
-    turned = np.abs(np.cumsum(_turns(poses)[::-1]))  # since then, backwards
+    turned = np.abs(np.cumsum(wrapped(np.diff(poses[:, 2]))[::-1]))  # since then, backwards
     full, more = (np.flatnonzero(turned >= turns * 2 * math.pi) for turns in (1.0, _TURNS))
     if not more.size:
         return None
@@ -164,9 +187,3 @@ def circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | 
         return None
     outside = np.flatnonzero(away > 1.1 * farthest)
     return Circle(radius, nearest, int(outside[-1]) + 1 if outside.size else 0)
-
-
-def _turns(poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T - 1,) change of the heading from row to row [rad], within half a turn."""
-    turns: NDArray[np.float64] = (np.diff(poses[:, 2]) + math.pi) % (2 * math.pi) - math.pi
-    return turns

@@ -380,7 +380,7 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
 def _held_up(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
     """That someone who stands since a collision is in the way of a robot; empty if nobody is."""
     near = in_the_way(env.simulation, view.row, held) if held else None
-    return f", and {near}" if near is not None and "since a collision" in near else ""
+    return f", and {near.told}" if near is not None and near.held else ""
 
 
 def _circle(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
