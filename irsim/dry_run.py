@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from irsim.env import Env
 from irsim.episode import horizon_of
-from irsim.observers.events import Event, collision_of, passable_names
+from irsim.observers.events import Event, collision_of, partner_of, passable_names
 from irsim.observers.trace import Trace, record
 from irsim.results import DryRun, EventRecord, Left, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -139,8 +139,7 @@ def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]
     if trace.stopped[-1, index] or trace.collided[-1, index]:
         hit = next((e for e in events if e.kind == "collision" and record.name in (e.object, e.partner)), None)
         if hit is not None:
-            other = hit.partner if hit.object == record.name else hit.object
-            return f"it hit '{other}' at {seconds(hit.time)}"
+            return f"it hit '{partner_of(hit, record.name)}' at {seconds(hit.time)}"
     if record.kinematics is None or record.static:
         return "it is static" if record.kinematics is not None else "it has no kinematics"
     if record.behavior is None and record.group_behavior is None:

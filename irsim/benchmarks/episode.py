@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any, Literal
@@ -10,9 +11,10 @@ from typing import Any, Literal
 from irsim.benchmarks.variant import behavior_of, with_behavior
 from irsim.env import Env
 from irsim.episode import horizon_of, import_modules
-from irsim.metrics.company import first_arrivals, on_their_way
+from irsim.metrics.company import on_their_way
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
+from irsim.observers.events import first_events
 from irsim.observers.trace import record
 from irsim.scenario.limits import Limits
 from irsim.scenario.load import load_text
@@ -128,7 +130,7 @@ def _delay(task: Task, env: Env, horizon: int) -> float:
         return math.nan
     with_robots: dict[str, float] = {}
     while True:
-        with_robots = first_arrivals(env.events, people)
+        with_robots = _arrival_times(env, people)
         left = horizon - int(env.simulation.count[0])
         if len(with_robots) == len(people) or left <= 0:
             break
@@ -138,10 +140,15 @@ def _delay(task: Task, env: Env, horizon: int) -> float:
     alone = Env(scenario_of(task.job), seed=task.seed, display=False, headless=True, log_level="ERROR")
     alone.delete_objects([robot.id for robot in alone.robot_list])
     alone.simulation.advance(int(env.simulation.count[0]))
-    without = first_arrivals(alone.events, people)
+    without = _arrival_times(alone, people)
     alone.end(ending_time=0.0)
     delays = [with_robots[name] - without[name] for name in with_robots if name in without]
     return math.fsum(delays) / len(delays) if delays else math.nan
+
+
+def _arrival_times(env: Env, names: Collection[str]) -> dict[str, float]:
+    """When each of some objects arrived first [s]; those that never did are left out."""
+    return {name: event.time for name, event in first_events(env.events, "arrival").items() if name in names}
 
 
 def _failures(measured: EpisodeMetrics) -> dict[str, str]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from irsim.observers.events import Event
     from irsim.scenario.objects import ObjectRecord
 
 __all__ = [
@@ -19,7 +18,6 @@ __all__ = [
     "ROBOT",
     "STATIC",
     "company_of",
-    "first_arrivals",
     "on_their_way",
     "social_groups",
 ]
@@ -59,15 +57,6 @@ def on_their_way(records: Sequence[ObjectRecord]) -> frozenset[str]:
         for record, kind in zip(records, kinds, strict=True)
         if kind == HUMAN and not record.static and record.goals and not record.wander and not record.loop
     )
-
-
-def first_arrivals(events: Sequence[Event], names: Collection[str]) -> dict[str, float]:
-    """When each of some objects arrived first [s]; those that never did are left out."""
-    times: dict[str, float] = {}
-    for event in events:
-        if event.kind == "arrival" and event.object in names:
-            times.setdefault(event.object, event.time)
-    return times
 
 
 def _kind(record: ObjectRecord) -> int:

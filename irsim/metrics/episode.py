@@ -18,6 +18,7 @@ from irsim.metrics.progress import progress
 from irsim.metrics.social import social
 from irsim.metrics.space import space
 from irsim.metrics.track import HOLONOMIC, Track, tracks
+from irsim.observers.events import partner_of
 from irsim.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -120,7 +121,7 @@ def _partner(track: Track) -> str | None:
     if not track.collisions:
         return None
     event, _ = track.collisions[0]
-    return event.partner if event.object == track.name else event.object
+    return partner_of(event, track.name)
 
 
 def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:

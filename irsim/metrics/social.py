@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from irsim.behaviors.sfm import Sfm
 from irsim.metrics.company import HUMAN
 from irsim.metrics.track import Track
+from irsim.observers.events import partner_of
 
 if TYPE_CHECKING:
     from irsim.observers.events import Event
@@ -128,8 +129,7 @@ def group_gaps(point: Floats, members: Floats) -> Floats:
 
 def _blame(track: Track, event: Event) -> tuple[bool, bool]:
     """Whether the robot, and whether the human, brought about a contact."""
-    partner = event.partner if event.object == track.name else event.object
-    human = track.others[:, track.people.index(str(partner)), :2]
+    human = track.others[:, track.people.index(str(partner_of(event, track.name))), :2]
     row = min(event.step - track.first, len(track.pose) - 1)
     if row < 1:
         return True, True  # they touch from the start

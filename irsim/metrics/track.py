@@ -148,7 +148,7 @@ def tracks(
         radii: (N,) bounding radii [m].
         top_speeds: Of the robots [m/s].
     """
-    from irsim.observers.events import collision_of, first_events
+    from irsim.observers.events import collision_of, first_events, partner_of
 
     records = scenario.objects
     kinds, groups = company_of(records), social_groups(records)
@@ -165,7 +165,7 @@ def tracks(
         hits = []
         for event in events:
             if collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
-                other = event.partner if event.object == name else event.object
+                other = partner_of(event, name)
                 hits.append((event, int(kinds[number[str(other)]])))
         them = humans[humans != robot]
         column = {human: place for place, human in enumerate(them.tolist())}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
 
-__all__ = ["Event", "collision_of", "first_collisions", "first_events", "passable_names", "read_events"]
+__all__ = ["Event", "collision_of", "first_collisions", "first_events", "partner_of", "passable_names", "read_events"]
 
 
 class Event(NamedTuple):
@@ -59,10 +59,15 @@ def first_events(events: list[Event], kind: str) -> dict[str, Event]:
     return first
 
 
+def partner_of(event: Event, name: str) -> str | None:
+    """The other one of the two objects of an event."""
+    return event.partner if event.object == name else event.object
+
+
 def collision_of(event: Event, name: str, passable: set[str]) -> bool:
     """Whether ``event`` is a collision of the object ``name``: it touched something that is not in ``passable``."""
-    other = event.partner if name == event.object else event.object
-    return event.kind == "collision" and name in (event.object, event.partner) and other not in passable
+    met = event.kind == "collision" and name in (event.object, event.partner)
+    return met and partner_of(event, name) not in passable
 
 
 def passable_names(simulation: Simulation) -> set[str]:
