@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,7 @@ from irsim import _core as core
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
 
-__all__ = ["Rollout", "Trace", "joined", "next_rows", "present_row", "record", "record_rollout"]
+__all__ = ["Rollout", "Trace", "joined", "next_rows", "present_row", "record", "record_rollout", "sensors"]
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -172,20 +173,19 @@ def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], 
         arrived=arrived.astype(bool),
         collided=collided.astype(bool),
         stopped=stopped.astype(bool),
-        ranges=_by_sensor(simulation, names, ranges.astype(np.float32, copy=False)) if scans else {},
+        ranges={key: ranges[:, beams].astype(np.float32, copy=False) for key, beams in sensors(simulation)}
+        if scans
+        else {},
         names=names,
         step_time=step_time,
     )
 
 
-def _by_sensor(
-    simulation: Simulation, names: Sequence[str], ranges: NDArray[np.float32]
-) -> dict[str, NDArray[np.float32]]:
-    """(T, beams of the world) as one block per sensor."""
-    blocks: dict[str, NDArray[np.float32]] = {}
-    numbers: dict[int, int] = {}
+def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
+    """Every sensor with beams as ``<object>/<number>``, and which of the ranges of a world are its own."""
+    records, numbers = simulation.scenario.objects, Counter[int]()
+    found = []
     for owner, first, count in simulation.world.scans():
-        number = numbers.get(owner, 0)
-        numbers[owner] = number + 1
-        blocks[f"{names[owner]}/{number}"] = ranges[:, first : first + count]
-    return blocks
+        found.append((f"{records[owner].name}/{numbers[owner]}", slice(first, first + count)))
+        numbers[owner] += 1
+    return found

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from struct import Struct
 from typing import IO, Any
 
 import numpy as np
@@ -20,7 +22,8 @@ __all__ = ["Layout", "load_chunk", "save_chunk"]
 _MOST_BYTES = 256 * 1024**2
 _MOST_NUMBERS = 2**27
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
-_EPOCH = (1980, 1, 1, 0, 0, 0)
+_ENTRY, _MADE_BY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "H", "3H2I", "4H2IH"))
+_VERSION, _EPOCH = 20, 33  # that can read it; the 1st of January 1980, as ZIP counts
 
 
 @dataclass(frozen=True)
@@ -65,12 +68,27 @@ def save_chunk(file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: 
         "scan_rows": log.scan_rows,
         "ranges": log.ranges,
     }
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
-        for name, array in arrays.items():
-            with archive.open(zipfile.ZipInfo(f"{name}.npy", _EPOCH), "w") as entry:
-                entry.write(_head(array))
-                if array.size:
-                    entry.write(array.data.cast("B"))
+    _write_archive(file, [(f"{name}.npy", _head(array), array) for name, array in arrays.items()])
+
+
+def _write_archive(file: IO[bytes], entries: Sequence[tuple[str, bytes, NDArray[Any]]]) -> None:
+    """A ZIP archive of entries that are not compressed: a name, and the two parts of what it holds.
+
+    :mod:`zipfile` takes six times as long, more than the steps of a short run. PKWARE's APPNOTE 6.3, sections 4.3.7
+    (before each entry), 4.3.12 (directory) and 4.3.16 (its end).
+    """
+    directory, place = [], 0
+    for name, head, array in entries:
+        body = array.data.cast("B") if array.size else b""
+        size = len(head) + len(body)
+        known = _ENTRY.pack(_VERSION, 0, 0, 0, _EPOCH, zlib.crc32(body, zlib.crc32(head)), size, size, len(name), 0)
+        file.writelines((b"PK\x03\x04", known, name.encode(), head, body))
+        directory.append(
+            b"PK\x01\x02" + _MADE_BY.pack(_VERSION) + known + _PLACE.pack(0, 0, 0, 0, place) + name.encode()
+        )
+        place += 4 + _ENTRY.size + len(name) + size
+    told = b"".join(directory)
+    file.write(told + b"PK\x05\x06" + _END.pack(0, 0, len(entries), len(entries), len(told), place, 0))
 
 
 def _head(array: NDArray[Any]) -> bytes:

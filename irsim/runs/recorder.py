@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 import time
 from collections.abc import Iterator, Mapping
@@ -14,13 +15,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from irsim import _core as core
-from irsim.observers.trace import present_row
+from irsim.observers.trace import sensors
 from irsim.runs.chunks import save_chunk
 from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
-from irsim.runs.store import META, RESULT, RunError, claim, made_folder, prune, runs_folder, tidy, written
+from irsim.runs.store import (
+    META,
+    RESULT,
+    RunError,
+    begun,
+    claim,
+    made_folder,
+    prune,
+    runs_folder,
+    tidy,
+    used,
+    written,
+)
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -91,27 +105,27 @@ class Recorder:
         self._pieces = self._events = self._bytes = self._scan_bytes = self._pruned_at = 0
         self._done = False
         self._due = time.monotonic() + _PERIOD
-        start = present_row(simulation, scans)
+        kept = sensors(simulation) if scans else []
         self._meta = {
             "id": self.folder.name,
-            "status": "running",
+            "cancelled": False,
             "created": datetime.now(timezone.utc).isoformat(timespec="seconds"),
             "scenario": scenario,
             **_origin(simulation),
             "seed": int(simulation.key()[0]),
             "horizon": horizon,
-            "step_time": start.step_time,
+            "step_time": float(simulation.scenario.world.step_time),
             "options": dict(options),
-            "names": list(start.names),
-            "sensors": [[key, block.shape[1]] for key, block in start.ranges.items()],
+            "names": [record.name for record in simulation.scenario.objects],
+            "sensors": [[key, beams.stop - beams.start] for key, beams in kept],
             "scans": scans or not self._scan,
             "trace_until": None,
             "scans_until": None,
             **_versions(),
         }
         try:
-            self._write("scenario.yaml", _text_of(simulation))
-            written(self.folder / "resolved.json", lambda file: file.write(plain_scenario(simulation)))
+            begun(self.folder / "scenario.yaml", _text_of(simulation).encode())
+            begun(self.folder / "resolved.json", plain_scenario(simulation))
             self._write_meta()
         except BaseException:
             self._stop()
@@ -147,20 +161,22 @@ class Recorder:
     def finish(self, result: RunResult) -> None:
         """Write what is left and the result, which is told where its record is; the run is complete."""
         self._flush()
-        self._write_meta(status="finished", steps=int(self._simulation.count[0]))
         result.notes = lacking(self._meta, result.steps)
         result.run_id = self.folder.name
         result.artifacts = {name: str(self.folder / name) for name in ARTIFACTS}
-        self._write(RESULT, result.model_dump_json(indent=1))
+        self._write(RESULT, result.model_dump_json(indent=1).encode())
+        used(self.folder)
         self._stop()
 
-    def close(self, status: str = "interrupted") -> None:
+    def close(self, *, cancelled: bool = False) -> None:
         """End without a result, unless there is one: what happened so far is kept."""
         if self._done:
             return
         try:
             self._flush()
-            self._write_meta(status=status)
+            if cancelled:
+                self._write_meta(cancelled=True)
+            used(self.folder)
         finally:
             self._stop()
 
@@ -191,8 +207,10 @@ class Recorder:
         events = self._simulation.state.events(0, self._events)
         if events:
             self._events += len(events)
-            told = json.dumps([_told(event, self._simulation.names, self._meta["step_time"]) for event in events])
-            self._write(f"events-{self._pieces:04d}.json", told)
+            names, step_time = self._simulation.names, self._meta["step_time"]
+            self._write(
+                f"events-{self._pieces:04d}.json", to_json([_told(event, names, step_time) for event in events])
+            )
         log = self._log
         if log.rows:
             name = f"trace-{self._pieces:04d}.npz"
@@ -214,10 +232,10 @@ class Recorder:
 
     def _write_meta(self, **changes: Any) -> None:
         self._meta.update(changes)
-        self._write(META, json.dumps(self._meta, indent=1))
+        self._write(META, to_json(self._meta, indent=1))
 
-    def _write(self, name: str, text: str) -> None:
-        written(self.folder / name, lambda file: file.write(text.encode()))
+    def _write(self, name: str, text: bytes) -> None:
+        written(self.folder / name, lambda file: file.write(text))
 
 
 @contextmanager
@@ -246,7 +264,7 @@ def recording(
     try:
         yield recorder
     except KeyboardInterrupt:
-        recorder.close("cancelled")
+        recorder.close(cancelled=True)
         raise
     finally:
         recorder.close()
@@ -281,7 +299,7 @@ def _origin(simulation: Simulation) -> dict[str, Any]:
     source = simulation.scenario.source
     text = _text_of(simulation)
     return {
-        "folder": None if source is None else str(Path(source).resolve().parent),
+        "folder": None if source is None else os.path.dirname(os.path.abspath(source)),
         "sha256": hashlib.sha256(text.encode()).hexdigest(),
     }
 

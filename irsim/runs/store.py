@@ -7,7 +7,7 @@ import os
 import re
 import secrets
 import shutil
-import tempfile
+import stat
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -25,6 +25,7 @@ __all__ = [
     "RESULT",
     "RunError",
     "Status",
+    "begun",
     "claim",
     "find_run",
     "made_folder",
@@ -36,6 +37,7 @@ __all__ = [
     "runs_folder",
     "status_of",
     "tidy",
+    "used",
     "written",
 ]
 
@@ -92,16 +94,25 @@ def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> P
     top = root / _KEPT_IN
     folder = top / "runs"
     for part in (top, folder):
-        if part.is_symlink() or (part.exists() and not part.is_dir()):
+        mode = _mode(part)
+        if mode is not None and not stat.S_ISDIR(mode):
             raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
     if make:
-        with _refusals(folder):
-            folder.mkdir(parents=True, exist_ok=True)
         ignore = top / ".gitignore"
-        if not ignore.exists():
-            with suppress(FileExistsError):
-                written(ignore, lambda file: file.write(b"*\n"))
+        if mode is None:
+            with _refusals(folder):
+                folder.mkdir(parents=True, exist_ok=True)
+        if _mode(ignore) is None:
+            written(ignore, lambda file: file.write(b"*\n"))
     return folder
+
+
+def _mode(path: Path) -> int | None:
+    """What kind of thing is there, None without any."""
+    try:
+        return os.lstat(path).st_mode
+    except OSError:
+        return None
 
 
 def made_folder(runs: Path, stem: str) -> Path:
@@ -165,13 +176,18 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
             return folders[0]
     folder = runs / str(name)
     if _ID.fullmatch(str(name)) and not folder.is_symlink() and plain_file(folder, META) is not None:
-        with suppress(OSError):
-            os.utime(folder / META)  # used now
+        used(folder)
         return folder
     recent = recent_ids(runs)
     if not recent:
         raise RunError("unknown-run", f"there is no run {clean(name)!r}, nor any other", "record one first")
     raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"recent ones are {', '.join(recent)}")
+
+
+def used(folder: Path) -> None:
+    """Note that a run is used at this moment."""
+    with suppress(OSError):
+        os.utime(folder / META)
 
 
 def plain_file(folder: Path, name: str) -> Path | None:
@@ -217,14 +233,25 @@ def json_of(folder: Path, name: str) -> Any:
 # writing --------------------------------------------------------------------------------------------------------------
 
 
+def begun(target: Path, text: bytes) -> None:
+    """Write a file of a folder that has no ``run.json`` yet: nobody takes that for a run, so half a file harms nobody.
+
+    Raises:
+        RunError: The system refuses.
+    """
+    with _refusals(target):
+        target.write_bytes(text)
+
+
 def written(target: Path, write: Callable[[IO[bytes]], object]) -> None:
     """Write a file of a run by way of a temporary one, so that nobody ever sees half of it.
 
     Raises:
         RunError: The system refuses.
     """
+    temporary = target.with_name(f"{_TEMPORARY}{secrets.token_hex(4)}")
     with _refusals(target):
-        descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=_TEMPORARY)
+        descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o600)
         try:
             with os.fdopen(descriptor, "wb") as file:
                 write(file)
@@ -274,7 +301,7 @@ def status_of(folder: Path) -> Status:
     if _being_written(folder):
         return "running"
     meta = json_of(folder, META)
-    cancelled = isinstance(meta, dict) and meta.get("status") == "cancelled"
+    cancelled = isinstance(meta, dict) and meta.get("cancelled") is True
     return "finished" if plain_file(folder, RESULT) is not None else "cancelled" if cancelled else "interrupted"
 
 
@@ -283,7 +310,7 @@ def mark_cancelled(folder: Path) -> None:
     meta = json_of(folder, META)
     if not isinstance(meta, dict) or plain_file(folder, RESULT) is not None:
         return
-    text = json.dumps({**meta, "status": "cancelled"}, indent=1)
+    text = json.dumps({**meta, "cancelled": True}, indent=1)
     written(folder / META, lambda file: file.write(text.encode()))
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from pydantic_core import from_json, to_json
 from typer.testing import CliRunner
 
 import irsim
@@ -57,6 +59,24 @@ def test_what_a_run_says_of_its_scenario_is_plain(room: Path) -> None:
     assert run.resolved["radius"] == [0.3, 0.5]
     assert run.resolved["world"]["width"] == 8
     json.dumps(run.resolved, allow_nan=False)
+
+
+def test_what_a_run_says_of_its_objects_is_everything(room: Path) -> None:
+    run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
+    for told, item in zip(run.resolved["objects"], Env(room, headless=True).scenario.objects, strict=True):
+        whole = from_json(to_json(replace(item, state=told["state"], goals=told["goals"]), inf_nan_mode="strings"))
+        assert told == whole
+
+
+def test_a_piece_of_the_trace_is_an_archive_for_everybody(room: Path) -> None:
+    result = irsim.run(room, seed=4, record=True)
+    path = open_run(str(result.run_id)).folder / "trace-0000.npz"
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+    with np.load(path, allow_pickle=False) as arrays:
+        assert list(arrays["steps"]) == [0, result.steps + 1]
+        assert arrays["pose"].shape == (result.steps + 1, 1, 3)
+        assert not any(arrays[name].flags.fnc for name in arrays.files)
 
 
 def test_texts_are_recorded_too(workspace: Path, room: Path) -> None:
