@@ -47,6 +47,7 @@ def main(folder: Path, command: list[str]) -> int:
         return subprocess.run(command, check=False).returncode
     compiler = shutil.which(command[0]) or command[0]
     version = os.stat(compiler)
+    kept.sort(key=lambda option: not option.startswith("-std="))  # it is first or last, depending on CMake's version
     key = hashlib.sha256(repr((os.path.realpath(compiler), version.st_size, version.st_mtime_ns, kept)).encode())
     try:
         key.update(preprocessed(command))

@@ -69,6 +69,14 @@ def test_headers_options_and_sources_count(tmp_path: Path, objects: Path) -> Non
         assert len([*objects.iterdir()]) == count
 
 
+def test_where_the_standard_is_named_does_not_count(tmp_path: Path, objects: Path) -> None:
+    assert Project(tmp_path / "a", objects).build("-std=c++17", "-O1", "-Wall") == 0
+    assert Project(tmp_path / "b", objects).build("-O1", "-Wall", "-std=c++17") == 0
+    assert len([*objects.iterdir()]) == 1
+    assert Project(tmp_path / "c", objects).build("-O1", "-Wall", "-std=c++14") == 0
+    assert len([*objects.iterdir()]) == 2
+
+
 @pytest.mark.parametrize("option", ["-g", "-g1", "-fsanitize=undefined", "-fsanitize=address,undefined"])
 def test_what_carries_positions_is_always_compiled(tmp_path: Path, objects: Path, option: str) -> None:
     project = Project(tmp_path / "a", objects)
