@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+from irsim._options import field_docs
 
 __all__ = [
     "BenchmarkResult",
@@ -42,9 +46,22 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 
 
 class Result(BaseModel):
-    """Base of all results: fields are documented, nothing else gets in."""
+    """Base of all results: fields are documented, nothing else gets in.
 
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    As with :class:`irsim._options.Options`, the documentation is read when someone asks for it, and a model is built
+    when it is needed: every command and every call of a tool starts with this module.
+    """
+
+    model_config = ConfigDict(extra="forbid", defer_build=True)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        produced = handler(schema)
+        properties = handler.resolve_ref_schema(produced).get("properties", {})
+        for name, text in field_docs(cls).items():
+            if name in properties:
+                properties[name].setdefault("description", text)
+        return produced
 
 
 class Edit(Result):

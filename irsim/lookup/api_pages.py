@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 import irsim
 from irsim import resources
+from irsim._options import field_docs
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.registry import REGISTRIES
@@ -230,12 +231,6 @@ def _attributes(cls: type) -> str:
 
 
 def _fields(model: type[BaseModel]) -> str:
-    source = inspect.getsource(model)
-    rows = []
-    for name, field in model.model_fields.items():
-        about = field.description or ""
-        if not about:
-            found = re.search(rf"\n    {name}:.*?\n    \"\"\"(.*?)\"\"\"", source, re.DOTALL)
-            about = " ".join(found[1].split()) if found else ""
-        rows.append((f"`{name}`", _markup(about)))
+    docs = field_docs(model)
+    rows = [(f"`{name}`", _markup(" ".join(docs.get(name, "").split()))) for name in model.model_fields]
     return plain_table(("field", "what it is"), rows)
