@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -134,6 +134,7 @@ def render(
     size: int | None = None,
     region: Sequence[float] | None = None,
     strip: int | None = None,
+    overlays: Iterable[str] | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
     limits: Limits | None = None,
@@ -150,6 +151,8 @@ def render(
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
         strip: So many moments on one sheet (png), labelled as snapshots are, evenly from the start to ``steps``
             (default: of a whole episode).
+        overlays: What to show besides bodies, in a picture (png) labelled as snapshots are: see
+            :data:`irsim.overlays.OVERLAYS`.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.
         limits: Limits of the loader.
@@ -161,17 +164,19 @@ def render(
     """
     target = Path(out)
     import_modules(imports)
-    if strip is not None:
+    as_snapshot = strip is not None or overlays is not None
+    if as_snapshot:
         check_suffix(target, ["png"])
     scenario, warnings = read_scenario(path, strict=strict, limits=limits)
-    if strip is not None:
+    if as_snapshot:
         sheet = snapshot_of(
             scenario,
             path,
             warnings=warnings,
             seed=seed,
-            steps=steps,
+            steps=steps or 0 if strip is None else steps,
             strip=strip,
+            overlays=overlays,
             size=600 if size is None else size,
             region=region,
             strict=strict,

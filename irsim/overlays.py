@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
-from irsim.results import RobotPlan
+from irsim.diagnostics import nearest
+from irsim.errors import IrsimError
+from irsim.text import clean
 
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.render.planned import Planned
     from irsim.render.scene import Floats
     from irsim.render.snapshot import Extra
+    from irsim.results import RobotPlan
 
-__all__ = ["OVERLAYS", "Overlay", "additions", "plan_results", "planned", "plot_keys"]
+__all__ = ["OVERLAYS", "Overlay", "OverlayError", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
 
 Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -25,6 +28,37 @@ OVERLAYS: dict[Overlay, tuple[str, ...]] = {
     "plan": (),
 }
 """What a snapshot may show besides bodies, and the plot keys that switch it."""
+
+
+class OverlayError(IrsimError, ValueError):
+    """Something that no picture shows.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
+        fix: What to give instead.
+    """
+
+    code = "bad-argument"
+
+    def __init__(self, word: str) -> None:
+        self.message, near = f"there is no overlay {clean(word, 40)!r}", nearest(word, OVERLAYS)
+        self.fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
+        super().__init__(f"{self.code}: {self.message}. Fix: {self.fix}")
+
+
+def overlays_from(words: Iterable[str]) -> list[Overlay]:
+    """Overlays by name.
+
+    Raises:
+        OverlayError: One has no such name.
+    """
+    known: dict[str, Overlay] = {name: name for name in OVERLAYS}
+    asked = [word.strip() for word in words if word.strip()]
+    unknown = next((word for word in asked if word not in known), None)
+    if unknown is not None:
+        raise OverlayError(unknown)
+    return [known[word] for word in asked]
 
 
 def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
@@ -60,6 +94,8 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
 def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
     """The ways in numbers."""
+    from irsim.results import RobotPlan
+
     labels = {view.id: view.abbr for view in env.robot_list}
     return [
         RobotPlan(

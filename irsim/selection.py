@@ -167,13 +167,14 @@ class Select:
         model = self.model_for(value)
         if model is None:
             at_alias = where and "name" not in value and self.alias is not None
-            raise _at(kind, self._unknown(name), name, *((self.alias,) if at_alias else where))
+            raise _at(kind, self._unknown(name, alone=not where), name, *((self.alias,) if at_alias else where))
         return model.model_validate(self._prepared(value, name))
 
     def _prepared(self, value: Mapping[str, Any], name: str) -> dict[str, Any]:
         return {**value, "name": name}
 
-    def _unknown(self, name: Any) -> PydanticCustomError:
+    def _unknown(self, name: Any, *, alone: bool) -> PydanticCustomError:
+        """What to say of a name that nobody knows; ``alone``: it stands where its mapping might."""
         names, kind = self.names(), self.registry.kind
         near = nearest(name, names)
         message = f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}"
@@ -183,7 +184,7 @@ class Select:
             f"unknown-{kind}",
             message,
             allowed=names,
-            fix=f"name: {near}" if near else None,
+            fix=(f"write {near}" if alone else f"name: {near}") if near else None,
             replace=near,
         )
 

@@ -10,13 +10,13 @@ from irsim.contents import counts_of, in_words
 from irsim.env import Env
 from irsim.episode import Progress, advance, horizon_of, read_scenario, seed_of
 from irsim.observers.outcome import robot_outcomes
-from irsim.overlays import OVERLAYS, Overlay, additions, plan_results, planned, plot_keys
+from irsim.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, planned, plot_keys
 from irsim.results import Finding, MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.randomness import random_parts
 from irsim.strips import drawn_strip, moments_of
-from irsim.verdict import command, region_words, strip_words
+from irsim.verdict import command, overlay_words, region_words, strip_words
 
 if TYPE_CHECKING:
     from irsim.views import ObjectView
@@ -32,7 +32,7 @@ def snapshot(
     steps: int | None = 0,
     strip: int | None = None,
     size: int = 600,
-    overlays: Iterable[Overlay] | None = None,
+    overlays: Iterable[str] | None = None,
     region: Sequence[float] | None = None,
     draw: bool = True,
     strict: bool = False,
@@ -89,7 +89,7 @@ def snapshot_of(
     steps: int | None = 0,
     strip: int | None = None,
     size: int = 600,
-    overlays: Iterable[Overlay] | None = None,
+    overlays: Iterable[str] | None = None,
     region: Sequence[float] | None = None,
     draw: bool = True,
     strict: bool = False,
@@ -103,7 +103,7 @@ def snapshot_of(
         from irsim.render.scene import region_extent
 
         region_extent(region)  # before much work is done
-    shown = None if overlays is None else list(overlays)
+    shown = None if overlays is None else overlays_from(overlays)
     env = Env(scenario, seed=seed_of(scenario, seed), headless=True, log_level="ERROR")
     if strip is not None:
         moments_of(0, strip)
@@ -119,7 +119,8 @@ def snapshot_of(
             env.end(ending_time=0.0)
             env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR")
     count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
-    extra = ["--size", str(size), *region_words(region), *strip_words(strip), "-o", str(out)]
+    options = [*region_words(region), *strip_words(strip), *overlay_words(shown)]
+    extra = ["--size", str(size), *options, "-o", str(out)]
     result = drawn(
         env,
         path,

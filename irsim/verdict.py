@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from irsim.scenario.objects import ObjectRecord, ResolvedScenario
     from irsim.views import ObjectView
 
-__all__ = ["command", "has_one_end", "others_arrived", "region_words", "run_result", "strip_words"]
+__all__ = ["command", "has_one_end", "others_arrived", "overlay_words", "region_words", "run_result", "strip_words"]
 
 _MAX_EVENTS = 100
 _NAMED = 3
@@ -137,6 +137,11 @@ def command(
 def region_words(region: Sequence[float] | None) -> list[str]:
     """The option of ``irsim render`` for the part of the world that is shown."""
     return [] if region is None else ["--region", *(f"{float(value):g}" for value in region)]
+
+
+def overlay_words(overlays: Sequence[str] | None) -> list[str]:
+    """The option of ``irsim render`` for what a picture shows besides bodies."""
+    return [] if overlays is None else ["--overlays", ",".join(overlays)]
 
 
 def strip_words(moments: int | None) -> list[str]:

@@ -24,3 +24,8 @@ def main() -> None:
         app(prog_name="irsim")
     except KeyboardInterrupt:  # while something was being imported
         raise SystemExit(130) from None
+    except OSError as error:  # of what is printed outside the verbs, such as --help to a disk that is full
+        from irsim.cli.output import silence_stdout
+
+        silence_stdout()
+        raise SystemExit(f"irsim: {error.strerror or error}") from None

@@ -72,7 +72,11 @@ def _report(error: BaseException, *, as_json: bool) -> int:
         data: dict[str, object] = {"code": code, "message": message}
         if isinstance(error, ScenarioError):
             data["findings"] = [diagnostic.as_dict() for diagnostic in error.diagnostics]
-        typer.echo(json.dumps({"error": data}, indent=2, default=str))
+        try:
+            typer.echo(json.dumps({"error": data}, indent=2, default=str))
+            sys.stdout.flush()
+        except OSError:  # it went to standard error in words
+            silence_stdout()
     return exit_code
 
 

@@ -66,7 +66,7 @@ def print_json(model: BaseModel, indent: int | None = 2) -> None:
 
 
 def silence_stdout() -> None:
-    """After a broken pipe: keep the interpreter from complaining when it flushes at exit."""
+    """Where nothing can be written: keep the interpreter from complaining when it flushes at exit."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
+from irsim.overlays import OVERLAYS
 
 __all__ = ["render"]
 
@@ -40,6 +41,13 @@ def render(
             help="N moments on one sheet, from the start to --steps (default: to the end of the episode).",
         ),
     ] = None,
+    overlays: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME",
+            help=f"Show only these besides bodies (png): {', '.join(OVERLAYS)}.",
+        ),
+    ] = None,
     json_output: Json = False,
     strict: Strict = False,
     imports: Imports = None,
@@ -66,6 +74,7 @@ def render(
             size=size,
             region=region,
             strip=strip,
+            overlays=None if overlays is None else overlays.split(","),
             strict=strict,
             imports=imports or (),
             limits=limits_for(max_objects),

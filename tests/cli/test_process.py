@@ -65,6 +65,17 @@ def test_a_reader_that_leaves_is_no_error(room: Path, tmp_path: Path) -> None:
     assert done.returncode == 0
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
+@pytest.mark.parametrize("words", [["run", "room.yaml", "--json"], ["run", "nothing.yaml", "--json"], ["--help"]])
+def test_a_full_disk_is_told_in_one_line(room: Path, tmp_path: Path, words: list[str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        command = [sys.executable, "-m", "irsim", *words]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path, check=False)
+    assert done.returncode in (1, 2)
+    assert "Traceback" not in done.stderr
+    assert "No space left" in done.stderr or "nothing.yaml" in done.stderr
+
+
 def test_help_starts_quickly(spawn: Spawn) -> None:
     def seconds(code: list[str]) -> float:
         best = 9.0

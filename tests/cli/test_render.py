@@ -70,3 +70,23 @@ def test_a_strip_is_the_picture_of_the_tool(irsim: Run, room: Path, tmp_path: Pa
     refused = irsim("render", "room.yaml", "-o", "strip.gif", "--strip", "3")
     assert refused.exit_code != 0
     assert "unknown-format" in refused.output
+
+
+def test_overlays_are_those_of_the_tool(irsim: Run, room: Path, tmp_path: Path) -> None:
+    data = parsed(irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plan, goals", "--steps", "3", "--json"))
+    assert "--overlays plan,goals" in data["reproduce"]
+    assert (tmp_path / "plan.png").read_bytes() == snapshot("room.yaml", steps=3, overlays=["plan", "goals"]).png
+    bare = irsim("render", "room.yaml", "-o", "bare.png", "--overlays", "", "--seed", "0")
+    assert bare.exit_code == 0, bare.output
+    assert (tmp_path / "bare.png").read_bytes() == snapshot("room.yaml", overlays=[], seed=0).png
+
+
+def test_an_unknown_overlay_names_the_nearest(irsim: Run, room: Path, tmp_path: Path) -> None:
+    refused = irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plann")
+    assert refused.exit_code == 2
+    assert "there is no overlay 'plann'" in refused.output
+    assert "write 'plan'" in refused.output
+    assert not (tmp_path / "plan.png").exists()
+    as_pdf = irsim("render", "room.yaml", "-o", "plan.pdf", "--overlays", "plan")
+    assert as_pdf.exit_code == 2
+    assert "unknown-format" in as_pdf.output
