@@ -30,12 +30,14 @@ def load(name: str) -> dict[str, Any]:
 
 SERVER = load("server.json")
 CLAUDE, MARKET = load(".claude-plugin/plugin.json"), load(".claude-plugin/marketplace.json")
+COPILOT = load(".github/plugin/marketplace.json")
 CODEX, GEMINI = load(".codex-plugin/plugin.json"), load("gemini-extension.json")
 BUNDLE = load("mcp_server/bundle/manifest.json")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 MANIFESTS = {
     "claude": CLAUDE,
     "marketplace": MARKET["plugins"][0],
+    "copilot": COPILOT["plugins"][0],
     "codex": CODEX,
     "gemini": GEMINI,
     "bundle": BUNDLE,
@@ -66,6 +68,16 @@ def test_plugins_have_one_name_which_is_that_of_the_tools_prefix() -> None:
     assert {CLAUDE["name"], MARKET["plugins"][0]["name"], CODEX["name"], GEMINI["name"]} == {"irsim"}
     assert BUNDLE["name"] == SERVER["packages"][0]["identifier"]
     assert MARKET["plugins"][0]["source"] == "./"
+
+
+def test_copilot_finds_the_plugin_that_claude_finds() -> None:
+    assert COPILOT == MARKET
+    assert set(COPILOT) <= {"name", "owner", "plugins", "metadata"}
+    assert {"name", "owner", "plugins"} <= set(COPILOT)
+    [plugin] = COPILOT["plugins"]
+    assert {"name", "source"} <= set(plugin) <= {"name", "source", "version", "description"}
+    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", plugin["name"])
+    assert (ROOT / plugin["source"] / ".claude-plugin" / "plugin.json").is_file()  # one of the places it looks at
 
 
 def test_each_starts_the_server_of_this_version() -> None:

@@ -13,6 +13,12 @@ import irsim
 from irsim.lookup.reference import SKILLS, out_of_date
 from tests.skills.conftest import ROOT, parts
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FOLDERS = sorted(path.parent for path in (ROOT / "skills").glob("*/SKILL.md"))
 EXAMPLES = [folder for skill in FOLDERS for folder in sorted(skill.glob("examples/*"))]
 SCRIPTS = [path for skill in FOLDERS for path in sorted(skill.rglob("*.py")) if path.parent.name == "scripts"]
@@ -27,13 +33,20 @@ def test_the_four_packs_are_there() -> None:
 
 @each
 def test_frontmatter_follows_the_specification(skill: Path) -> None:
+    """The facts that agentskills' validator looks at, and quick_validate of anthropics/skills."""
+    text = (skill / "SKILL.md").read_text(encoding="utf-8")
+    assert text.startswith("---\n")
     front, _ = parts(skill / "SKILL.md")
     assert set(front) <= {"name", "description", "license", "compatibility", "metadata", "allowed-tools"}
     assert front["name"] == skill.name
+    assert isinstance(front["name"], str)
     assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", front["name"])
     assert len(front["name"]) <= 64
+    assert isinstance(front["description"], str)
+    assert front["description"] == front["description"].strip()
     assert 0 < len(front["description"]) <= 1024
-    assert "<" not in front["description"]
+    assert not set("<>") & set(front["description"])
+    assert isinstance(front["compatibility"], str)
     assert "Use it" in front["description"]
     assert re.search(r"\bNot for\b", front["description"])
     assert len(front["compatibility"]) <= 500
@@ -96,6 +109,23 @@ def test_scripts_explain_themselves_and_refuse_nonsense(script: Path, tmp_path: 
     assert refused.stdout == ""
     assert "Traceback" not in refused.stderr
     assert "missing-file" in refused.stderr
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_name_the_version_they_were_written_for(script: Path) -> None:
+    text = script.read_text(encoding="utf-8")
+    declared = re.search(r"\A#!.*\n# /// script\n((?:# .*\n)+)# ///\n", text)
+    assert declared
+    needs_irsim = bool(re.search(r"^(import|from) irsim\b", text, re.MULTILINE))
+    assert tomllib.loads(re.sub("^# ", "", declared[1], flags=re.MULTILINE)) == {
+        "requires-python": PROJECT["requires-python"],
+        "dependencies": [f"{PROJECT['name']}=={PROJECT['version']}"] if needs_irsim else [],
+    }
+    assert "input(" not in text  # nobody is there to answer
+
+
+def test_each_pack_has_scripts() -> None:
+    assert {script.parents[1].name for script in SCRIPTS} == {skill.name for skill in FOLDERS}
 
 
 def test_each_pack_has_worked_examples() -> None:

@@ -6,8 +6,6 @@ import asyncio
 import math
 import re
 import shlex
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -21,7 +19,7 @@ import irsim
 from irsim.codes import CODES, TOOL_CODES
 from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
 
-FRONT, BODY = parts()
+_, BODY = parts()
 [SKELETON] = fences(BODY, "yaml")
 SCOUT: dict[str, Any] = {
     "kinematics": {"name": "omni_angular"},
@@ -30,31 +28,6 @@ SCOUT: dict[str, Any] = {
     "goal": [2, 2],
     "behavior": {"name": "dash"},
 }
-
-
-def test_frontmatter_follows_the_specification() -> None:
-    assert set(FRONT) <= {"name", "description", "license", "compatibility", "metadata", "allowed-tools"}
-    assert FRONT["name"] == SKILL.name
-    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", FRONT["name"])
-    assert len(FRONT["name"]) <= 64
-    assert 0 < len(FRONT["description"]) <= 1024
-    assert "<" not in FRONT["description"]
-    assert len(FRONT["compatibility"]) <= 500
-    assert all(isinstance(value, str) for value in FRONT["metadata"].values())
-    assert FRONT["metadata"]["version"] == irsim.__version__
-
-
-if sys.version_info >= (3, 11):  # which the validator needs; the test above has its rules
-
-    def test_the_reference_validator_agrees() -> None:
-        command = [sys.executable, "-c", "from skills_ref.cli import main; main()", "validate", str(SKILL)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
-
-
-def test_short_enough_to_be_loaded_whole() -> None:
-    assert len((FRONT["description"] + BODY).splitlines()) < 300
-    assert len(BODY) / 4 < 5000  # about four characters to a token
 
 
 def test_links_lead_to_files_of_the_skill() -> None:

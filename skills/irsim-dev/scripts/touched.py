@@ -1,4 +1,8 @@
 #!/usr/bin/env python3
+# /// script
+# requires-python = ">=3.10"
+# dependencies = []
+# ///
 """Say which steps the changes in a checkout of irsim call for, from what git sees as changed. Prints JSON.
 
 Exits with 0 if none is missing among those it can see (tests, changelog), 1 if one is, 2 if this is no checkout.
@@ -14,6 +18,7 @@ import sys
 from pathlib import Path
 
 MODELS = r"irsim/(behaviors|sensors|kinematics|shapes|distributions|maps|planners|scenario)/[^_].*\.py"
+MOST = 200  # files told by name
 STEPS = (
     (r"irsim/core/.*\.(cpp|hpp)|.*\.cmake", "pip install -e ."),
     (MODELS, "irsim schema"),
@@ -57,7 +62,8 @@ def main() -> int:
         missing.append("a test")
     if code and "CHANGELOG.md" not in files:
         missing.append("a line in CHANGELOG.md")
-    print(json.dumps({"changed": files, "steps": steps, "missing": missing}, indent=1))
+    changed = files[:MOST] + ([f"{len(files) - MOST} more"] if len(files) > MOST else [])
+    print(json.dumps({"changed": changed, "steps": steps, "missing": missing}, indent=1))
     return 1 if missing else 0
 
 

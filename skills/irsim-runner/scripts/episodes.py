@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # /// script
 # requires-python = ">=3.10"
-# dependencies = ["irsim-mcp"]
+# dependencies = ["irsim-mcp==0.1.0"]
 # ///
 """Run episodes of a scenario with actions from a function of yours, and print what came of each as JSON.
 
@@ -22,6 +22,8 @@ from pathlib import Path
 from typing import Any
 
 import irsim
+
+MOST = 100  # episodes told one by one, and collisions of an episode
 
 
 def read_arguments() -> argparse.Namespace:
@@ -69,7 +71,7 @@ def run_episode(env: Any, policy: Callable[[Any], Any], horizon: int) -> dict[st
         "outcome": env.outcome if env.outcome != "running" else "timeout",
         "time": env.time,
         "arrived": [robot.name for robot in env.robot_list if robot.arrive],
-        "collisions": [[e.time, e.object, e.partner] for e in env.events if e.kind == "collision"],
+        "collisions": [[e.time, e.object, e.partner] for e in env.events if e.kind == "collision"][:MOST],
     }
 
 
@@ -101,7 +103,10 @@ def main() -> int:
     finally:
         env.end(ending_time=0)
     counts = {name: sum(row["outcome"] == name for row in rows) for name in ("success", "collision", "timeout")}
-    print(json.dumps({"seed": env.seed, "steps_at_most": horizon, **counts, "episodes": rows}, indent=1))
+    told = {"seed": env.seed, "steps_at_most": horizon, **counts, "episodes": rows[:MOST]}
+    if len(rows) > MOST:
+        told["left_off"] = len(rows) - MOST
+    print(json.dumps(told, indent=1))
     return 0
 
 
