@@ -348,8 +348,8 @@ class Estimate(Result):
     std: float | None = None
     """Standard deviation of the sample; None for fewer than two."""
     low: float | None = None
-    """Lower end of the 95 % interval of the mean (bootstrap, 10,000 resamples, always the same draws; of paired shares
-    see ``paired``)."""
+    """Lower end of the 95 % interval of the mean: bootstrap (10,000 resamples, always the same draws); of metrics that
+    are 0 or 1 Wilson, None where nothing is random; of paired shares see ``paired``."""
     high: float | None = None
     """Upper end of it."""
 

@@ -29,11 +29,11 @@ def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
     return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
-def estimate(values: Sequence[float | None]) -> Estimate:
-    """Mean, spread and interval of the values that are not None."""
+def estimate(values: Sequence[float | None], *, share: bool = False) -> Estimate:
+    """Mean, spread and interval of the values that are not None; with ``share`` they are 0 and 1."""
     known = [value for value in values if value is not None]
     n, mean, std = spread(known)
-    low, high = bootstrap(known)
+    low, high = wilson(sum(value > 0 for value in known), n) if share else bootstrap(known)
     return Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
 
 
@@ -79,7 +79,10 @@ def _row(
         scenario=name,
         behavior=behavior,
         episodes=len(episodes),
-        metrics={key: estimate([episode.metrics[key] for episode in episodes]) for key in KEYS},
+        metrics={
+            key: estimate([episode.metrics[key] for episode in episodes], share=key in _SHARES and not certain)
+            for key in KEYS
+        },
         paired={
             key: _compared([(a.metrics[key], b.metrics[key]) for a, b in pairs], key in _SHARES and not certain)
             for key in KEYS

@@ -114,6 +114,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     columns = list(_COLUMNS[: 1 if width < _NARROW else 3 if width < _WIDE else 4])
     if not any(row.metrics["distance_to_human_min"].n for row in result.rows):
         columns = [column for column in columns if column[1] != "human m"]
+    shown = ["time_to_goal", *(key for key, *_ in columns)]
     table = Table(box=None, pad_edge=False, header_style="dim")
     table.add_column("scenario", no_wrap=True)
     table.add_column("behavior", no_wrap=True, overflow="ellipsis")
@@ -132,8 +133,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
             Text(_share(row.success), style="bold green" if best and row.success.count else ""),
             Text(_share(row.collision), style="red" if row.collision.count else "dim"),
             Text(_share(row.timeout), style="yellow" if row.timeout.count else "dim"),
-            _mean(row.metrics["time_to_goal"], 1, interval=True),
-            *(_mean(row.metrics[key], digits) for key, _, digits in columns),
+            _mean(row.metrics["time_to_goal"], 1, row.episodes, interval=True),
+            *(_mean(row.metrics[key], digits, row.episodes) for key, _, digits in columns),
         )
         last = row.scenario
     out.print(table)
@@ -142,6 +143,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
             out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)
     told = "95 % intervals: Wilson for shares, Newcombe for their differences, bootstrap for the rest"
     told += "; time s: of those that arrived"
+    if any(0 < row.metrics[key].n < row.episodes for row in result.rows for key in shown):
+        told += "; (5): of 5 of the n episodes"
     if any(heading == "human m" for _, heading, _ in columns):
         told += "; human m: least distance"
     out.print(Text(told, "dim"))
@@ -169,7 +172,7 @@ def _against(row: BenchmarkRow, mine: str, first: str) -> str:
         found = row.paired[key]
         if found.mean is not None:
             interval = "" if found.low is None else f" [{found.low:+.2f}, {found.high:+.2f}]"
-            told.append(f"{name} {found.mean:+.2f}{unit}{interval}")
+            told.append(f"{name} {found.mean:+.2f}{unit}{interval}{_fewer(found, row.episodes)}")
     return f"{clean(mine)} - {clean(first)}, same seeds: " + (", ".join(told) or "no common episodes")
 
 
@@ -179,13 +182,18 @@ def _share(found: Proportion) -> str:
     return f"{100 * found.rate:.0f}% {100 * found.low:.0f}-{100 * found.high:.0f}"
 
 
-def _mean(found: Estimate, digits: int, *, interval: bool = False) -> str:
+def _mean(found: Estimate, digits: int, episodes: int, *, interval: bool = False) -> str:
     if found.mean is None:
         return "-"
     text = f"{found.mean:.{digits}f}"
     if interval and found.low is not None and found.high is not None:
         text += f" ±{(found.high - found.low) / 2:.{digits}f}"
-    return text
+    return text + _fewer(found, episodes)
+
+
+def _fewer(found: Estimate, episodes: int) -> str:
+    """Of how many episodes it is, if not of all."""
+    return f" ({found.n})" if found.n < episodes else ""
 
 
 def _labels(files: list[str]) -> dict[str, str]:

@@ -21,11 +21,11 @@ def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[st
     """What compares with the shortest way L*, over the goals in turn; and what is odd.
 
     - ``failure_to_progress``: windows of 5 s, one after the other, in which the shortest way to the present goal became
-      less than 0.1 m shorter; a window in which the goal changed is progress.
+      less than 0.1 m shorter (where there is none, the straight line); a window in which the goal changed is progress.
     - ``spl``: success x L*/max(path length, L*) (Anderson et al., arXiv 1807.06757). ``path_efficiency``: path length /
       L*, of robots that arrived. ``stl``: success x T*/max(T, T*), T* = L*/top speed, the greatest of its
       limits forward and sideways. ``barn_score``: success x
-      T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5).
+      T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5). All NaN where there is no way to a goal.
     - ``path_irregularity`` [rad]: absolute heading changes minus those of the shortest way, of robots that arrived.
       Where the body has to turn to move, the shortest way begins with the turn towards it.
     - ``min_distance_to_goal``, ``final_distance_to_goal`` [m]: to the present goal, straight.
@@ -53,8 +53,7 @@ def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[st
         return found | dict.fromkeys(("spl", "stl", "barn_score", "failure_to_progress"), nan), []
     ways = [geodesics.way(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
     if any(way is None for way in ways):
-        odd = dict.fromkeys(("spl", "stl", "barn_score"), nan) if track.success else {}
-        return found | odd, [UNREACHABLE]
+        return found | dict.fromkeys(("spl", "stl", "barn_score"), nan), [UNREACHABLE]
     if track.arrival is None:
         return found, []
     way = np.concatenate([w for w in ways if w is not None])

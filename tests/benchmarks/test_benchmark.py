@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import math
+import re
 
 import pytest
 from typer.testing import CliRunner
@@ -18,6 +19,7 @@ from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.benchmarks.variant import behavior_of
 from irsim.cli.app import app
 from irsim.errors import OverLimitError, PlacementError, ScenarioError, ScenarioNotFoundError
+from irsim.metrics import wilson
 
 CROWD = """
 world: {width: 8, height: 8, time_limit: 12}
@@ -126,6 +128,52 @@ def test_pairs_that_all_agree_are_no_certainty(files) -> None:
         assert both.low < -0.05
         assert both.high > 0.05
     assert found.rows[1].paired["path_length"].low == 0.0
+
+
+def test_metrics_that_are_zero_or_one_have_intervals_of_shares(files) -> None:
+    [row] = irsim.benchmark(files[0], "dash", 10).rows
+    for key, share in (("success", row.success), ("timeout", row.timeout), ("collision", row.collision)):
+        assert (row.metrics[key].low, row.metrics[key].high) == (share.low, share.high)
+    for key in ("goal_reached", "left_world"):
+        found = row.metrics[key]
+        assert (found.low, found.high) == pytest.approx(wilson(round(found.mean * 10), 10))
+    [fixed] = irsim.benchmark(files[1], seeds=20).rows
+    assert (fixed.metrics["goal_reached"].low, fixed.metrics["goal_reached"].high) == (None, None)
+
+
+WALLED = """
+world: {width: 8, height: 8, time_limit: 2}
+robot:
+  {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 4], goal: [7, 4], behavior: {name: dash}}
+obstacle:
+  - {shape: {name: rectangle, length: 0.5, width: 9}, state: [4, 4]}
+  - {shape: {name: circle, radius: 0.1}, distribution: {name: random, range_low: [5, 1, 0], range_high: [7, 2, 0]}}
+"""
+
+
+def test_where_there_is_no_way_spl_is_undefined_and_said(tmp_path) -> None:
+    (tmp_path / "walled.yaml").write_text(WALLED)
+    result = irsim.benchmark(str(tmp_path / "walled.yaml"), seeds=5)
+    [row] = result.rows
+    assert (row.timeout.count, row.metrics["spl"].n, row.metrics["spl"].mean) == (5, 0, None)
+    assert [episode.unreachable for episode in result.episodes] == [1] * 5
+    assert "spl is left out" in result.notes[0]
+    shown = CliRunner().invoke(app, ["benchmark", str(tmp_path / "walled.yaml"), "--seeds", "5"]).output
+    [line] = [line.split() for line in shown.splitlines() if line.startswith("walled ")]
+    assert line[-1] == "-"
+
+
+def test_the_table_says_of_how_many_episodes_a_mean_is(files) -> None:
+    arguments = ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "10"]
+    found = irsim.benchmark(files[0], ["dash", "rvo"], 10).rows
+    times = [row.metrics["time_to_goal"].n for row in found]
+    assert 0 < times[0] < 10
+    shown = CliRunner().invoke(app, arguments).output
+    lines = [line for line in shown.splitlines() if re.search(r"(dash|rvo) +10 ", line)]
+    assert [f"({n})" in line for n, line in zip(times, lines, strict=True)] == [n < 10 for n in times]
+    assert "(5): of 5 of the n episodes" in shown
+    pairs = found[1].paired["time_to_goal"].n
+    assert f"] ({pairs})" in next(line for line in shown.splitlines() if "same seeds" in line)
 
 
 def test_long_behaviors_have_short_labels() -> None:

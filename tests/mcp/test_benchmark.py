@@ -84,6 +84,22 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     assert f"seed={bad[0]} behavior='dash' (collision)" in found["next"]
 
 
+async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: Path) -> None:
+    arguments = {"scenarios": [RANDOM], "behaviors": ["dash", "rvo"], "seeds": 10}
+    async with connected(workspace) as client:
+        result = await client.call_tool("benchmark", arguments)
+    found, told = data_of(result), text_of(result)
+    kept = json.loads((workspace / found["artifact"]).read_text())["rows"]
+    assert kept[0]["metrics"]["time_to_goal"]["n"] < 10
+    for row, all_of in zip(found["rows"], kept, strict=True):
+        n = {key: all_of["metrics"][key]["n"] for key in row if key in all_of["metrics"]}
+        assert row.get("n", {}) == {key: count for key, count in n.items() if count < 10}
+    assert found["rows"][1]["diff"]["n"] == {"time_to_goal": kept[1]["paired"]["time_to_goal"]["n"]}
+    assert f"] n={found['rows'][0]['n']['time_to_goal']};" in told
+    assert f"] n={found['rows'][1]['diff']['n']['time_to_goal']}" in told
+    assert "20 episodes, step_time 0.1 s; success" in told
+
+
 async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
     async with connected(workspace) as client:
         found = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))

@@ -266,11 +266,11 @@ def test_a_goal_walled_in_is_flagged() -> None:
     path = np.stack([np.linspace(6, 14, 81), np.full(81, 10.0)], axis=1)
     pose = np.concatenate([path[:, None], np.zeros((81, 4, 2))], axis=1)
     arrival = event("arrival", 80, resolved.objects[0].name)
-    found = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, [arrival])
-    assert found.flags == [["unreachable"]]
-    assert math.isnan(found.robots[0]["spl"])
-    missed = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, [])
-    assert missed.robots[0]["spl"] == 0
+    for events in ([arrival], []):
+        found = episode_metrics(trace(resolved, pose, [[14, 10]]), resolved, events)
+        assert found.flags == [["unreachable"]]
+        for key in ("spl", "stl", "barn_score", "path_efficiency", "path_irregularity"):
+            assert math.isnan(found.robots[0][key])
 
 
 HUMAN = "obstacle:\n  - {shape: {name: circle, radius: 0.3}, kinematics: {name: omni}, state: [5, 5]}\n"

@@ -169,19 +169,23 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     for behavior in result["behaviors"]:
         ends = [episode["outcome"] for episode in result["episodes"] if episode["behavior"] == behavior]
         shares.append(f"{clean(labels[behavior])} {ends.count('success')}/{len(ends)}")
-    return f"{len(result['episodes'])} episodes; success: {', '.join(shares)}"
+    periods = ", ".join(f"{period:g}" for period in sorted(set(result["step_time"].values())))
+    return f"{len(result['episodes'])} episodes, step_time {periods} s; success: {', '.join(shares)}"
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) -> dict[str, Any]:
-    """One scenario under one behavior; numbers as [value, low, high], or the value alone."""
+    """One scenario under one behavior; numbers as [value, low, high], or the value alone.
+
+    ``n`` has the episodes of the metrics that are undefined in some, ``diff.n`` those of differences.
+    """
     shown: dict[str, Any] = {
         "scenario": clean(row["scenario"], 100),
         "behavior": clean(labels[row["behavior"]]),
         "episodes": row["episodes"],
     }
     shown |= {key: _numbers(row[key], "rate") for key in _SHARES}
-    shown |= {key: _numbers(row["metrics"][key]) for key in metrics if row["metrics"][key]["n"]}
-    diff = {key: _numbers(row["paired"][key]) for key in _DIFFERENCES if row["paired"] and row["paired"][key]["n"]}
+    shown |= _told(row["metrics"], metrics, row["episodes"])
+    diff = _told(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
     from irsim.benchmarks.labels import seeds_of
 
@@ -189,6 +193,13 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
         robots = [f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_FAILURES]]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
     return shown
+
+
+def _told(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
+    """Those of some metrics that are defined, and how many episodes they are of if not of all."""
+    known = [key for key in keys if key in found and found[key]["n"]]
+    fewer = {key: found[key]["n"] for key in known if found[key]["n"] < episodes}
+    return {key: _numbers(found[key]) for key in known} | ({"n": fewer} if fewer else {})
 
 
 def _numbers(estimate: dict[str, Any], value: str = "mean") -> list[float]:
@@ -206,8 +217,7 @@ def _text(found: Benchmark) -> str:
     lines = [f"{found.status}: {found.summary}" if found.rows else found.summary]
     lines[0] += f" (job {found.job_id}, {found.done} of {found.total})"
     for row in found.rows:
-        told = [f"{key} {_shown(value)}" for key, value in row.items() if isinstance(value, list)]
-        told += [f"difference of {key} {_shown(value)}" for key, value in row.get("diff", {}).items()]
+        told = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
         told += [f"failed: {row['failed']}"] if "failed" in row else []
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(told)}")
     lines += [f"Note: {note}" for note in found.notes]
@@ -216,6 +226,16 @@ def _text(found: Benchmark) -> str:
     if found.reproduce:
         lines.append(f"Again: {found.reproduce}")
     return "\n".join([*lines, f"Next: {found.next}"])
+
+
+def _lines(row: dict[str, Any]) -> list[str]:
+    """Each number with its interval, and with the episodes it is of if not of all."""
+    fewer = row.get("n", {})
+    return [
+        f"{key} {_shown(value)}" + (f" n={fewer[key]}" if key in fewer else "")
+        for key, value in row.items()
+        if isinstance(value, list)
+    ]
 
 
 def _shown(numbers: Sequence[float]) -> str:
