@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
@@ -17,10 +19,11 @@ from irsim import _core as core
 from irsim.observers.trace import Trace
 from irsim.runs.store import RunError
 
-__all__ = ["Layout", "load_chunk", "save_chunk"]
+__all__ = ["Layout", "load_chunk", "load_events", "save_chunk"]
 
 _MOST_BYTES = 256 * 1024**2
 _MOST_NUMBERS = 2**27
+_EVENTS = "events.json"
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
 _ENTRY, _MADE_BY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "H", "3H2I", "4H2IH"))
 _VERSION, _EPOCH = 20, 33  # that can read it; the 1st of January 1980, as ZIP counts
@@ -41,19 +44,22 @@ class Layout:
     step_time: float
 
 
-def save_chunk(file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: NDArray[np.float64]) -> None:
+def save_chunk(
+    file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: NDArray[np.float64], events: bytes
+) -> None:
     """Write what a log holds.
 
     ``steps``: the first one and how many. ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the
     objects ``movers``; ``pose_at`` (N, 3) of everybody. ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4
     stopped) and ``ranges`` (K, beams) hold from the rows ``goal_rows``, ``flag_rows`` and ``scan_rows`` on; without any
-    row of scans none were kept.
+    row of scans none were kept. What happened lies beside the arrays as ``events.json``.
 
     Args:
         file: Where to.
         log: What happened since the last piece.
         movers: Objects whose poses it holds.
         pose: (N, 3) present pose of everybody.
+        events: What happened, as JSON.
     """
     arrays: dict[str, NDArray[Any]] = {
         "steps": np.array([log.first, log.rows], dtype=np.int64),
@@ -68,18 +74,20 @@ def save_chunk(file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: 
         "scan_rows": log.scan_rows,
         "ranges": log.ranges,
     }
-    _write_archive(file, [(f"{name}.npy", _head(array), array) for name, array in arrays.items()])
+    entries = [
+        (f"{name}.npy", _head(array), array.data.cast("B") if array.size else b"") for name, array in arrays.items()
+    ]
+    _write_archive(file, [*entries, (_EVENTS, b"", events)])
 
 
-def _write_archive(file: IO[bytes], entries: Sequence[tuple[str, bytes, NDArray[Any]]]) -> None:
+def _write_archive(file: IO[bytes], entries: Sequence[tuple[str, bytes, bytes | memoryview]]) -> None:
     """A ZIP archive of entries that are not compressed: a name, and the two parts of what it holds.
 
     :mod:`zipfile` takes six times as long, more than the steps of a short run. PKWARE's APPNOTE 6.3, sections 4.3.7
     (before each entry), 4.3.12 (directory) and 4.3.16 (its end).
     """
     directory, place = [], 0
-    for name, head, array in entries:
-        body = array.data.cast("B") if array.size else b""
+    for name, head, body in entries:
         size = len(head) + len(body)
         known = _ENTRY.pack(_VERSION, 0, 0, 0, _EPOCH, zlib.crc32(body, zlib.crc32(head)), size, size, len(name), 0)
         file.writelines((b"PK\x03\x04", known, name.encode(), head, body))
@@ -104,11 +112,39 @@ def load_chunk(path: Path, layout: Layout) -> Trace:
     Raises:
         RunError: It is not what :func:`save_chunk` writes.
     """
-    try:
+    with _changes(path):
         _check_size(path)
         with np.load(path, allow_pickle=False) as file:
             return _trace({name: file[name] for name in file.files}, layout)
-    except (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, zipfile.BadZipFile) as error:
+
+
+def load_events(path: Path) -> Any:
+    """Read what happened from such a file, as :func:`save_chunk` was given it.
+
+    Raises:
+        RunError: It is not what :func:`save_chunk` writes.
+    """
+    with _changes(path):
+        _check_size(path)
+        with zipfile.ZipFile(path) as archive:
+            return json.loads(archive.read(_EVENTS))
+
+
+@contextmanager
+def _changes(path: Path) -> Iterator[None]:
+    """Whatever is wrong with a file, in our words."""
+    try:
+        yield
+    except (
+        OSError,
+        ValueError,
+        KeyError,
+        IndexError,
+        TypeError,
+        EOFError,
+        NotImplementedError,
+        zipfile.BadZipFile,
+    ) as error:
         raise RunError("unreadable-run", f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
-from irsim.runs.chunks import Layout, load_chunk
+from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.notes import lacking
 from irsim.runs.store import (
     META,
@@ -77,7 +77,7 @@ class Run:
     def events(self) -> list[Event]:
         """What happened, in order; of a run that was cut short, as far as the trace goes."""
         try:
-            events = [Event(**item) for name in self._pieces("events") for item in json_of(self.folder, name)]
+            events = [Event(**item) for name in self._pieces("trace", "events") for item in self._happened(name)]
         except TypeError as error:
             raise RunError("unreadable-run", f"the events of run {self.id} have been changed: {error}") from None
         if self.result is not None:
@@ -144,16 +144,24 @@ class Run:
         except OSError:
             raise RunError("unknown-run", f"run {self.id} has been let go") from None
 
-    def _pieces(self, kind: str) -> list[str]:
+    def _pieces(self, *kinds: str) -> list[str]:
+        """Files of these kinds in the order of their numbers."""
         found = [match for name in self._names() if (match := _PIECE.fullmatch(name))]
-        return [m.group() for m in sorted(found, key=lambda m: int(m.group(2))) if m.group(1) == kind]
+        return [m.group() for m in sorted(found, key=lambda m: int(m.group(2))) if m.group(1) in kinds]
 
     def _piece(self, name: str) -> Trace:
+        sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
+        return load_chunk(self._path(name), Layout(self.names, sensors, self.step_time))
+
+    def _happened(self, name: str) -> Any:
+        """Events of a piece of the trace, or of a file of events."""
+        return load_events(self._path(name)) if name.startswith("trace") else json_of(self.folder, name)
+
+    def _path(self, name: str) -> Path:
         path = plain_file(self.folder, name)
         if path is None:
             raise RunError("unreadable-run", f"'{name}' of run {self.id} is no ordinary file")
-        sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
-        return load_chunk(path, Layout(self.names, sensors, self.step_time))
+        return path
 
 
 def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> Run:

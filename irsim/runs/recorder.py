@@ -23,6 +23,7 @@ from irsim.runs.chunks import save_chunk
 from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
 from irsim.runs.store import (
+    BEGUN,
     META,
     RESULT,
     RunError,
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
 
 __all__ = ["ARTIFACTS", "Recorder", "recording"]
 
-ARTIFACTS = ("scenario.yaml", "resolved.json", "run.json", "result.json")
-"""Files of every complete run; the trace and the events are in numbered pieces beside them."""
+ARTIFACTS = (BEGUN, "resolved.json", META, RESULT)
+"""Files of every complete run; trace and events are in numbered pieces beside them."""
 _PIECE = 4_000_000
 """Bytes of a piece of the trace."""
 _PERIOD = 0.5
@@ -93,7 +94,7 @@ class Recorder:
         else:
             assert folder is not None
             self.folder = _new(folder)
-        self._claim = claim(self.folder)
+        self._claim = claim(self.folder / BEGUN, _text_of(simulation).encode())
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
         self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
         self._scan_rows = _MOST_SCANS // self._scan if scans else 0  # that may still come
@@ -124,7 +125,6 @@ class Recorder:
             **_versions(),
         }
         try:
-            begun(self.folder / "scenario.yaml", _text_of(simulation).encode())
             begun(self.folder / "resolved.json", plain_scenario(simulation))
             self._write_meta()
         except BaseException:
@@ -203,18 +203,17 @@ class Recorder:
         self._log.detach(self._simulation.state)
 
     def _flush(self) -> None:
-        """Write what is held: first what happened, then how everybody moved."""
+        """Write what is held: how everybody moved and what happened, or only that where no trace is kept any more."""
         events = self._simulation.state.events(0, self._events)
-        if events:
-            self._events += len(events)
-            names, step_time = self._simulation.names, self._meta["step_time"]
-            self._write(
-                f"events-{self._pieces:04d}.json", to_json([_told(event, names, step_time) for event in events])
-            )
-        log = self._log
+        self._events += len(events)
+        names, step_time = self._simulation.names, self._meta["step_time"]
+        told = to_json([_told(event, names, step_time) for event in events])
+        log, number = self._log, f"{self._pieces:04d}"
+        if events and not log.rows:
+            self._write(f"events-{number}.json", told)
         if log.rows:
-            name = f"trace-{self._pieces:04d}.npz"
-            written(self.folder / name, lambda file: save_chunk(file, log, self._movers, self._simulation.pose))
+            movers, pose = self._movers, self._simulation.pose
+            written(self.folder / f"trace-{number}.npz", lambda file: save_chunk(file, log, movers, pose, told))
             self._bytes += log.bytes
             self._scan_bytes += 4 * log.ranges.size
             self._scan_rows -= log.rows

@@ -19,7 +19,9 @@ from irsim.errors import IrsimError
 from irsim.text import clean
 
 __all__ = [
+    "BEGUN",
     "DAY",
+    "LOCK",
     "META",
     "QUOTA",
     "RESULT",
@@ -43,8 +45,8 @@ __all__ = [
 
 Status = Literal["running", "finished", "cancelled", "interrupted"]
 META, RESULT, LOCK = "run.json", "result.json", "lock"
-_BEGUN = "scenario.yaml"
-"""Written once, when a run begins; ``run.json`` is touched by each use."""
+BEGUN = "scenario.yaml"
+"""Written once, when a run begins, and locked as long as it is written; ``run.json`` is touched by each use."""
 QUOTA = 500 * 1000 * 1000
 """Bytes that the runs of a workspace may take together; the least recently used ones make room."""
 DAY = 24 * 3600.0
@@ -127,7 +129,7 @@ def made_folder(runs: Path, stem: str) -> Path:
 
 def run_folders(runs: Path) -> list[Path]:
     """The folders of runs, the one begun last first."""
-    return _sorted_folders(runs, (_BEGUN, META))
+    return _sorted_folders(runs, (BEGUN, META))
 
 
 def _sorted_folders(runs: Path, dated_by: Sequence[str]) -> list[Path]:
@@ -274,35 +276,47 @@ def _refusals(target: Path) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Claim:
-    """Says that a run is being written, as long as this process lives and until it is released."""
+    """Says that a run or a job is being written, as long as this process lives and until it is released."""
 
-    folder: Path
     descriptor: int
 
     def release(self) -> None:
         """Nobody writes any more."""
-        with suppress(OSError):
-            os.unlink(self.folder / LOCK)
         os.close(self.descriptor)
 
 
-def claim(folder: Path) -> Claim:
-    """Say that this process writes a run."""
-    with _refusals(folder / LOCK):
-        descriptor = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)
-    _locked(descriptor, wait=True)
-    return Claim(folder, descriptor)
+def claim(file: Path, text: bytes = b"") -> Claim:
+    """Say that this process writes a run or a job.
+
+    Args:
+        file: The file to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
+        text: What it holds.
+
+    Raises:
+        RunError: The system refuses.
+    """
+    with _refusals(file):
+        descriptor = os.open(file, os.O_CREAT | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
+        try:
+            _locked(descriptor, wait=True)
+            with open(descriptor, "wb", closefd=False) as stream:
+                stream.write(text)
+        except BaseException:
+            os.close(descriptor)
+            raise
+    return Claim(descriptor)
 
 
 def status_of(folder: Path) -> Status:
     """What became of a run. One without a result that nobody writes any more was interrupted."""
     if plain_file(folder, RESULT) is not None:
         return "finished"
+    meta = json_of(folder, META)
+    if isinstance(meta, dict) and meta.get("cancelled") is True:
+        return "cancelled"
     if _being_written(folder):
         return "running"
-    meta = json_of(folder, META)
-    cancelled = isinstance(meta, dict) and meta.get("cancelled") is True
-    return "finished" if plain_file(folder, RESULT) is not None else "cancelled" if cancelled else "interrupted"
+    return "finished" if plain_file(folder, RESULT) is not None else "interrupted"
 
 
 def mark_cancelled(folder: Path) -> None:
@@ -315,7 +329,7 @@ def mark_cancelled(folder: Path) -> None:
 
 
 def _being_written(folder: Path) -> bool:
-    path = plain_file(folder, LOCK)
+    path = plain_file(folder, BEGUN) or plain_file(folder, LOCK)
     if path is None:
         return False
     try:

@@ -24,6 +24,7 @@ import anyio
 
 from irsim.runs.store import (
     DAY,
+    LOCK,
     META,
     RESULT,
     Claim,
@@ -92,7 +93,7 @@ class Jobs:
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
         job = made_folder(folder, _STEM)
-        held = claim(job)
+        held = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "status": "running", "done": 0, "total": total}
         _note(job, about)
         work = {

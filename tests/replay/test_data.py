@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -96,14 +95,13 @@ def test_long_runs_are_thinned(run: Run, monkeypatch: pytest.MonkeyPatch) -> Non
 def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    [piece] = run.folder.glob("events-*.json")
-    known = json.loads(piece.read_text())
-    hit = next(event for event in known if event["kind"] == "collision" and event["object"] == "lorry")
+    hit = next(event for event in run.events if event.kind == "collision" and event.object == "lorry")
     times = np.linspace(0, run.last_step, 200).astype(int).tolist()
-    arrivals = [{**hit, "kind": "arrival", "object": "rover", "partner": None, "step": step} for step in times]
-    hits = [{**hit, "step": step} for step in times[150:180]]
-    other = {**hit, "object": "crate", "partner": "block"}
-    piece.write_text(json.dumps(sorted([*arrivals, *hits, other], key=lambda event: event["step"])))
+    arrivals = [hit._replace(kind="arrival", object="rover", partner=None, step=step) for step in times]
+    hits = [hit._replace(step=step) for step in times[150:180]]
+    other = hit._replace(object="crate", partner="block")
+    events = sorted([*arrivals, *hits, other], key=lambda event: event.step)
+    monkeypatch.setattr(Run, "events", events)
     monkeypatch.setattr(packing, "_MOST_EVENTS", 60)
     head = packing.pack_run(open_run(run.id)).head
     kinds = [event[1] for event in head["events"]]
@@ -115,7 +113,7 @@ def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     monkeypatch.setattr(packing, "_MOST_EVENTS", 10)
     head = packing.pack_run(open_run(run.id)).head
     assert [event[2] for event in head["events"]] == [1] * 10  # the robot's collisions, over their whole time
-    assert (head["events"][0][0], head["events"][-1][0]) == (hits[0]["step"], hits[-1]["step"])
+    assert (head["events"][0][0], head["events"][-1][0]) == (hits[0].step, hits[-1].step)
     assert head["left_out"] == {"arrival": 200, "collision": 21}
 
 

@@ -52,7 +52,7 @@ def test_the_least_recently_used_make_room(workspace: Path) -> None:
 
 def test_old_ones_are_let_go_unless_they_are_written(workspace: Path) -> None:
     old, young, busy = (made(workspace, name, age=age) for name, age in (("a", 90_000), ("b", 80_000), ("c", 90_000)))
-    held = claim(busy)
+    held = claim(busy / "lock")
     assert prune(runs_folder(workspace)) == [old.name]
     held.release()
     assert prune(runs_folder(workspace)) == [busy.name]
@@ -108,7 +108,7 @@ def test_names_are_slugs() -> None:
 def test_status(workspace: Path) -> None:
     folder = made(workspace, "a")
     assert status_of(folder) == "interrupted"
-    held = claim(folder)
+    held = claim(folder / "lock")
     assert status_of(folder) == "running"
     held.release()
     mark_cancelled(folder)
@@ -146,7 +146,7 @@ def test_links_in_a_run_are_not_followed(workspace: Path, room: Path, tmp_path_f
         open_run("linked-123456", workspace)
 
 
-@pytest.mark.parametrize("name", ["run.json", "trace-0000.npz", "events-0000.json", "result.json", "resolved.json"])
+@pytest.mark.parametrize("name", ["run.json", "trace-0000.npz", "result.json", "resolved.json"])
 def test_changed_files_are_told(room: Path, name: str) -> None:
     run_id = str(irsim.run(room, seed=0, record=True).run_id)
     path = runs_folder() / run_id / name
