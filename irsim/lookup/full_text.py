@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-__all__ = ["Document", "best"]
+__all__ = ["Document", "best", "words_of"]
 
 _MOST = 5
 _LEAST_SHARE = 0.4
@@ -45,10 +45,10 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     Returns:
         Names, best first, and the words of the query that are in no document.
     """
-    wanted = list(dict.fromkeys(word for word in _words(query) if not _EMPTY.fullmatch(word))) or _words(query)
-    counts = [Counter(_words(document.text)) for document in documents]
+    wanted = list(dict.fromkeys(word for word in words_of(query) if not _EMPTY.fullmatch(word))) or words_of(query)
+    counts = [Counter(words_of(document.text)) for document in documents]
     for document, count in zip(documents, counts, strict=True):
-        for word in _words(document.heads):
+        for word in words_of(document.heads):
             count[word] += _HEAD
     mean = sum(count.total() for count in counts) / max(len(counts), 1)
     scores, matched = [0.0] * len(counts), [0] * len(counts)
@@ -69,7 +69,7 @@ def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str
     return [documents[k].name for k in order if scores[k] > 0 and scores[k] >= _LEAST_SHARE * scores[order[0]]], unknown
 
 
-def _words(text: str) -> list[str]:
+def words_of(text: str) -> list[str]:
     """Lower case, without the s of the plural; parts of names with _ and - are words of their own."""
     return [
         word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word

@@ -97,6 +97,7 @@ GUIDES: dict[str, Guide] = {
             *("delay", "delayed", "start_time", "start time", "stagger", "staggered", "spawn", "appear", "disappear"),
             *("schedule", "timer", "weather", "rain", "wind", "snow", "ice", "slippery", "traffic light"),
             *("traffic lights", "priority", "right of way", "battery", "camera", "gripper", "underwater"),
+            *("cameras", "depth camera", "rgb camera", "imu", "gps", "boat", "ship", "submarine"),
         ),
     ),
     "things": Guide(

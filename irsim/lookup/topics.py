@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import re
 from collections.abc import Sequence
 
@@ -12,6 +13,7 @@ from irsim.codes import CODES, TOOL_CODES, Code
 from irsim.compatibility import DIFFERENCES
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.everyday import EVERYDAY, named
 from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_line, metric_topic
@@ -46,6 +48,8 @@ _PLACES = {
 }
 """Where components of a kind stand in a scenario."""
 _MOST_NAMESAKES = 20
+_MOST_HITS, _MOST_CALLED = 5, 3
+"""Lines of a search, and how many of them at most are there for their everyday names."""
 _NEAR = 0.8
 """How similar a name must be to be suggested, or to end a search."""
 _MOST_CHOICES = 12
@@ -72,7 +76,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return lists[name]()
     metric = _metric_named(words)
     if metric is not None:
-        return metric_answer(metric)
+        answer = metric_answer(metric)
+        return answer.model_copy(update={"see": [*answer.see, *named(name)]}) if name.isalpha() else answer
     if topic.strip() in _all_codes():
         return _code(topic.strip())
     if name in templates.names():
@@ -86,7 +91,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
     guide = next((known for known, guide in GUIDES.items() if topic.strip().lower() in (known, *guide.words)), None)
     if guide is not None:
         asked = f"metric {name}"
-        return _guide(guide, [asked] if asked in METRIC_TOPICS else [])
+        return _guide(guide, ([asked] if asked in METRIC_TOPICS else []) + named(topic)[:_MOST_HITS])
     return _search(schema, topic.strip(), words or topic.split())
 
 
@@ -263,9 +268,12 @@ def _search(schema: Node, topic: str, words: list[str]) -> Answer:
     found, unknown = full_text.best(documents, topic)
     if not found or not full_text.best(metrics, topic)[1]:  # metrics are meant only by words of theirs
         found, unknown = full_text.best(documents + metrics, topic)
-    if not found or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _NEAR)):
+    called = named(topic)
+    unknown = [word for word in unknown if not any(word in full_text.words_of(EVERYDAY[name]) for name in called)]
+    if not (called or found) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _NEAR)):
         raise TopicError(topic, _near(topics, words))
-    hits = [lines[name] for name in found]
+    lines |= {name: _line_of(schema, name) for name in called}
+    hits = [lines[name] for name in dict.fromkeys([*called[:_MOST_CALLED], *found])][:_MOST_HITS]
     return _hits(
         wanted,
         hits,
@@ -319,6 +327,14 @@ def _choices(schema: Node, node: Node) -> list[object]:
 
 def _hit(path: tuple[str, ...], node: Node) -> Key:
     return Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split()))
+
+
+def _line_of(schema: Node, name: str) -> Key:
+    """What is shown of a guide, or of a path of the language, whether or not another path has the same text."""
+    if name in GUIDES:
+        return Key(name=name, text=GUIDES[name].title)
+    [node, *_] = functools.reduce(lambda nodes, word: step(schema, nodes, word), name.split("."), [schema])
+    return Key(name=name, text=_one_sentence(_hit((), node).text))
 
 
 def _last(hit: Key) -> str:

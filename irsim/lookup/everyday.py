@@ -1,0 +1,104 @@
+"""Everyday words for the parts of the language: what people call things, and the topic that is about them."""
+
+from __future__ import annotations
+
+from irsim.lookup.full_text import words_of
+
+__all__ = ["EVERYDAY", "named"]
+
+EVERYDAY: dict[str, str] = {
+    "robot.sensors.lidar2d": "lidar, laser, laser scanner, scanner, lidar scanner, range finder, rangefinder, ladar, "
+    "distance sensor, proximity sensor, ultrasonic, sonar, beam, sensor range",
+    "robot.sensors.fmcw_lidar2d": "lidar, fmcw, doppler, radar, velocity lidar, radial velocity",
+    "robot.sensors.contact2d": "bumper, touch sensor, contact sensor, tactile",
+    "robot.sensors": "sensor, camera, depth camera, imu, gps",
+    "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
+    "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
+    "robot.fov": "field of view, view angle, visual range",
+    "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
+    "steering, tricycle, lorry, forklift",
+    "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels, tank, "
+    "skid steer",
+    "robot.kinematics.omni": "omnidirectional, holonomic, mecanum, omni wheels, omniwheel, swerve, point mass",
+    "robot.kinematics.omni_angular": "omnidirectional, holonomic, mecanum, turn in place",
+    "robot.kinematics.static": "static obstacle, fixed, immovable",
+    "robot.kinematics": "drive, motion model, drive model, kinematic model, dynamics, locomotion, mobile base",
+    "robot.behavior.sfm": "social force, social force model, pedestrian, human, crowd, people, walker",
+    "robot.behavior.orca": "reciprocal collision avoidance, optimal reciprocal collision avoidance, pedestrian, "
+    "collision avoidance, obstacle avoidance",
+    "robot.behavior.rvo": "velocity obstacle, reciprocal velocity obstacle, vo, hrvo, collision avoidance",
+    "robot.behavior.dash": "straight line, drive straight, go straight, go to goal, point to point",
+    "robot.behavior.dash.wander": "wander, random walk, roam, wandering, random goals",
+    "robot.behavior.dash.loop": "loop, patrol, patrolling, back and forth, shuttle, to and fro",
+    "robot.behavior.follow": "path following, follow path, navigate, path planning, route, plan, pure pursuit, "
+    "global planner",
+    "robot.behavior": "behavior, behaviour, controller, policy, local planner, navigation",
+    "robot.group_behavior": "swarm, flocking, flock, group behavior, formation",
+    "robot.behavior.follow.planner": "planner, path planning, global planner, route, shortest path, search algorithm",
+    "robot.behavior.follow.planner.astar": "a star, dijkstra, grid search, shortest path",
+    "robot.behavior.follow.planner.rrt": "rapidly exploring, random tree, sampling planner",
+    "robot.behavior.follow.planner.rrt_star": "rrt star",
+    "robot.behavior.follow.planner.informed_rrt_star": "informed rrt star",
+    "robot.behavior.follow.planner.jps": "jump point search",
+    "robot.behavior.follow.planner.prm": "probabilistic roadmap, roadmap",
+    "robot.shape": "shape, footprint, geometry, body, robot size, obstacle size, size",
+    "robot.shape.circle": "disc, disk, round, cylinder, post, pillar, robot size",
+    "robot.shape.rectangle": "box, square, crate, table, shelf, oblong, wall",
+    "robot.shape.polygon": "triangle, hexagon, polyhedron, irregular, vertex, vertices",
+    "robot.shape.linestring": "line, wall, fence, segment, polyline, barrier",
+    "robot.shape.compound": "l-shape, l-shaped, t-shape, several parts, composite",
+    "robot.shape.circle.radius": "radius, diameter",
+    "robot.state": "start, start position, initial position, initial pose, start pose, pose, spawn, position, "
+    "orientation",
+    "robot.goal": "goal, destination, target, target position, end position, go to goal",
+    "robot.waypoints": "waypoint, via point, checkpoint, route, several goals, multiple goals",
+    "robot.goal_threshold": "goal tolerance, arrival tolerance, goal radius, arrive",
+    "robot.number": "number of robots, how many robots, number of obstacles, count, fleet size",
+    "robot.vel_max": "speed limit, max speed, maximum speed, top speed, velocity limit, speed, fast, slow, velocity",
+    "robot.acce": "acceleration, acceleration limit, braking, deceleration",
+    "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
+    "robot.distribution.random": "random positions, random placement, random start, scatter",
+    "robot.color": "colour",
+    "robot.plot": "drawing, draw, label, appearance",
+    "robot.plot.show_trajectory": "trajectory, trail, path drawn, show path",
+    "robot": "robot, agent, multi robot, several robots",
+    "obstacle": "obstacle, moving obstacle, dynamic obstacle, static obstacle, door, chair",
+    "world": "environment, arena, scene",
+    "world.width": "world size, arena size, size of the world",
+    "world.boundary": "boundary, border, wall, edge of the world, closed world",
+    "world.obstacle_map": "map, occupancy grid, grid map, gridmap, floor plan, grid, bitmap, terrain",
+    "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
+    "world.obstacle_map.ros": "ros map, map server, pgm, slam",
+    "world.obstacle_map.perlin": "random map, forest, procedural",
+    "world.collision_mode": "collision, crash, hit, bump, collide, impact",
+    "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",
+    "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",
+    "world.seed": "seed, random seed, reproducible",
+    "gui.keyboard": "keyboard, teleop, manual control, joystick",
+    "dead-ends": "deadlock, stuck, trap",
+}
+"""Topics and what they are called, separated by commas; names of the language itself need not be here."""
+
+
+def named(query: str) -> list[str]:
+    """Topics that words of a query name, those named by more words first.
+
+    ``360 degree lidar`` names the lidars: a name counts wherever it stands in the query. One within a longer name that
+    fits (``drive`` in ``differential drive``) does not.
+    """
+    words = words_of(query.replace("*", " star"))
+    found: list[tuple[int, int, str]] = []  # (words, first word, topic)
+    for topic, names in EVERYDAY.items():
+        spans = [
+            (len(name), start, topic)
+            for name in map(words_of, names.split(", "))
+            for start in range(len(words) - len(name) + 1)
+            if words[start : start + len(name)] == name
+        ]
+        found += sorted(spans, reverse=True)[:1]
+    whole = [
+        (count, start, topic)
+        for count, start, topic in found
+        if not any(other[0] > count and other[1] <= start < start + count <= other[1] + other[0] for other in found)
+    ]
+    return [topic for _, _, topic in sorted(whole, key=lambda span: -span[0])]

@@ -1,0 +1,118 @@
+"""`irsim describe` by the words people use."""
+
+from __future__ import annotations
+
+import pytest
+
+from irsim.lookup import Answer, lookup
+from irsim.lookup.everyday import EVERYDAY, named
+from irsim.lookup.full_text import words_of
+from irsim.lookup.guides import GUIDES
+from irsim.scenario.schema import json_schema
+
+SCHEMA = json_schema()
+MEANT = {
+    "lidar": "robot.sensors.lidar2d",
+    "laser": "robot.sensors.lidar2d",
+    "Laser scanner": "robot.sensors.lidar2d",
+    "lidar scanner": "robot.sensors.lidar2d",
+    "360 degree lidar": "robot.sensors.lidar2d",
+    "range finder": "robot.sensors.lidar2d",
+    "doppler": "robot.sensors.fmcw_lidar2d",
+    "bumper": "robot.sensors.contact2d",
+    "camera": "robot.sensors",
+    "car": "robot.kinematics.acker",
+    "ackermann": "robot.kinematics.acker",
+    "bicycle model": "robot.kinematics.acker",
+    "differential drive": "robot.kinematics.diff",
+    "unicycle": "robot.kinematics.diff",
+    "omnidirectional": "robot.kinematics.omni",
+    "holonomic": "robot.kinematics.omni",
+    "pedestrian": "robot.behavior.sfm",
+    "social force": "robot.behavior.sfm",
+    "social force model": "robot.behavior.sfm",
+    "orca": "robot.behavior.orca",
+    "rvo": "robot.behavior.rvo",
+    "reciprocal velocity obstacles": "robot.behavior.rvo",
+    "collision avoidance": "robot.behavior.orca",
+    "controller": "robot.behavior",
+    "wander": "robot.behavior.dash.wander",
+    "roam": "robot.behavior.dash.wander",
+    "patrol": "robot.behavior.dash.loop",
+    "goal": "robot.goal",
+    "destination": "robot.goal",
+    "waypoints": "robot.waypoints",
+    "via points": "robot.waypoints",
+    "start position": "robot.state",
+    "path planning": "robot.behavior.follow.planner",
+    "A*": "robot.behavior.follow.planner.astar",
+    "RRT*": "robot.behavior.follow.planner.rrt_star",
+    "dijkstra": "robot.behavior.follow.planner.astar",
+    "wall": "robot.shape.linestring",
+    "disc": "robot.shape.circle",
+    "triangle": "robot.shape.polygon",
+    "box": "robot.shape.rectangle",
+    "radius": "robot.shape.circle.radius",
+    "map": "world.obstacle_map",
+    "occupancy grid": "world.obstacle_map",
+    "floor plan": "world.obstacle_map.image",
+    "noise": "robot.sensors.lidar2d.noise",
+    "motion noise": "robot.kinematics.diff.noise",
+    "seed": "world.seed",
+    "random seed": "world.seed",
+    "collision": "world.collision_mode",
+    "crash": "world.collision_mode",
+    "speed limit": "robot.vel_max",
+    "top speed": "robot.vel_max",
+    "time limit": "world.time_limit",
+    "duration": "world.time_limit",
+    "time step": "world.step_time",
+    "dt": "world.step_time",
+    "number of robots": "robot.number",
+    "random positions": "robot.distribution.random",
+    "field of view": "robot.fov",
+    "moving obstacle": "obstacle",
+}
+
+
+def led_to(answer: Answer) -> list[str]:
+    """The topic of an answer, and those that it names."""
+    return [answer.topic, *(key.name for keys in answer.groups.values() for key in keys), *answer.see]
+
+
+@pytest.mark.parametrize("word", MEANT)
+def test_an_everyday_word_leads_to_what_it_names(word: str) -> None:
+    answer = lookup(word, schema=SCHEMA)
+    assert MEANT[word] in led_to(answer)
+    assert "Nothing about" not in answer.text
+
+
+@pytest.mark.parametrize("word", ["lidar", "laser", "laser scanner", "360 degree lidar", "2d lidar", "lidar sensor"])
+def test_the_sensor_comes_before_templates_that_have_one(word: str) -> None:
+    (hits,) = lookup(word, schema=SCHEMA).groups.values()
+    assert hits[0].name == "robot.sensors.lidar2d"
+    assert hits[0].text
+
+
+def test_every_topic_that_has_everyday_names_exists() -> None:
+    for topic in EVERYDAY:
+        assert topic in GUIDES or lookup(topic, schema=SCHEMA).topic == topic
+
+
+def test_a_name_within_a_longer_one_is_not_meant() -> None:
+    assert named("differential drive") == ["robot.kinematics.diff"]
+    assert named("drive") == ["robot.kinematics"]
+    assert named("nothing of the kind") == []
+
+
+def test_names_are_given_once_in_lower_case() -> None:
+    for topic, names in EVERYDAY.items():
+        assert names == names.lower()
+        single = [tuple(words_of(name)) for name in names.split(", ")]
+        assert len(set(single)) == len(single), topic
+
+
+def test_words_beside_a_name_that_say_nothing_are_told() -> None:
+    answer = lookup("laser qwertz", schema=SCHEMA)
+    assert answer.text == "Nothing about 'qwertz'."
+    assert "robot.sensors.lidar2d" in led_to(answer)
