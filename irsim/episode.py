@@ -89,13 +89,13 @@ def read_scenario(
     if behavior is not None:
         from irsim.benchmarks.variant import BenchmarkError, behavior_of, check_known, read_with_behavior
 
+        document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
         try:
             check_known(behavior)
+            scenario, diagnostics = read_with_behavior(document, behavior_of(behavior), strict=strict)
         except BenchmarkError as error:
             error.where = "behavior"
             raise
-        document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
-        scenario, diagnostics = read_with_behavior(document, behavior_of(behavior), strict=strict)
         scenario.text = document.text  # what was given, for the record of a run
         return scenario, [as_finding(d) for d in diagnostics]
     scenario, diagnostics = or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))

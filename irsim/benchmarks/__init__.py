@@ -9,7 +9,8 @@ from __future__ import annotations
 import itertools
 import math
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -74,8 +75,9 @@ def benchmark(
     _check(names, wanted, chosen, most_episodes)
     limits = limits or DEFAULT_LIMITS
     import_modules(imports)
-    for behavior in wanted:
-        check_known(behavior)
+    for number, behavior in enumerate(wanted):
+        with _about(number):
+            check_known(behavior)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances = dict[str, float](), dict[str, list[str]]()
@@ -88,7 +90,7 @@ def benchmark(
             limits=limits,
         )
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
-        for behavior in wanted:
+        for number, behavior in enumerate(wanted):
             job = Job(
                 text=str(document.text),
                 path=document.path,
@@ -98,7 +100,8 @@ def benchmark(
                 imports=tuple(imports),
                 limits=tuple(asdict(limits).items()),
             )
-            chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
+            with _about(number):
+                chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
             jobs.append((name, behavior, job, chosen))
     plan = [
         (name, behavior, Task(job, seed))
@@ -165,12 +168,23 @@ def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int |
             raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
     if min(seeds) < 0 or max(seeds) >= 2**64:
         raise BenchmarkError("a seed is outside 0 to 2^64 - 1", "give seeds from 0")
-    for behavior in behaviors:
-        behavior_of(behavior)
+    for number, behavior in enumerate(behaviors):
+        with _about(number):
+            behavior_of(behavior)
     total = len(names) * len(behaviors) * len(seeds)
     if most is not None and total > most:
         product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
         raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
+
+
+@contextmanager
+def _about(number: int) -> Iterator[None]:
+    """What is wrong in here is so with one of the behaviors."""
+    try:
+        yield
+    except BenchmarkError as error:
+        error.where = f"behaviors[{number}]"
+        raise
 
 
 def _notes(episodes: list[EpisodeRow], chances: dict[str, list[str]], seeds: list[int]) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from irsim.diagnostics import Diagnostic, nearest
+from irsim.diagnostics import Diagnostic, format_path, nearest
 from irsim.errors import IrsimError
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.load import Document
@@ -106,6 +106,8 @@ def read_with_behavior(
 
     Raises:
         ScenarioError: It cannot be used.
+        BenchmarkError: The behavior has an option that does not exist, or cannot be what it is, or cannot drive a robot
+            of this scenario.
     """
     if behavior is None or not isinstance(document.data, Mapping):
         return or_raise(read(document, strict=strict, limits=document.limits))
@@ -114,8 +116,29 @@ def read_with_behavior(
     for entry in entries if isinstance(entries, list) else [entries]:
         if isinstance(entry, dict) and entry.get("kinematics") is not None:
             _give(entry, behavior)
-    changed = replace(document, data=data, text=None, _root=None)
-    return or_raise(read(changed, strict=strict, limits=document.limits))
+    changed = read(replace(document, data=data, text=None, _root=None), strict=strict, limits=document.limits)
+    for item in changed.diagnostics:
+        _blame(item, behavior)
+    if changed.scenario is None:
+        or_raise(read(document, strict=strict, limits=document.limits))  # what it finds in the text has lines
+    return or_raise(changed)
+
+
+def _blame(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
+    """Raise what is found about the behavior that was given, which no file has: IR-SIM's leniency is not for it."""
+    owner = item.path.index("behavior") + 1 if item.path[:1] == ("robot",) and "behavior" in item.path else None
+    if owner is None:
+        return
+    keys = [part for part in item.path[owner:] if isinstance(part, str)]
+    wrong = item.severity == "error" or (item.tolerated and keys[:1] != ["name"])
+    if not wrong or (keys and keys[0] not in behavior):
+        return
+    place = format_path(item.path[:owner])
+    known = item.allowed if isinstance(item.allowed, str) else ", ".join(item.allowed or ())
+    fix = item.fix or (f"allowed is {known}" if known else "choose another behavior or other options")
+    named = f"{place}: " if keys[:1] in ([], ["name"]) else "" if keys[-1] in item.message else f"{'.'.join(keys)}: "
+    message = item.message.replace(f"'{place}'", f"behavior {behavior['name']}").replace(f"{place}.", "")
+    raise BenchmarkError(named + message.rstrip("."), fix.replace(f"{place}.", ""))
 
 
 def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:

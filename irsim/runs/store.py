@@ -35,6 +35,7 @@ __all__ = [
     "plain_file",
     "prune",
     "recent_ids",
+    "remove",
     "run_folders",
     "runs_folder",
     "status_of",
@@ -387,7 +388,7 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
         except OSError:
             continue
         if (old or total > quota) and not _being_written(folder):
-            _remove(folder)
+            remove(folder)
             gone.append(folder.name)
             total -= size
         elif leftovers and not _being_written(folder):
@@ -418,7 +419,7 @@ def _size_of(folder: Path) -> tuple[int, list[str]]:
     return total, leftovers
 
 
-def _remove(folder: Path) -> None:
+def remove(folder: Path) -> None:
     """First out of sight as a whole, then bit by bit."""
     trash = folder.with_name(f"{_TRASH}{folder.name}-{secrets.token_hex(3)}")
     with suppress(OSError):
@@ -435,7 +436,7 @@ def _sweep(runs: Path) -> None:
             with suppress(OSError):
                 young = time.time() - folder.stat().st_mtime < _ABANDONED
                 if not young and not _being_written(folder):
-                    _remove(folder)
+                    remove(folder)
 
 
 def _sweep_run(leftovers: list[str]) -> None:

@@ -36,6 +36,7 @@ from irsim.runs.store import (
     plain_file,
     prune,
     recent_ids,
+    remove,
     run_folders,
     runs_folder,
     status_of,
@@ -141,6 +142,12 @@ class Jobs:
         if status_of(job) == "running":
             with suppress(OSError):
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
+
+    def forget(self, job_id: str) -> None:
+        """Let go of a job that has ended and was told of."""
+        job = self._find(job_id)
+        if status_of(job) != "running":
+            remove(job)
 
     def _folder(self) -> Path:
         try:

@@ -13,7 +13,7 @@ from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.worker import Progress, Workers
 
-__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services"]
+__all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
 
 ScenarioPath = Annotated[str | None, Field(description="Scenario file: path relative to the workspace.")]
 ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML text (at most 256 KiB).")]
@@ -154,12 +154,15 @@ def _result(answer: dict[str, Any], argument: str) -> dict[str, Any]:
     return result
 
 
+def line_of(item: dict[str, Any]) -> str:
+    """Where in the text a problem is, if it is in the text."""
+    return "" if item["line"] is None else f" line {item['line']}"
+
+
 def _as_failure(error: dict[str, Any], source: str) -> Exception:
     argument = {"path": "scenario_path", "text": "scenario_yaml"}.get(source, source)
     if error["code"] == "invalid-scenario":
-        first = "; ".join(
-            f"{item['where']} line {item['line']} {item['code']}: {item['what']}" for item in error["first"]
-        )
+        first = "; ".join(f"{item['where']}{line_of(item)} {item['code']}: {item['what']}" for item in error["first"])
         count = error["errors"]
         return failure(
             "invalid-scenario",

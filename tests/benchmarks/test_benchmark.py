@@ -18,7 +18,7 @@ from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.benchmarks.variant import behavior_of
 from irsim.cli.app import app
-from irsim.errors import OverLimitError, PlacementError, ScenarioError, ScenarioNotFoundError
+from irsim.errors import OverLimitError, PlacementError, ScenarioNotFoundError
 from irsim.metrics import wilson
 
 CROWD = """
@@ -227,8 +227,10 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
         irsim.benchmark(files, seeds=[-1])
     with pytest.raises(ScenarioNotFoundError):
         irsim.benchmark([*files, str(tmp_path / "none.yaml")])
-    with pytest.raises(ScenarioError, match="timeHorizn"):
-        irsim.benchmark(files, "{name: orca, timeHorizn: 5}", strict=True)
+    for strict in (True, False):  # no file of IR-SIM has such an argument
+        with pytest.raises(BenchmarkError, match="'timeHorizn' is not a key of behavior orca") as error:
+            irsim.benchmark(files, ["dash", "{name: orca, timeHorizn: 5}"], strict=strict)
+        assert error.value.where == "behaviors[1]"
 
 
 def test_an_episode_that_fails_is_raised_as_it_is(tmp_path, monkeypatch) -> None:

@@ -168,6 +168,40 @@ async def test_limits(workspace: Path) -> None:
             assert error_of(await client.call_tool("benchmark", arguments)).startswith(start)
 
 
+@pytest.mark.parametrize(
+    ("behavior", "told"),
+    [
+        (
+            "{name: orca, timeHorizn: 5}",
+            "'timeHorizn' is not a key of behavior orca {}. Fix: rename it to 'timeHorizon'.",
+        ),
+        ("{name: orca, timeHorizon: -5}", "timeHorizon: -5 is out of range {}. Fix: allowed is > 0 [s]."),
+        ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
+        ("orcaa", "there is no behavior 'orcaa' {}. Fix: did you mean orca?"),
+        ("{orca", "'{{orca' is no behavior {}. Fix: give a name such as orca, or "),
+    ],
+)
+async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(
+    workspace: Path, behavior: str, told: str
+) -> None:
+    (workspace / "room.yaml").write_text(ROOM, encoding="utf-8")
+    async with connected(workspace) as client:
+        one = await client.call_tool("run_episode", {"scenario_path": "room.yaml", "behavior": behavior})
+        many = await client.call_tool("benchmark", {"scenarios": ["room.yaml"], "behaviors": ["dash", behavior]})
+    assert error_of(one).startswith("bad-argument: " + told.format("(behavior)"))
+    assert error_of(many).startswith("bad-argument: " + told.format("(behaviors[1])"))
+    assert list((workspace / ".irsim" / "jobs").iterdir()) == []
+
+
+async def test_with_another_behavior_a_wrong_scenario_is_still_told_by_line(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        wrong = {"scenario_yaml": ROOM.replace("goal:", "gaol:"), "behavior": "orca"}
+        told = error_of(await client.call_tool("run_episode", wrong))
+        assert "robot[0].gaol line 7 unknown-key" in told
+        error_of(await client.call_tool("benchmark", {"scenarios": [wrong["scenario_yaml"]], "behaviors": ["orca"]}))
+    assert list((workspace / ".irsim" / "jobs").iterdir()) == []
+
+
 async def test_jobs_that_are_not_there(workspace: Path) -> None:
     async with connected(workspace) as client:
         assert error_of(await client.call_tool("get_job", {"job_id": "benchmark-123456"})).startswith("unknown-job")

@@ -14,7 +14,7 @@ from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
 from irsim_mcp.progress import reporter
-from irsim_mcp.services import Services
+from irsim_mcp.services import Services, line_of
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["Benchmark", "answer", "tool"]
@@ -88,6 +88,8 @@ def tool(services: Services) -> StrictTool:
         except anyio.get_cancelled_exc_class():
             services.jobs.cancel(job)
             raise
+        if "error" in state:
+            services.jobs.forget(job)  # the caller gets the error and no id
         return answer(state)
 
     return strict(benchmark, title="Compare behaviors", description=_DESCRIPTION, read_only=False, idempotent=True)
@@ -246,7 +248,8 @@ def _shown(numbers: Sequence[float]) -> str:
 def _as_failure(error: dict[str, Any]) -> Exception:
     if error["code"] == "invalid-scenario":
         first = "; ".join(
-            f"{item.get('file') or '(text)'} {item['where']} {item['code']}: {item['what']}" for item in error["first"]
+            f"{item.get('file') or '(text)'} {item['where']}{line_of(item)} {item['code']}: {item['what']}"
+            for item in error["first"]
         )
         what = f"{error['errors']} error{'s' * (error['errors'] != 1)}: {first}"
         fix = "validate_scenario lists every problem with its fix"
