@@ -266,7 +266,7 @@ class RobotResult(Result):
 
     name: str
     outcome: Literal["success", "collision", "timeout"]
-    """Exactly one: arrived without a collision before; collided before it arrived; neither."""
+    """Exactly one: arrived without a collision before; stopped by a collision, or arrived after one; neither."""
     time_to_goal: float | None
     """Time of first arrival [s]; None when it never arrived."""
     collision_count: int
@@ -381,7 +381,7 @@ class BenchmarkRow(Result):
     success: Proportion
     """Every robot reached its goal without a collision before."""
     collision: Proportion
-    """A robot collided before it arrived."""
+    """A robot was stopped by a collision, or arrived after one."""
     timeout: Proportion
     """Neither, at the horizon."""
     metrics: dict[str, Estimate]

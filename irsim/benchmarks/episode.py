@@ -14,6 +14,7 @@ from irsim.episode import horizon_of, import_modules
 from irsim.metrics.company import on_their_way
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
+from irsim.metrics.progress import UNREACHABLE
 from irsim.observers.events import first_events
 from irsim.observers.trace import record
 from irsim.scenario.limits import Limits
@@ -117,7 +118,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "sim_time": steps * trace.step_time,
         "time_limit": horizon * trace.step_time,
         "robots": len(robots),
-        "unreachable": sum(bool(flags) for flags in measured.flags),
+        "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
         "failures": _failures(measured),
         "metrics": measured.episode,
     }
@@ -156,5 +157,5 @@ def _failures(measured: EpisodeMetrics) -> dict[str, str]:
     found: dict[str, str] = {}
     for name, robot, hit in zip(measured.names, measured.robots, measured.hits, strict=True):
         if not robot["success"] and len(found) < _TOLD:
-            found[name] = "timeout" if hit is None else f"collision with {hit!r}"
+            found[name] = "timeout" if robot["timeout"] else f"collision with {hit!r}"
     return found

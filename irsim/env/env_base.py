@@ -381,7 +381,8 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
     def outcome(self) -> Outcome:
         """How it ended: ``running``, ``success``, ``collision`` or ``timeout``.
 
-        Success means that every robot arrived and none collided before; ``timeout`` needs ``world.time_limit``.
+        Success means that every robot arrived and none collided before, collision that one arrived after a collision or
+        stands because of one; ``timeout`` needs ``world.time_limit``.
         """
         return outcome_of(self._simulation)
 

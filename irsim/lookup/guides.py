@@ -117,9 +117,10 @@ GUIDES: dict[str, Guide] = {
         "success, collision, timeout",
         "A run ends when every robot has arrived or been stopped by a collision, or at its time limit: the steps asked "
         "for, else world.time_limit, else max(30 s, 4 x the longest way over its goals / that robot's top speed). "
-        "success: every robot arrived without a collision before; collision: a robot touched something; timeout: "
-        "neither. Contacts are reported when they begin. Names count robots first, then obstacles: obstacle_3 of a "
-        "file with one robot is the third obstacle; pictures shorten it to o3.",
+        "success: every robot arrived without a collision before; collision: one was stopped by a collision, or "
+        "arrived after one; timeout: neither (where collision_mode lets robots drive on, contacts only count). "
+        "Contacts are reported when they begin. Names count robots first, then obstacles: obstacle_3 of a file with "
+        "one robot is the third obstacle; pictures shorten it to o3.",
         None,
         ("outcome", "success", "timeout", "time limit", "default time limit", "horizon"),
     ),

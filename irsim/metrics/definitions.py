@@ -40,7 +40,7 @@ def _canonical() -> tuple[Metric, ...]:
         Metric("wall_collisions", "count", "of the contacts, those with static things and maps", better="less"),
         Metric("agent_collisions", "count", "of the contacts, those with other robots", better="less"),
         Metric("human_collisions", "count", "of the contacts, those with humans", better="less"),
-        Metric("timeout", "0/1", "neither arrived nor collided at the horizon", "max", better="less"),
+        Metric("timeout", "0/1", "neither arrived nor stopped by a collision at the horizon", "max", better="less"),
         Metric(
             "failure_to_progress", "count", "5 s windows in which the way to the goal fell by < 0.1 m", better="less"
         ),
@@ -103,9 +103,7 @@ def _extras() -> tuple[Metric, ...]:
         extra("barn_score", "0-0.5", "success x T*/clip(T, 2T*, 8T*), T* = L*/2", better="more"),
         extra("discomfort_ratio", "0-1", "share of time with 0 < distance to a human < 0.2 m", better="less"),
         extra("discomfort_min_dist", "m", "mean of such distances"),
-        extra(
-            "near_misses", "count", "times a human or robot came within 0.2 m and went without contact", better="less"
-        ),
+        extra("near_misses", "count", "times a human came within 0.2 m and went without contact", better="less"),
         extra("freezing_count", "count", "stalls of 2 s or more, not arrived", better="less"),
         extra("freezing_time", "s", "time in such stalls", better="less"),
         extra("min_clearance", "m", "least distance to anything that can be hit, surface to surface", "min", "more"),
@@ -128,7 +126,7 @@ METRICS: tuple[Metric, ...] = _canonical() + _extras()
 """All metrics of a robot, in the order in which they are shown."""
 
 EPISODE_METRICS: tuple[Metric, ...] = (
-    Metric("collision", "0/1", "a robot collided before it arrived", "max", better="less"),
+    Metric("collision", "0/1", "a robot was stopped by a collision, or arrived after one", "max", better="less"),
     Metric(
         "pedestrian_delay",
         "s",

@@ -37,7 +37,8 @@ class EpisodeMetrics:
 
     Attributes:
         robots: For each robot its metrics by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
-        flags: For each robot what is odd: ``unreachable`` (no way to a goal was found).
+        flags: For each robot what is odd: ``unreachable`` (no way to a goal was found), ``no_approach`` (there are
+            humans, but contact with one never lay ahead: no ``time_to_collision_min``).
         episode: The same keys for the episode, and those of :data:`irsim.metrics.definitions.EPISODE_METRICS`.
         names: Names of the robots.
         hits: For each robot the name of what it touched first before it arrived, None if nothing.
@@ -95,9 +96,10 @@ def episode_metrics(
     values, flags = [], []
     for track in cut:
         made, odd = progress(track, geodesics, inscribed_radius(simulation, track.index))
-        found = outcome(track) | motion(track) | space(track) | social(track) | made
+        near, apart = space(track)
+        found = outcome(track) | motion(track) | near | social(track) | made
         values.append({key: _settled(found[key]) for key in order})
-        flags.append(odd)
+        flags.append(odd + apart)
     names = [track.name for track in cut]
     hits = [_partner(track) for track in cut]
     return EpisodeMetrics(values, flags, _of_episode(values), names, hits, distances)

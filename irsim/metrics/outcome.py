@@ -9,13 +9,14 @@ __all__ = ["outcome"]
 
 
 def outcome(track: Track) -> dict[str, float]:
-    """How it ended. Exactly one of success, collision before arrival, and time-out holds for a robot.
+    """How it ended. Exactly one of success, collision (stopped by one, or arrived after one) and time-out holds.
 
     - ``success``: arrived within the horizon, and no contact began before or at that step; ``goal_reached`` ignores
       contacts.
     - ``collision_count``: contacts that began (at least one step without before), per unordered pair, until it arrived;
       ``wall_``, ``agent_``, ``human_collisions`` of them by partner. ``collision_steps``: steps in contact.
-    - ``timeout``: neither arrived nor collided.
+    - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which it drove on is counted,
+      but does not end it (``world.collision_mode``).
     - ``time_to_goal`` [s]: of the first arrival; NaN without.
     """
     kinds = [kind for _, kind in track.collisions]
@@ -28,6 +29,6 @@ def outcome(track: Track) -> dict[str, float]:
         "wall_collisions": float(len(kinds) - agents - humans),
         "agent_collisions": float(agents),
         "human_collisions": float(humans),
-        "timeout": float(track.arrival is None and not kinds),
+        "timeout": float(track.arrival is None and not (kinds and track.stopped)),
         "time_to_goal": float("nan") if track.arrival is None else track.arrival * track.step_time,
     }

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from irsim.metrics.motion import runs_of
 from irsim.metrics.track import Track
 
-__all__ = ["space", "time_to_contact"]
+__all__ = ["NO_APPROACH", "space", "time_to_contact"]
 
+NO_APPROACH = "no_approach"
+"""Flag of a robot: it and the humans never went for a contact, so that the time to it is NaN."""
 _PERSONAL = 0.5  # closer is intruding [m]
 _ZONES = {"intimate": (-np.inf, 0.45), "personal": (0.45, 1.2), "social": (1.2, 3.6), "public": (3.6, np.inf)}
 _NEAR = 0.2  # [m]
 
 
-def space(track: Track) -> dict[str, float]:
-    """Distances between surfaces over all rows until it arrived; NaN where there is nobody of the kind.
+def space(track: Track) -> tuple[dict[str, float], list[str]]:
+    """Distances between surfaces over all rows until it arrived, NaN where there is none of the kind; what is odd.
 
     - ``clearing_distance_min``, ``_avg`` [m]: to the nearest static thing.
     - ``min_clearance`` [m]: to the nearest robot, human or static thing.
@@ -25,10 +29,11 @@ def space(track: Track) -> dict[str, float]:
       ``personal_space_intrusion_ratio`` is 1 minus it. ``proxemics_*_ratio``: share of rows with the nearest human
       closer than 0.45 m, to 1.2 m, to 3.6 m, and beyond.
     - ``discomfort_ratio``: share of rows with 0 < distance < 0.2 m, ``discomfort_min_dist`` the mean of those.
-    - ``near_misses``: runs of rows within 0.2 m of a human or robot that hold no contact.
-    - ``time_to_collision_min`` [s]: see :func:`time_to_contact`; NaN if nobody ever closes in.
+    - ``near_misses``: runs of rows within 0.2 m of a human that end without contact.
+    - ``time_to_collision_min`` [s]: see :func:`time_to_contact`; NaN, and flagged, if it never comes for any
+      of the humans.
     """
-    agents, humans, static = track.distance.T
+    _, humans, static = track.distance.T
     nan = float("nan")
     found = {
         "min_clearance": _least(track.distance),
@@ -46,10 +51,11 @@ def space(track: Track) -> dict[str, float]:
     found |= {
         "discomfort_ratio": len(close) / len(there) if len(there) else nan,
         "discomfort_min_dist": _mean(close),
-        "near_misses": float(_near_misses(agents) + _near_misses(humans)),
+        "near_misses": float(_near_misses(humans)) if len(there) else nan,
     }
-    times = time_to_contact(track)
-    return found | {"time_to_collision_min": _least(times)}
+    soonest = _least(time_to_contact(track))
+    flags = [NO_APPROACH] if track.people and math.isnan(soonest) else []
+    return found | {"time_to_collision_min": soonest}, flags
 
 
 def time_to_contact(track: Track) -> NDArray[np.float64]:

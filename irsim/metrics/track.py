@@ -36,6 +36,7 @@ class Track:
         pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start.
         goal: (K, 3) present goal; NaN without one.
         collided: (K,) in contact with something that stands in the way.
+        stopped: At the last row a contact keeps it from moving.
         distance: (K, 3) distance [m] to the nearest robot, human, static thing (see ``Clearance``).
         arrival: Step of the first arrival, None if it never arrived.
         collisions: Its contacts until then, with the kind of each (a number of :mod:`irsim.metrics.company`).
@@ -58,6 +59,7 @@ class Track:
     pose: Floats
     goal: Floats
     collided: NDArray[np.bool_]
+    stopped: bool
     distance: Floats
     arrival: int | None
     collisions: tuple[tuple[Event, int], ...]
@@ -182,6 +184,7 @@ def tracks(
                 pose=trace.pose[rows, robot],
                 goal=trace.goal[rows, robot],
                 collided=trace.collided[rows, robot],
+                stopped=bool(trace.stopped[rows, robot][-1]),
                 distance=distances.distance[rows, place],
                 arrival=arrival,
                 collisions=tuple(hits),

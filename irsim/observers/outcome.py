@@ -17,7 +17,8 @@ Outcome = Literal["running", "success", "collision", "timeout"]
 def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] | None = None) -> dict[str, Outcome]:
     """Outcome of every robot so far.
 
-    ``collision``: it touched something before it first arrived; ``success``: it arrived without; otherwise ``running``.
+    ``success``: it arrived and had touched nothing before; ``collision``: it arrived after it had, or it stands because
+    it did; otherwise ``running``, also after a contact that did not stop it.
 
     Args:
         simulation: Where to look.
@@ -27,14 +28,16 @@ def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] |
     events = read_events(simulation, world) if events is None else events
     arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
     outcomes: dict[str, Outcome] = {}
-    for record in simulation.scenario.objects:
+    for row, record in enumerate(simulation.scenario.objects, world * simulation.objects):
         if record.role != "robot":
             continue
         arrival, collision = arrivals.get(record.name), collisions.get(record.name)
-        if collision is not None and (arrival is None or collision.step <= arrival.step):
-            outcomes[record.name] = "collision"
+        if arrival is None:
+            stopped = collision is not None and bool(simulation.stopped[row])
+            outcomes[record.name] = "collision" if stopped else "running"
         else:
-            outcomes[record.name] = "success" if arrival is not None else "running"
+            before = collision is not None and collision.step <= arrival.step
+            outcomes[record.name] = "collision" if before else "success"
     return outcomes
 
 

@@ -208,3 +208,33 @@ robot:
     assert result.outcome == "collision"
     assert result.summary.startswith("3 of 3 robots arrived, the last at ")
     assert ", 2 of them after a collision; 'a' hit 'b' at " in result.summary
+
+
+TOUCHED = """
+world: {width: 12, height: 8, time_limit: 6, collision_mode: MODE}
+robot:
+  - {name: a, kinematics: {name: omni}, shape: {name: circle}, state: [1, 7], goal: [11, 7], behavior: {name: dash}}
+obstacle: {name: post, shape: {name: circle}, state: [4, 7.1]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("mode", "outcome"),
+    [
+        ("stop", "collision"),
+        ("unobstructed_obstacles", "collision"),
+        ("unobstructed", "timeout"),
+        ("reactive", "timeout"),
+    ],
+)
+def test_who_drives_on_after_a_contact_and_does_not_arrive_has_timed_out(mode: str, outcome: str) -> None:
+    text = TOUCHED.replace("MODE", mode)
+    result = irsim.run(text=text)
+    assert (result.outcome, result.robots[0].outcome) == (outcome, outcome)
+    assert result.robots[0].collision_count == 1
+    assert "'a' hit 'post' at " in result.summary
+    [episode] = irsim.benchmark(text).episodes
+    assert episode.outcome == outcome
+    assert (episode.metrics[outcome], episode.metrics["collision_count"]) == (1, 1)
+    assert sum(episode.metrics[key] for key in ("success", "collision", "timeout")) == 1
+    assert episode.failures == {"a": "timeout" if outcome == "timeout" else "collision with 'post'"}

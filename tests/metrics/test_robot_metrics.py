@@ -31,8 +31,16 @@ def scenario(
     return read_scenario(text=text, strict=True)[0]
 
 
-def trace(resolved, pose, goal, *, collided: Sequence[tuple[int, int]] = (), dt: float = 0.1) -> Trace:
-    """pose (T, N, 2 or 3), goal (N, 2) of the first objects."""
+def trace(
+    resolved,
+    pose,
+    goal,
+    *,
+    collided: Sequence[tuple[int, int]] = (),
+    stopped: Sequence[tuple[int, int]] = (),
+    dt: float = 0.1,
+) -> Trace:
+    """pose (T, N, 2 or 3), goal (N, 2) of the first objects; rows and objects that touched, that were stopped."""
     pose = np.asarray(pose, dtype=float)
     rows, count = pose.shape[:2]
     if pose.shape[2] == 2:
@@ -40,12 +48,13 @@ def trace(resolved, pose, goal, *, collided: Sequence[tuple[int, int]] = (), dt:
     goals = np.full((rows, count, 3), NAN)
     goals[:, : len(goal), :2] = goal
     flags = np.zeros((rows, count), dtype=bool)
-    hits = flags.copy()
-    for row, robot in collided:
-        hits[row, robot] = True
+    hits, stops = flags.copy(), flags.copy()
+    for table, where in ((hits, collided), (stops, stopped)):
+        for row, robot in where:
+            table[row, robot] = True
     step = np.arange(rows)
     names = tuple(record.name for record in resolved.objects)
-    return Trace(step, step * dt, pose, np.zeros_like(pose), goals, flags, hits, flags, {}, names, dt)
+    return Trace(step, step * dt, pose, np.zeros_like(pose), goals, flags, hits, stops, {}, names, dt)
 
 
 def event(kind: str, step: int, name: str, partner: str | None = None) -> Event:
@@ -107,7 +116,7 @@ def test_after_the_arrival_nothing_counts() -> None:
     path = np.stack([straight(60), straight(60) + np.array([0, 4])], axis=1)
     path[41:, 0] = path[40, 0] + np.array([0, 3])  # pushed away
     events = [event("arrival", 40, one), event("collision", 50, one, other)]
-    found = robot_metrics(trace(resolved, path, [[5, 5], [9, 9]]), resolved, events)
+    found = robot_metrics(trace(resolved, path, [[5, 5], [9, 9]], stopped=[(60, 1)]), resolved, events)
     assert found[0]["success"] == 1
     assert found[0]["collision_count"] == 0
     assert found[0]["path_length"] == pytest.approx(4.0)
@@ -132,7 +141,9 @@ def test_contacts_by_partner_and_steps_in_contact() -> None:
     found = robot_metrics(trace(resolved, pose, [[9, 5]], collided=hits), resolved, events)[0]
     keys = ("collision_count", "collision_steps", "wall_collisions", "agent_collisions", "human_collisions")
     assert [found[key] for key in keys] == [3, 4, 2, 0, 1]
-    assert (found["success"], found["timeout"], found["spl"]) == (0, 0, 0)
+    assert (found["success"], found["timeout"], found["spl"]) == (0, 1, 0)  # it drove on
+    made = trace(resolved, pose, [[9, 5]], collided=hits, stopped=[(30, 0)])
+    assert robot_metrics(made, resolved, events)[0]["timeout"] == 0
 
 
 def test_speeds_accelerations_and_jerks() -> None:
@@ -300,6 +311,15 @@ def test_distance_to_a_human_is_that_of_the_surfaces() -> None:
     assert math.isnan(found["time_to_collision_min"])  # it would never meet him
 
 
+def test_a_time_to_collision_that_never_was_is_flagged() -> None:
+    resolved = scenario(([1, 5], [9, 5]), rest=HUMAN)
+    for gap, flags in ((0.1, [["no_approach"]]), (-0.1, [[]])):
+        path = np.stack([straight(20), np.tile([5.0, 5.5 + gap], (21, 1))], axis=1)
+        assert episode_metrics(trace(resolved, path, [[9, 5]]), resolved, []).flags == flags
+    alone = scenario(([1, 5], [9, 5]))  # nobody to meet
+    assert episode_metrics(trace(alone, straight(20)[:, None], [[9, 5]]), alone, []).flags == [[]]
+
+
 def test_a_near_miss_and_discomfort() -> None:
     found = passing(0.1)
     x = 1 + 0.1 * np.arange(81)
@@ -309,6 +329,14 @@ def test_a_near_miss_and_discomfort() -> None:
     assert found["discomfort_ratio"] == pytest.approx(len(close) / 81)
     assert found["discomfort_min_dist"] == pytest.approx(close.mean())
     assert passing(-0.1)["near_misses"] == 0  # a contact is none
+
+
+def test_near_misses_are_of_humans() -> None:
+    resolved = scenario(([1, 5], [9, 5]), ([9, 5.5], [1, 5.5]))
+    path = np.stack([straight(80), straight(80)[::-1] + np.array([0, 0.5])], axis=1)
+    found = robot_metrics(trace(resolved, path, [[9, 5], [1, 5.5]]), resolved, [])
+    assert found[0]["min_clearance"] == pytest.approx(0.1)
+    assert all(math.isnan(robot["near_misses"]) for robot in found)
 
 
 def test_time_to_collision_head_on() -> None:
