@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field
 from irsim._options import problem
 from irsim.units import Radians
 
-__all__ = ["FULL_TURN", "SpanAngle", "wrap"]
+__all__ = ["FULL_TURN", "SpanAngle", "is_span", "wrap"]
 
 FULL_TURN = 2 * math.pi
 _ROUNDING = 0.02  # 6.28, 6.2832 and 6.3 all mean a full turn
@@ -21,8 +21,13 @@ def wrap(angle: float) -> float:
     return (angle + math.pi) % FULL_TURN - math.pi
 
 
+def is_span(angle: float) -> bool:
+    """Whether an opening angle is a full turn at most, give or take what is lost in rounding."""
+    return angle <= FULL_TURN + _ROUNDING
+
+
 def _clipped(angle: float) -> float:
-    if angle > FULL_TURN + _ROUNDING:
+    if not is_span(angle):
         radians = min(round(math.radians(angle), 9), FULL_TURN) if 10 <= angle <= 360 else None
         degrees = "" if radians is None else f"; {angle:g} degrees are {radians:.5g} rad"
         raise problem(

@@ -95,6 +95,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "no-turning": ("robot: {vel_max: [1, 0], vel_min: [-1, 0]}", "robot: {vel_max: [1, 1], vel_min: [-1, -1]}"),
     "target-roles-nobody": ("robot: {behavior: {name: rvo, target_roles: robot}}", "robot: {behavior: {name: rvo}}"),
     "jumps-through": ("robot: {vel_max: [8, 1], vel_min: [-8, -1], goal_threshold: 0.5}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}", "robot: {vel_max: [1, 1]}\nobstacle: {shape: {name: rectangle, length: 0.1, width: 4}, state: [5, 5, 0.7854]}"),
+    "unobstructed-robot": ("robot: {unobstructed: true}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0]}", "robot: {behavior: {name: dash}}\nobstacle: {shape: {name: circle, radius: 0.5}, state: [5, 5, 0], unobstructed: true}"),
     "goal-reached": ("robot: {state: [1, 1, 0], goal: [1.05, 1]}", "robot: {state: [1, 1, 0], goal: [2, 1]}"),
     "goal-overshoot": ("robot: {vel_max: [3, 1], vel_min: [-3, -1]}", "robot: {vel_max: [3, 1], vel_min: [-3, -1], goal_threshold: 0.2}"),
     "turning-circle": ("robot: {kinematics: {name: acker, wheelbase: 2.6}, state: [5, 5, 0], goal: [5, 6.2]}", "robot: {kinematics: {name: acker, wheelbase: 2.6}, state: [5, 5, 1.5708], goal: [5, 6.2]}"),

@@ -139,7 +139,9 @@ CODES: dict[str, Code] = {
     "unknown-behavior": Code(
         "unknown behavior",
         "No behavior of that name is built in or registered for the object's kinematics. User code registers its own "
-        "with irsim.register_behavior before the scenario is read, or with --import MODULE on the command line.",
+        "with irsim.register_behavior before the scenario is read: in a Python program, or by --import MODULE of the "
+        "command line. Random goals and rounds are no behaviors but keys of every one: {name: dash, wander: true}, "
+        "{name: dash, loop: true}.",
     ),
     "behavior-for-other-drive": Code(
         "behavior registered for other kinematics",
@@ -199,7 +201,9 @@ CODES: dict[str, Code] = {
         "no goal given", "Every object has a goal; without one of its own it is [1, 9, 0], whatever the world's size."
     ),
     "heading-in-degrees": Code(
-        "heading looks like degrees", "All angles are in radians: a right angle is 1.5708, half a turn 3.14159."
+        "angle looks like degrees",
+        "All angles are in radians: a right angle is 1.5708, half a turn 3.14159, one degree 0.01745. Headings of "
+        "several turns, and lidar beams scattered by more than 0.5 rad ('angle_std'), are hardly meant.",
     ),
     "rate-in-degrees": Code(
         "rate of turning looks like degrees",
@@ -242,7 +246,8 @@ CODES: dict[str, Code] = {
         "A goal counts as reached within 'goal_threshold' (0.1 m by default). An object that starts there arrives in "
         "the first step and never moves; waypoints that near to each other count together. With 'arrive_mode: state' "
         "the heading counts too, one radian like one metre. Example: state [1, 1, 0] with goal [1.05, 1]; move the "
-        "goal, or lower 'goal_threshold'.",
+        "goal, or lower 'goal_threshold'. Of goals drawn at random most are reached at once where the threshold is as "
+        "wide as the ground.",
     ),
     "goal-blocked": Code(
         "no room at the goal",
@@ -329,6 +334,12 @@ CODES: dict[str, Code] = {
         "(what is 'unobstructed' does not count), so the behavior avoids nobody. Example: target_roles: robot with one "
         "robot among obstacles; write target_roles: all.",
     ),
+    "unobstructed-robot": Code(
+        "a robot that others pass through",
+        "'unobstructed: true' takes an object out of the way of others: they do not collide with it, and lidars do not "
+        "see it. It still collides with what is not 'unobstructed'. Example: a robot that shall drive through a "
+        "curtain; write unobstructed: true on the curtain, not on the robot.",
+    ),
     "jumps-through": Code(
         "steps longer than what is in the way",
         "Collisions are looked for after each step. An object that moves farther in one step than it and the wall are "
@@ -338,7 +349,8 @@ CODES: dict[str, Code] = {
     "circle-overlap": Code("objects on the circle overlap", "The circle is too small for that many objects."),
     "outside-world": Code(
         "start or goal outside the world",
-        "Nothing stops objects at the edge; check the numbers of 'state', 'goal' or the 'distribution'.",
+        "Nothing stops objects at the edge; check the numbers of 'state', 'goal' or the 'distribution'. With "
+        "'world.boundary: walls' there are walls at the edge, which keep everything in.",
     ),
     "behavior-without-kinematics": Code(
         "behavior without kinematics", "What has no kinematics never moves by itself, so its behavior has no effect."
@@ -469,8 +481,8 @@ CODES: dict[str, Code] = {
     ),
     "steering-limit": Code(
         "steering angle beyond a quarter turn",
-        "The second control of 'acker' is the steering angle in radians, in mode 'steer'. Wheels turned by more than "
-        "1.5708 drive backwards; 30 degrees are 0.5236.",
+        "The second control of 'acker' is the steering angle in radians, in mode 'steer', and 'psi_max' the largest in "
+        "any mode. Wheels turned by more than 1.5708 drive backwards; 30 degrees are 0.5236.",
     ),
     "placement-crowded": Code(
         "random placement found no room",

@@ -11,7 +11,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
 
 from irsim._options import SCHEMA_PARTS, open_options, problem, shared_schema
-from irsim.diagnostics import nearest
+from irsim.diagnostics import nearest, surely
 from irsim.registry import CustomBehaviors, Registry
 
 __all__ = ["Choices", "Select"]
@@ -132,12 +132,7 @@ class Select:
             where = ()
             value = {"name": name, key: value} if name is not None else {key: value}
         if isinstance(value, str):
-            raise problem(
-                "not-a-mapping",
-                f"'{kind}' is a mapping with a name, not the name alone",
-                fix=f"write {{name: {value}}}",
-                replace={"name": value},
-            )
+            raise self._name_alone(value)
         if not isinstance(value, Mapping):
             raise problem("not-a-mapping", f"'{kind}' is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
         if self.default is not None and "name" in value and value["name"] is None:
@@ -172,6 +167,24 @@ class Select:
 
     def _prepared(self, value: Mapping[str, Any], name: str) -> dict[str, Any]:
         return {**value, "name": name}
+
+    def _name_alone(self, word: str) -> PydanticCustomError:
+        """A word where a mapping belongs; an unknown one becomes the name most like it."""
+        kind, names = self.registry.kind, self.names()
+        known = word in names or self.name_of({"name": word}) in names
+        near = word if known else nearest(word, names)
+        message = f"'{kind}' is a mapping with a name, not the name alone"
+        field = None if self.fallback is None else self.fallback.model_fields.get(word)
+        if near is None and field is not None and field.default is False:
+            fix = f"write {{name: <{kind}>, {word}: true}}: '{word}' is a key of every {kind}"
+            return problem("not-a-mapping", message, allowed=names, fix=fix)
+        if near is None and self.fallback is None:
+            return problem("not-a-mapping", message, allowed=names, fix=f"write {{name: <{kind}>}}")
+        meant = near or word
+        sure = known or near is None or surely(word, meant)
+        return problem(
+            "not-a-mapping", message, fix=f"write {{name: {meant}}}", replace={"name": meant} if sure else None
+        )
 
     def _unknown(self, name: Any, *, alone: bool) -> PydanticCustomError:
         """What to say of a name that nobody knows; ``alone``: it stands where its mapping might."""

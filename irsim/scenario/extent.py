@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
+from irsim.behaviors._options import CustomOptions
 from irsim.registry import SHAPES
 
 if TYPE_CHECKING:
@@ -103,10 +104,11 @@ def top_speed(record: Any) -> float:
     limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
     options = record.behavior if record.group_behavior is None else record.group_behavior
     options = getattr(options, "local", options)
+    built_in = not isinstance(options, CustomOptions | None)
     if drive.name in ("omni", "omni_angular"):  # dash turns the limits into the direction of the goal
         speed = max(limits[:2]) if getattr(options, "name", "") == "dash" else math.hypot(*limits[:2])
-    elif drive.name in ("diff", "acker"):
-        speed = limits[0]
+    elif drive.name in ("diff", "acker"):  # no built-in behavior is faster backwards than forwards
+        speed = abs(record.vel_max[0]) if built_in and record.vel_max else limits[0]
     else:
         return math.inf
     return min(speed, _own_limit(options))

@@ -47,6 +47,40 @@ def test_a_report_reads_like_a_compiler() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("line", "fix", "wrote"),
+    [
+        ("kinematics: dif", "write {name: diff}", {"name": "diff"}),
+        ("kinematics: ackerman", "write {name: acker}", {"name": "acker"}),
+        ("kinematics: omni_angle", "write {name: omni_angular}", {"name": "omni_angular"}),
+        ("kinematics: ofmi", "write {name: omni}", {"name": "omni"}),
+        ("kinematics: ack", "write {name: acker}", {"name": "acker"}),
+        ("kinematics: tank", "write {name: <kinematics>}", None),
+        ("kinematics: diff, behavior: rov", "write {name: rvo}", None),
+        ("kinematics: {name: diff}, behavior: mine", "write {name: mine}", {"name": "mine"}),
+        ("kinematics: {name: diff}, behavior: wander", "write {name: <behavior>, wander: true}", None),
+        ("kinematics: {name: diff}, behavior: {name: wander, range_low: [2, 2]}", "write {name: dash, wander: true}",
+            {"name": "dash", "range_low": [2, 2], "wander": True}),
+        ("kinematics: {name: diff}, behavior: {name: loop}", "write {name: dash, loop: true}",
+            {"name": "dash", "loop": True}),
+        ("kinematics: {name: diff}, group_behavior: {name: wander}", "write {name: orca, wander: true}", None),
+    ],
+)  # fmt: skip
+def test_a_word_alone_or_in_the_wrong_place(line: str, fix: str, wrote: Any) -> None:
+    found = read(f"robot: {{{line}, shape: {{name: circle}}}}\n", strict=True).diagnostics
+    item = next(d for d in reversed(found) if d.severity == "error")
+    assert fix in str(item.fix)
+    sure = item.edit.value if item.edit is not None and item.edit.safe else None
+    assert sure == wrote
+
+
+def test_an_unknown_behavior_is_no_matter_of_the_command_line_alone() -> None:
+    item = first("robot: {kinematics: {name: diff}, behavior: {name: mine}}\n")
+    assert item.code == "unknown-behavior"
+    assert str(item.fix).startswith("one of the names allowed")
+    assert "register_behavior" in str(item.fix)
+
+
 def test_a_report_without_text_and_with_color() -> None:
     reading = read({"world": {"widht": 3}}, strict=True)
     report = format_diagnostics(reading.diagnostics)

@@ -310,6 +310,21 @@ def test_too_little_time() -> None:
     assert codes(scenario(loop, time_limit=5)) == []
 
 
+@pytest.mark.parametrize("behavior", ["dash", "rvo", "orca", "sfm"])
+def test_nobody_hurries_backwards(behavior: str) -> None:
+    """The limit backwards stays at 1 m/s by default, and helps none of the behaviors forwards."""
+    robot = {**ROBOT, "behavior": {"name": behavior}, "vel_max": [0.1, 1]}
+    item = one(scenario(robot, time_limit=20), "time-too-short")
+    assert item.severity == "warning"
+    assert "at 0.1 m/s" in item.message
+    assert "time-too-short" not in codes(scenario(robot, time_limit=200))
+    env = Env(read(scenario(robot, time_limit=20)).scenario, headless=True, seed=0)
+    env.rollout(200)
+    assert not env.robot.arrive
+    assert 1.5 < env.robot.position[0, 0] - 2 <= 2.01
+    env.end(ending_time=0.0)
+
+
 def test_the_way_round_takes_longer_than_the_line() -> None:
     wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 8.6}, "state": [6, 4.3, 0]}
     follow = {**ROBOT, "behavior": {"name": "follow"}}

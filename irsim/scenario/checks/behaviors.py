@@ -14,6 +14,10 @@ from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.wording import flow
 
+_OWN = (
+    "one of the names allowed; a behavior of your own is registered in Python before the scenario is read "
+    "(irsim.register_behavior, or --import MODULE on the command line)"
+)
 _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
 """Keys with the speed that a behavior wants at most."""
 
@@ -40,11 +44,12 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         if options.name == "rvo":
             yield from _rvo(context, record, key, options)
         yield from _capped(context, record, key, options)
-    if record.behavior is not None and record.kinematics is None:
+    if record.kinematics is None and (record.behavior or record.group_behavior) is not None:
+        key = "behavior" if record.behavior is not None else "group_behavior"
         yield warning(
             "behavior-without-kinematics",
-            context.entry_path(record, "behavior"),
-            "an object without kinematics never moves, whatever its behavior",
+            context.entry_path(record, key),
+            f"an object without kinematics never moves, whatever its {key.replace('_', ' ')}",
             fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
         )
     if record.role == "robot" and not record.static and record.behavior is None and record.group_behavior is None:
@@ -77,16 +82,21 @@ def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehav
         )
         return
     near = nearest(options.name, known)
+    fix = f"name: {near}" if near else _OWN
+    edit = Edit("replace", path, near, safe=surely(options.name, near)) if near else None
+    if options.name in ("wander", "loop"):
+        plain = "dash" if key == "behavior" else "orca"
+        fix = f"write {{name: {plain}, {options.name}: true}}: '{options.name}' is a key of every behavior"
+        whole = {**options.model_dump(exclude_unset=True), "name": plain, options.name: True}
+        edit = Edit("replace", path[:-1], whole) if plain == "dash" and not options.model_extra else None
     yield error(
         "unknown-behavior",
         path,
         f"'{options.name}' is not a {'group ' if key == 'group_behavior' else ''}behavior",
         given=options.name,
         allowed=known,
-        fix=f"name: {near}"
-        if near
-        else "register it before the scenario is read (--import MODULE on the command line)",
-        edit=Edit("replace", path, near, safe=surely(options.name, near)) if near else None,
+        fix=fix,
+        edit=edit,
         tolerated=True,
     )
 

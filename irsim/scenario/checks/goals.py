@@ -19,6 +19,8 @@ from irsim.scenario.wording import flow
 from irsim.vectors import is_vector
 
 _TURN = 6.3
+_OF_GROUND = 0.5
+"""Nearer than that share of the diagonal of a rectangle are more than half of the pairs of points in it."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -44,6 +46,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield from _default_goal(path, entry, records)
             yield from _degrees(context, records)
         yield from _reached(context, records)
+        yield from _reached_anywhere(context, path, entry, records)
         yield from _heading(context, path, records)
 
 
@@ -91,6 +94,31 @@ def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                 fix=f"a place farther away, or a smaller goal_threshold (now {record.goal_threshold:g} m)",
             )
             break
+
+
+def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+    """A threshold as wide as the ground on which goals are drawn."""
+    placement = next((p for p in context.resolved.placements if p.path == path), None)
+    for record in records:
+        if record.static or record.kinematics is None or record.arrive_mode == "state":
+            continue
+        ranges: Any = record if record.wander else placement
+        if ranges is None:
+            continue
+        width, height = (ranges.range_high[i] - ranges.range_low[i] for i in range(2))
+        diagonal = math.hypot(width, height)
+        if diagonal == 0 or record.goal_threshold < _OF_GROUND * diagonal:
+            continue
+        sure = record.goal_threshold >= diagonal
+        yield warning(
+            "goal-reached",
+            (*path, "goal_threshold") if "goal_threshold" in entry.model_fields_set else path,
+            f"goals are drawn within {width:g} m × {height:g} m and count as reached within "
+            f"{record.goal_threshold:g} m: {'all' if sure else 'most'} are reached before anybody has moved",
+            given=record.goal_threshold,
+            fix=f"goal_threshold: {min(0.3, diagonal / 20):.2g}; lengths are in metres",
+        )
+        return
 
 
 def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
@@ -254,7 +282,7 @@ def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
         what.append(("goal", "has a goal"))
     for key, words in what:
         for record in records:
-            points = [record.state] if key == "state" else record.goals
+            points = [record.state] if key == "state" else [] if record.wander else record.goals
             lost = [p for p in points if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
             if lost and (context.given(record, key) or key == "state" or record.behavior is not None):
                 written = "waypoints" if key == "goal" and context.given(record, "waypoints") else key

@@ -15,6 +15,8 @@ from irsim.scenario.wording import flow
 _CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
 _BROADCAST = ("vel_min", "vel_max")  # IR-SIM takes a single number for all components
 _ROUNDING = 1e-6
+_ACROSS = 1.58
+"""A quarter turn, however it is rounded [rad]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
@@ -62,6 +64,14 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             f"a steering angle of up to {steering:g} rad is a quarter turn or more",
             given=getattr(record, key),
             fix=f"angles are in radians: {steering:g} degrees are {math.radians(steering):.4g}",
+        )
+    if options.name == "acker" and options.psi_max is not None and options.psi_max > _ACROSS:
+        yield warning(
+            "steering-limit",
+            (*context.entry_path(record, "kinematics"), "psi_max"),
+            f"a steering angle of up to {options.psi_max:g} rad is a quarter turn or more",
+            given=options.psi_max,
+            fix=f"angles are in radians: {options.psi_max:g} degrees are {math.radians(options.psi_max):.4g}",
         )
     if options.name in ("omni", "omni_angular") and options.noise:
         yield hint(

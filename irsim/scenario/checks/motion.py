@@ -43,6 +43,8 @@ def _all(context: Context) -> Iterator[Finding]:
             continue
         yield from _cannot_move(context, record)
         yield from _nobody(context, record, counts)
+        if sum(counts.values()) > 0:
+            yield from _unseen(context, record)
         yield from _overshoot(context, record)
         yield from _circles(context, record)
     if context.scenario.world.collision_mode not in _PASSABLE:
@@ -137,6 +139,22 @@ def _nobody(context: Context, record: ObjectRecord, counts: dict[str, int]) -> I
                 fix="target_roles: all",
                 edit=Edit("replace", where, "all"),
             )
+
+
+def _unseen(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """``unobstructed`` of a robot is about the others, and easily taken for leave to drive through obstacles."""
+    if record.role != "robot" or not record.unobstructed or record.static:
+        return
+    if context.scenario.world.collision_mode in _PASSABLE:
+        return
+    yield hint(
+        "unobstructed-robot",
+        (*record.path, "unobstructed"),
+        f"others pass through '{record.name}' and lidars do not see it, but it still collides with others itself",
+        given=True,
+        fix="to let it pass through obstacles, write 'unobstructed: true' on the obstacles; none needed if others are "
+        "to pass through it",
+    )
 
 
 def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:

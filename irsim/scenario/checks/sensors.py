@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.angles import FULL_TURN
+from irsim.angles import FULL_TURN, is_span
 from irsim.diagnostics import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
@@ -61,7 +61,7 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
         )
     if getattr(sensor, "is_lidar", False):
         written = at(context.document.data, (*path, "angle_range"))
-        if not isinstance(written, (int, float)) or written <= sensor.angle_range * (1 + _LEAST_SPAN):
+        if not isinstance(written, (int, float)) or is_span(written):
             yield from _beams(path, sensor)
         yield from _unused(path, sensor)
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":

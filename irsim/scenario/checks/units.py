@@ -26,6 +26,8 @@ _OF_WORLD = 0.5
 """Something as long as that share of its world may be a ship."""
 _FAR = 2.0
 """So many times the size of the world outside of it is nowhere."""
+_WIDEST_SPREAD = 0.5
+"""No lidar is as inexact [rad]."""
 _LONG_BEAM, _OFF, _LEAST_BODY = 100.0, 5.0, 0.1
 """Beams so many times as long as the world; offsets so many times the reach of the body, of 0.1 m at least."""
 
@@ -135,13 +137,22 @@ def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> 
     world: Any = context.scenario.world
     written: Any = getattr(sensor, "model_fields_set", ())
     reach, offset = getattr(sensor, "range_max", 0.0), getattr(sensor, "offset", None) or [0.0, 0.0]
-    if "range_max" in written and _LONG_BEAM * max(world.width, world.height) < reach < math.inf:
+    if "range_max" in written and _LONG_BEAM * max(world.width, world.height) <= reach < math.inf:
         yield hint(
             "looks-like-centimetres",
             (*path, "range_max"),
             f"the beams are {reach:g} m long in a world of {world.width:g} m × {world.height:g} m",
             given=reach,
             fix=f"lengths are in metres: {reach:g} cm are {reach / 100:g}, {reach:g} mm are {reach / 1000:g}",
+        )
+    spread = getattr(sensor, "angle_std", 0.0)
+    if "angle_std" in written and spread > _WIDEST_SPREAD:
+        yield hint(
+            "heading-in-degrees",
+            (*path, "angle_std"),
+            f"beams that are {spread:g} radians off look anywhere: that is {math.degrees(spread):.3g} degrees",
+            given=spread,
+            fix=f"angles are in radians: {spread:g} degrees are {math.radians(spread):.4g}",
         )
     away = math.hypot(*offset[:2])
     if has_fixed_shape(record.shape) and away > _OFF * max(reach_of(record.shape), _LEAST_BODY):
@@ -160,10 +171,11 @@ def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if len(rows) != len(record.vel_max) or not context.given(record, "vel_max"):
         return
     where = context.entry_path(record, "vel_max")
+    by_rate = getattr(record.kinematics, "mode", "") == "angular"
     for row, value in zip(rows, record.vel_max, strict=True):
         if not math.isfinite(value):
             continue
-        if ("yaw" in row or "angular" in row) and value > _FASTEST_TURN:
+        if ("yaw" in row or "angular" in row or (by_rate and row == "steer")) and value > _FASTEST_TURN:
             right = [*record.vel_max]
             right[rows.index(row)] = round(math.radians(value), 4)
             yield hint(
