@@ -105,7 +105,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from irsim.benchmarks.labels import labels_of, seeds_of
+    from irsim.labels import labels_of, seeds_of
     from irsim.text import clean
 
     if not out.is_terminal:

@@ -143,6 +143,15 @@ class Jobs:
             with suppress(OSError):
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
 
+    def state(self, job_id: str) -> dict[str, Any] | None:
+        """What is known of a job, as :meth:`wait` says it; None if there is none of that id."""
+        try:
+            folder = runs_folder(self._workspace.root).with_name(_KEPT)
+        except RunError:
+            return None
+        found = next((job for job in run_folders(folder) if job.name == job_id), None)
+        return None if found is None else _state(found)
+
     def forget(self, job_id: str) -> None:
         """Let go of a job that has ended and was told of."""
         job = self._find(job_id)

@@ -23,7 +23,7 @@ Seed = Annotated[
 ]
 
 
-RunId = Annotated[str, Field(max_length=100, description="Of run_episode.")]
+RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
 
 
 @dataclass(frozen=True)

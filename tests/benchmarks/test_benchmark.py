@@ -15,10 +15,10 @@ import irsim
 from irsim.benchmarks import AS_WRITTEN, BenchmarkError
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, Task, scenario_of
-from irsim.benchmarks.labels import labels_of, seeds_of
 from irsim.benchmarks.variant import behavior_of
 from irsim.cli.app import app
 from irsim.errors import OverLimitError, PlacementError, ScenarioNotFoundError
+from irsim.labels import labels_of, seeds_of
 from irsim.metrics import wilson
 
 CROWD = """

@@ -202,6 +202,59 @@ async def test_with_another_behavior_a_wrong_scenario_is_still_told_by_line(work
     assert list((workspace / ".irsim" / "jobs").iterdir()) == []
 
 
+async def test_episodes_are_read_by_inspect_run(workspace: Path) -> None:
+    (workspace / "random.yaml").write_text(RANDOM, encoding="utf-8")
+    long = "{name: orca, timeHorizon: 5, loop: false}"
+    arguments = {"scenarios": [CRASH, "random.yaml", ROOM], "behaviors": ["dash", long], "seeds": 4, "max_steps": 90}
+    async with connected(workspace) as client:
+        result = await client.call_tool("benchmark", arguments)
+        job = data_of(result)["job_id"]
+        assert f"Episodes: inspect_run run_id={job}" in text_of(result)
+        first = await client.call_tool("inspect_run", {"run_id": job, "limit": 5})
+        pages, cursor = [data_of(first)], data_of(first)["next_cursor"]
+        while cursor is not None:
+            more = {"run_id": job, "limit": 5, "cursor": cursor}
+            pages.append(data_of(await client.call_tool("inspect_run", more)))
+            cursor = pages[-1]["next_cursor"]
+    kept = json.loads((workspace / data_of(result)["artifact"]).read_text())["episodes"]
+    rows = [dict(zip(page["columns"], row, strict=True)) for page in pages for row in page["rows"]]
+    assert len(rows) == pages[0]["total"] == len(kept) == 12
+    told = {(row["scenario"], row["behavior"], row["seed"]): row for row in rows}
+    for episode in kept:
+        row = told[episode["scenario"], {long: "orca #2"}.get(episode["behavior"], "dash"), episode["seed"]]
+        assert (row["outcome"], row["steps"]) == (episode["outcome"], episode["steps"])
+        assert all(name in row["failed"] for name in episode["failures"])
+    ends = [row["outcome"] == "success" for row in rows]
+    assert ends == sorted(ends)
+    assert "(text 1), dash, 0, collision, 2.2, 22" in text_of(first)
+    assert "rover: collision with 'crate'" in text_of(first)
+    assert f"orca #2 is {long}" in text_of(first)
+    call = "run_episode scenario_yaml=<text 1 of scenarios> seed=0 behavior='dash' max_steps=90"
+    assert call in text_of(first)
+    assert call in data_of(result)["next"]
+    assert "cursor=5" in pages[0]["next"]
+    assert "scenario_path='random.yaml'" in pages[-2]["next"] + pages[-1]["next"]
+
+
+async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        job = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))["job_id"]
+        for asked, told in (
+            ({"view": "closest"}, "(view). Fix: leave it out"),
+            ({"robot": "rover"}, "(robot). Fix: leave it out"),
+            ({"from_step": 3}, "(from_step). Fix: leave it out"),
+            ({"cursor": "1"}, "'1' is no cursor (cursor)"),
+        ):
+            assert told in error_of(await client.call_tool("inspect_run", {"run_id": job, **asked}))
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 0}))["job_id"]
+        told = error_of(await client.call_tool("inspect_run", {"run_id": begun}))
+        assert f"{begun} is running, 0 of 4 episodes are done (run_id). Fix: get_job waits for it." in told
+        await client.call_tool("get_job", {"job_id": begun, "cancel": True})
+        told = error_of(await client.call_tool("inspect_run", {"run_id": begun}))
+        assert "is cancelled" in told
+        assert told.endswith("Fix: call benchmark again.")
+
+
 async def test_jobs_that_are_not_there(workspace: Path) -> None:
     async with connected(workspace) as client:
         assert error_of(await client.call_tool("get_job", {"job_id": "benchmark-123456"})).startswith("unknown-job")

@@ -74,6 +74,7 @@ LAYERS = (
     episode
     learning
     lib
+    labels
     lookup
     map_files
     modeline

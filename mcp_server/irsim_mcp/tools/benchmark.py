@@ -10,7 +10,9 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
+from irsim.labels import labels_of, seeds_of
 from irsim.text import clean
+from irsim_mcp.episodes import again
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
 from irsim_mcp.progress import reporter
@@ -20,10 +22,10 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
-    Compare behaviors fairly: every scenario under every behavior with the same seeds, on all cores. Rows have shares of
+    Compare behaviors fairly: every scenario under every behavior with the same seeds. Rows have shares of
     success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff is
-    to the first behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job, or run_episode with
-    a seed that failed.
+    to the first behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job, inspect_run with
+    the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
 _METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl", "min_clearance")
@@ -138,8 +140,6 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 
 def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
-    from irsim.benchmarks.labels import labels_of  # not before there is a result: it loads much
-
     labels = labels_of(result["behaviors"])
     found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_ROWS]]
     found.done = found.total = len(result["episodes"])
@@ -156,13 +156,7 @@ def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     if not lost:
         found.next = "Every episode succeeded; compare times and paths."
         return
-    first = lost[0]
-    behavior = ""
-    if first["behavior"] != "as-written":
-        behavior = f" behavior={clean(first['behavior'], 60)!r}"
-    found.next = (
-        f"To see why: run_episode {clean(first['scenario'], 100)} seed={first['seed']}{behavior} ({first['outcome']})."
-    )
+    found.next = f"To see why: {again(result, lost[0])} ({lost[0]['outcome']})."
 
 
 def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
@@ -189,8 +183,6 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
     shown |= _told(row["metrics"], metrics, row["episodes"])
     diff = _told(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
-    from irsim.benchmarks.labels import seeds_of
-
     if failed := seeds_of(row["failed"], _FAILED):
         robots = [f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_FAILURES]]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
@@ -224,7 +216,7 @@ def _text(found: Benchmark) -> str:
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(told)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
-        lines.append(f"All metrics and episodes: {found.artifact}")
+        lines.append(f"Episodes: inspect_run run_id={found.job_id}; with all metrics: {found.artifact}")
     if found.reproduce:
         lines.append(f"Again: {found.reproduce}")
     return "\n".join([*lines, f"Next: {found.next}"])

@@ -10,18 +10,20 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from irsim.text import clean
+from irsim_mcp.episodes import check_finished, episodes_table
+from irsim_mcp.errors import failure
 from irsim_mcp.services import RunId, Services
 from irsim_mcp.tool import StrictTool, strict
 
 __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
-    Look into a run to tell why it failed. view=collisions: who touched whom, where, how fast; closest: whom each robot
+    Look into a run: why did it fail? view=collisions: who touched whom, where, how fast; closest: whom each robot
     came near, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest stand; rows:
-    `fields` step by step, spread over the run unless `every` is given. Returns a table, in pages (next_cursor). Next:
-    draw the moment with render_snapshot run_id step.
+    `fields` step by step, spread over the run unless `every` is given. Of a benchmark: its episodes. Returns a table,
+    in pages (next_cursor). Next: draw the moment with render_snapshot run_id step.
 """
-_LONGEST_CELL = 60
+_LONGEST_CELL, _LONGEST_TEXT = 60, 300
 _OTHER_TEXT = 2000
 """Characters of a result besides its rows."""
 
@@ -60,25 +62,48 @@ def tool(services: Services) -> StrictTool:
         limit: Annotated[int, Field(ge=1, le=200)] = 20,
         cursor: str | None = None,
     ) -> Annotated[CallToolResult, Table]:  # fmt: skip
-        found = await services.run_job(
-            "inspect",
-            run_id,
-            seconds=services.limits.check_seconds,
-            view=view,
-            robot=robot,
-            from_step=from_step,
-            to_step=to_step,
-            every=every,
-            fields=fields,
-            limit=limit,
-            cursor=cursor,
-        )
+        asked: dict[str, Any] = {"robot": robot, "to_step": to_step, "every": every, "fields": fields}
+        job = None if run_id in services.workspace.runs() else services.jobs.state(run_id)
+        if job is not None:
+            used = [name for name, value in {**asked, "from_step": from_step or None}.items() if value is not None]
+            found = _episodes(job, ["view"] * (view != "rows") + used, limit, cursor)
+        else:
+            found = await services.run_job(
+                "inspect",
+                run_id,
+                seconds=services.limits.check_seconds,
+                view=view,
+                from_step=from_step,
+                limit=limit,
+                cursor=cursor,
+                **asked,
+            )
         found = _fitting(found, cursor, services.limits.text)
-        table = _table(found, view)
+        table = _table(found, found["view"])
         text = TextContent(type="text", text=_text(table, found))
         return CallToolResult(content=[text], structured_content=table.model_dump())
 
     return strict(inspect_run, title="Look into a run", description=_DESCRIPTION, read_only=True, idempotent=True)
+
+
+def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | None) -> dict[str, Any]:
+    """The episodes of a benchmark.
+
+    Args:
+        job: What is known of it.
+        other: Arguments given that are about runs.
+        limit: Rows at most.
+        cursor: Where to go on.
+
+    Raises:
+        ToolError: It has no result, or something is asked that only a run can tell.
+    """
+    if other:
+        what = f"{job['id']} is a benchmark, whose rows are episodes"
+        fix = "leave it out; run_episode with the seed of an episode gives a run to look into"
+        raise failure("bad-argument", what, where=other[0], fix=fix)
+    check_finished(job)
+    return episodes_table(job["id"], job["result"], limit, cursor)
 
 
 def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, Any]:
@@ -91,14 +116,18 @@ def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, 
 
 
 def _table(found: dict[str, Any], view: str) -> Table:
-    rows = [[clean(cell, _LONGEST_CELL) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
+    longest = _LONGEST_CELL if view != "episodes" else _LONGEST_TEXT
+    rows = [[clean(cell, longest) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
     changed = {"summary": clean(found["summary"], 300), "rows": rows, "next": _advice(found, view, rows)}
-    return Table(**{**found, **changed})
+    return Table(**{key: value for key, value in {**found, **changed}.items() if key != "again"})
 
 
 def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
-    if found["next_cursor"] is not None:
-        return f"More rows: the same call with cursor={found['next_cursor']}."
+    more = "" if found["next_cursor"] is None else f"More rows: the same call with cursor={found['next_cursor']}."
+    if view == "episodes":
+        return f"Look into one: {found['again']}, then inspect_run with the run_id it gives. {more}".rstrip()
+    if more:
+        return more
     if "step" in found["columns"] and rows and view != "rows":
         step = rows[0][found["columns"].index("step")]
         return f"Look at it: render_snapshot run_id={found['run_id']} step={step}."

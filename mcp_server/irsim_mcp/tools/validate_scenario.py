@@ -17,7 +17,7 @@ from irsim_mcp.whole import whole
 __all__ = ["Report", "tool"]
 
 _DESCRIPTION = """
-    Check a scenario and try it. Use it after every edit, before drawing or running. Returns all problems at once; an
+    Check a scenario and try it. Use it after every edit. Returns all problems at once; an
     invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
     be fixed; warnings run, but likely not as meant; hints are worth knowing. not-yet-simulated: this version cannot do
     it, tell the user. dry_run says who arrived, collided, got stuck or left the world in the first steps. With base

@@ -1,10 +1,8 @@
-"""Short names for behaviors that are given with many options, and short lists of seeds."""
+"""Short names for behaviors that are given with many options, and short lists of seeds. Nothing of the engine."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-
-from irsim.benchmarks.variant import AS_WRITTEN, behavior_of
 
 __all__ = ["labels_of", "seeds_of"]
 
@@ -14,9 +12,18 @@ _LONGEST = 24
 def labels_of(behaviors: Sequence[str]) -> dict[str, str]:
     """What to call each behavior: a long one by its name and its place in the list, as ``orca #2``."""
     return {
-        text: text if len(text) <= _LONGEST else f"{(behavior_of(text) or {'name': AS_WRITTEN})['name']} #{place}"
+        text: text if len(text) <= _LONGEST else f"{_name(text)} #{place}"
         for place, text in enumerate(behaviors, start=1)
     }
+
+
+def _name(text: str) -> str:
+    """The name in a behavior that is known to be one."""
+    if not text.lstrip().startswith("{"):
+        return text.strip()
+    from irsim.scenario.load import load_text
+
+    return str(load_text(text).data["name"])
 
 
 def seeds_of(failed: dict[str, list[int]], most: int) -> str:

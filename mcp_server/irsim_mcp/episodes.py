@@ -1,0 +1,105 @@
+"""The episodes of a finished benchmark, as a table in pages, and the call that runs one of them again."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from irsim.text import clean
+from irsim_mcp.errors import failure
+
+__all__ = ["again", "check_finished", "episodes_table"]
+
+_COLUMNS = ("scenario", "behavior", "seed", "outcome", "time", "steps", "path_length", "min_clearance", "failed")
+_FAILED = 3
+"""Robots of which a row tells what became."""
+_DECIMALS = 3
+
+
+def check_finished(state: Mapping[str, Any]) -> None:
+    """See that a job has a result.
+
+    Raises:
+        ToolError: It has none, or none yet.
+    """
+    if "result" not in state:
+        fix = "get_job waits for it" if state["status"] == "running" else "call benchmark again"
+        what = f"job {state['id']} is {state['status']}, {state['done']} of {state['total']} episodes are done"
+        raise failure("bad-argument", what, where="run_id", fix=fix)
+
+
+def episodes_table(job_id: str, result: Mapping[str, Any], limit: int, cursor: str | None) -> dict[str, Any]:
+    """The episodes, those without success first, in the form of the tables of runs.
+
+    Args:
+        job_id: Which benchmark.
+        result: Its result.
+        limit: Rows at most.
+        cursor: ``next_cursor`` of the page before.
+
+    Raises:
+        ToolError: The cursor is none.
+    """
+    from irsim.labels import labels_of
+
+    episodes = sorted(result["episodes"], key=lambda episode: episode["outcome"] == "success")
+    start = _start(cursor, len(episodes))
+    labels = labels_of(result["behaviors"])
+    rows = [_row(episode, labels) for episode in episodes[start : start + limit]]
+    lost = [episode for episode in episodes if episode["outcome"] != "success"]
+    shown = start + len(rows)
+    return {
+        "run_id": job_id,
+        "status": "finished",
+        "outcome": None,
+        "view": "episodes",
+        "summary": f"{len(episodes)} episodes, those without success first: {len(lost)}",
+        "columns": list(_COLUMNS),
+        "rows": rows,
+        "total": len(episodes),
+        "every": 1,
+        "next_cursor": str(shown) if shown < len(episodes) else None,
+        "notes": [clean(f"{label} is {text}", 300) for text, label in labels.items() if label != text],
+        "again": again(result, episodes[start]) if rows else "",
+    }
+
+
+def again(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
+    """The call that runs an episode again, for a scenario given as text with a word for the text."""
+    name, behavior = episode["scenario"], episode["behavior"]
+    steps = re.search(r" --steps (\d+)", result["reproduce"])
+    text = re.fullmatch(r"\(text(?: (\d+))?\)", name)
+    if text is None:
+        given = f"scenario_path={clean(name, 200)!r}"
+    else:
+        given = "scenario_yaml=<the same text>" if text[1] is None else f"scenario_yaml=<text {text[1]} of scenarios>"
+    words = ["run_episode", given, f"seed={episode['seed']}"]
+    words += [f"behavior={clean(behavior, 500)!r}"] if behavior != "as-written" else []
+    words += [f"max_steps={steps[1]}"] if steps else []
+    return " ".join(words)
+
+
+def _row(episode: Mapping[str, Any], labels: Mapping[str, str]) -> list[Any]:
+    fates = [f"{name}: {fate}" for name, fate in list(episode["failures"].items())]
+    more = f"; {len(fates) - _FAILED} more" if len(fates) > _FAILED else ""
+    metrics = [episode["metrics"].get(key) for key in ("path_length", "min_clearance")]
+    return [
+        episode["scenario"],
+        labels[episode["behavior"]],
+        episode["seed"],
+        episode["outcome"],
+        round(episode["sim_time"], _DECIMALS),
+        episode["steps"],
+        *(None if value is None else round(value, _DECIMALS) for value in metrics),
+        clean("; ".join(fates[:_FAILED]) + more, 300) or None,
+    ]
+
+
+def _start(cursor: str | None, total: int) -> int:
+    if cursor is None:
+        return 0
+    if not (cursor.isascii() and cursor.isdigit() and int(cursor[:12]) < total):
+        fix = "use next_cursor of the page before"
+        raise failure("bad-argument", f"{clean(cursor)!r} is no cursor", where="cursor", fix=fix)
+    return int(cursor)
