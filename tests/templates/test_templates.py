@@ -54,6 +54,9 @@ SITUATIONS = [
         "dead end",
         "staggered",
         "random benchmark",
+        "merging",
+        "station platform",
+        "perpendicular streams",
     ),
 ]
 
@@ -185,3 +188,19 @@ def test_the_first_scan_measures_how_fast_people_walk() -> None:
     env.end(ending_time=0)
     assert speeds.min() < -0.8
     assert speeds.max() > 0.8
+
+
+@pytest.mark.parametrize("given", [{"gap": 1, "speed": 0.3}, {"gap": 1.4, "speed": 2}, {"gap": 3, "speed": 0.9}])
+def test_the_ramp_merges_into_streams_of_any_density(given: dict[str, float], tmp_path: Path) -> None:
+    assert irsim.run(filled("merging", tmp_path, **given)).outcome == "success"
+
+
+@pytest.mark.parametrize("given", [{"walking": 0.4}, {"walking": 1.5, "speed": 0.3}, {"walking": 0.7, "speed": 2}])
+def test_the_robot_gets_along_the_platform(given: dict[str, float], tmp_path: Path) -> None:
+    assert irsim.run(filled("station-platform", tmp_path, **given)).outcome == "success"
+
+
+def test_streams_cross_to_and_fro_for_ever(tmp_path: Path) -> None:
+    result = irsim.run(filled("cross", tmp_path, endless=True))
+    assert (result.outcome, result.sim_time) == ("success", result.time_limit)
+    assert min(robot.path_length for robot in result.robots) > 40
