@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from irsim.errors import IrsimError
+from irsim.text import clean
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
@@ -65,6 +66,7 @@ class TopicError(IrsimError, LookupError):
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
         near: Topics with similar names.
     """
 
@@ -72,5 +74,5 @@ class TopicError(IrsimError, LookupError):
 
     def __init__(self, topic: str, near: Sequence[str]) -> None:
         hint = f" Did you mean {' or '.join(near)}?" if near else " irsim describe lists what there is."
-        super().__init__(f"{self.code}: nothing is called {topic!r}.{hint}")
-        self.near = list(near)
+        self.message, self.near = f"nothing is called {clean(topic)!r}", list(near)
+        super().__init__(f"{self.code}: {self.message}.{hint}")

@@ -212,6 +212,18 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     return result.model_dump_json()
 
 
+def _lookup(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim_mcp.reference import explained
+
+    return json.dumps({"text": explained(**job["arguments"])})
+
+
+def _schema(job: dict[str, Any], progress: _Progress) -> str:
+    from irsim_mcp.reference import schema_text
+
+    return json.dumps({"text": schema_text(**job["arguments"])})
+
+
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "benchmark": _benchmark,
     "validate": _validate,
@@ -221,6 +233,8 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "run_snapshot": _run_snapshot,
     "inspect": _inspect,
     "artifact": _artifact,
+    "lookup": _lookup,
+    "schema": _schema,
 }
 
 

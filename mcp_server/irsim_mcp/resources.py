@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-import json
 
 from mcp.server import MCPServer
-from mcp.server.mcpserver.exceptions import ResourceNotFoundError
+from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 from mcp.server.mcpserver.resources import FunctionResource
 
 from irsim_mcp.prompts import template_names
+from irsim_mcp.services import Services
 
 __all__ = ["SCHEMA", "SECTIONS", "TEMPLATE", "add_resources"]
 
@@ -20,8 +20,17 @@ SECTIONS = (
 SCHEMA, TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
 
 
-def add_resources(server: MCPServer) -> None:
+def add_resources(server: MCPServer, services: Services) -> None:
     """Register all of them with a server."""
+
+    async def schema(section: str) -> str:
+        """JSON Schema of a section, key or component of scenario files, such as world or robot.sensors.lidar2d."""
+        try:
+            asked = "" if section == "scenario" else section
+            return await services.reference("schema", "section", section=asked)
+        except ToolError as error:
+            raise ResourceNotFoundError(str(error)) from None
+
     server.resource(SCHEMA, title="JSON Schema of a part", mime_type="application/schema+json")(schema)
     server.resource(TEMPLATE, title="Scenario template", mime_type="application/yaml")(template)
     for section in SECTIONS:
@@ -46,18 +55,6 @@ def add_resources(server: MCPServer) -> None:
                 mime_type="application/yaml",
             )
         )
-
-
-def schema(section: str) -> str:
-    """JSON Schema of a section, key or component of scenario files, such as world or robot.sensors.lidar2d."""
-    from irsim.lookup import TopicError, schema_part
-
-    try:
-        part = schema_part("" if section == "scenario" else section)
-    except TopicError as error:
-        near = f" Did you mean {' or '.join(error.near)}?" if error.near else f" There are {', '.join(SECTIONS)}."
-        raise ResourceNotFoundError(f"no part of the schema is called {section!r}.{near}") from None
-    return json.dumps(part, ensure_ascii=False)
 
 
 def template(name: str) -> str:

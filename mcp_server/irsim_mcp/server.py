@@ -117,7 +117,7 @@ def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing
         extensions=[Skills(), replay_app()],
         log_level="WARNING",
     )
-    add_resources(server)
+    add_resources(server, services)
     add_docs(server)
     add_run_resources(server, services)
     add_prompts(server, services)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -26,6 +27,10 @@ Seed = Annotated[
 RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
 
 
+_MOST_KNOWN = 100
+"""Answers about the language that are kept."""
+
+
 @dataclass(frozen=True)
 class Services:
     """One server's folder, limits and workers."""
@@ -34,6 +39,28 @@ class Services:
     limits: ServerLimits
     workers: Workers
     jobs: Jobs
+    known: dict[str, str] = field(default_factory=dict)
+    """Answers of :meth:`reference`: the language stays what it is as long as the server runs."""
+
+    async def reference(self, task: str, argument: str, **arguments: Any) -> str:
+        """Have a worker answer about the language; what was asked before is known.
+
+        Args:
+            task: What to ask.
+            argument: Name of the argument, for errors.
+            **arguments: Arguments of the task.
+
+        Raises:
+            ToolError: Nothing is known of it.
+        """
+        question = json.dumps([task, arguments], sort_keys=True)
+        if question not in self.known:
+            answer = await self.workers.read(task, arguments, seconds=self.limits.check_seconds)
+            text = str(_result(answer, argument)["text"])
+            if len(self.known) >= _MOST_KNOWN:
+                del self.known[next(iter(self.known))]
+            self.known[question] = text
+        return self.known[question]
 
     async def scenario_job(
         self,

@@ -29,6 +29,8 @@ Progress = Callable[[int, int], Awaitable[None]]
 _LONGEST_ANSWER = 16 * 1024**2
 _STARTING = 1.0
 """Seconds that starting a process takes, added to the time of the work."""
+_READERS = 2
+_POLL = 0.02
 _KEPT = (
     ("APPDATA", "LOCALAPPDATA", "PATHEXT", "SYSTEMDRIVE", "SYSTEMROOT", "TEMP", "TMP", "USERPROFILE")
     if os.name == "nt"
@@ -63,7 +65,17 @@ class Workers:
 
     def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
         self._workspace, self._limits = workspace, limits
-        self._at_work = 0
+        self._at_work = self._reading = 0
+
+    async def read(self, task: str, arguments: Mapping[str, Any], *, seconds: float) -> dict[str, Any]:
+        """The same as :meth:`call` for short work that takes nobody's place: a few at a time, the others wait."""
+        while self._reading >= _READERS:
+            await anyio.sleep(_POLL)
+        self._reading += 1
+        try:
+            return await self._work({"task": task, "arguments": dict(arguments)}, seconds, None)
+        finally:
+            self._reading -= 1
 
     async def call(
         self, task: str, arguments: Mapping[str, Any], *, seconds: float, progress: Progress | None = None

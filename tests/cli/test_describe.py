@@ -87,7 +87,7 @@ def test_metrics_are_explained(irsim: Run) -> None:
     assert len(listed) == len(METRICS) + len(EPISODE_METRICS)
     for name in listed:
         answer = lookup(name)
-        assert (answer.kind, answer.topic, answer.see) == ("metric", name, ["metrics"])
+        assert (answer.kind, answer.topic, answer.see[0]) == ("metric", name, "metrics")
     for metric in (*METRICS, *EPISODE_METRICS):
         for asked in (f"metric {metric.key}", f"metrics.{metric.key}"):
             assert lookup(asked).title == f"metric {metric.key}"

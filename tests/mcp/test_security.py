@@ -82,6 +82,7 @@ RULES = {
     ),
     "process: the server itself loads no engine": (
         "mcp/test_start.py::test_neither_engine_nor_drawing_is_loaded_at_start",
+        "mcp/test_start.py::test_neither_is_loaded_by_anything_one_can_ask_for",
     ),
     "quotas: workers and jobs, the next one is told to come back": (
         "mcp/test_lifetime.py::test_more_calls_than_workers_are_told_to_come_back",

@@ -55,6 +55,14 @@ def test_neither_engine_nor_drawing_is_loaded_at_start() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_neither_is_loaded_by_anything_one_can_ask_for(workspace: Path) -> None:
+    root = Path(__file__).resolve().parents[2]
+    command = [sys.executable, "-m", "tests.mcp.everything", str(workspace)]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.splitlines()[-1]) == []
+
+
 def test_standard_output_has_messages_only(workspace: Path) -> None:
     done = run("--workspace", str(workspace), stdin=INITIALIZE)
     assert done.returncode == 0
