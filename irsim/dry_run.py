@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from irsim.env import Env
 from irsim.episode import horizon_of
+from irsim.leaving import MOST_LEFT, left_told, left_world
 from irsim.observers.events import Event, collision_of, partner_of, passable_names
 from irsim.observers.trace import Trace, record
-from irsim.results import DryRun, EventRecord, Left, Stuck
+from irsim.results import DryRun, EventRecord, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 from irsim.scenario.randomness import random_parts
@@ -72,7 +73,7 @@ def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon
     parked = [record.name for record in scenario.robots() if scenario.parked(record)]
     held = jammed(env.simulation, events)
     stuck, count = _stuck(env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held)
-    left = _left(scenario, trace)
+    left = left_world(scenario, lambda row: trace.pose[:, row], steps)
     ended: Literal["done", "horizon", "budget"] = "budget"
     if bool(env.simulation.done()[0]):
         ended = "done"
@@ -88,14 +89,16 @@ def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon
             [
                 _begin(trace, len(robots), arrived, parked, ended),
                 *_troubles(hits, stuck, count),
-                *filter(None, (others_arrived(scenario, events), jam_told(env.simulation, held))),
-                *_gone(left),
+                *filter(
+                    None,
+                    (others_arrived(scenario, events), jam_told(env.simulation, held), left_told(scenario, left)),
+                ),
             ]
         ),
         arrived=arrived,
         collisions=[EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MOST]],
         stuck=stuck,
-        left=left[:_MOST],
+        left=left[:MOST_LEFT],
         parked=parked,
         jammed=list(held),
     )
@@ -159,25 +162,6 @@ def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
     return near.told if near.held else f"{near.told}, in the way of its behavior"
 
 
-def _left(scenario: ResolvedScenario, trace: Trace) -> list[Left]:
-    """Moving objects whose position left the world's extent, in order of time."""
-    x, y, right, top = scenario.world.bounds
-    moving = [index for index, item in enumerate(scenario.objects) if not item.static]
-    inside = (
-        (trace.pose[:, moving, 0] >= x)
-        & (trace.pose[:, moving, 0] <= right)
-        & (trace.pose[:, moving, 1] >= y)
-        & (trace.pose[:, moving, 1] <= top)
-    )
-    found = []
-    for column, index in enumerate(moving):
-        out = np.flatnonzero(~inside[:, column])
-        if out.size and inside[0, column]:
-            px, py = (float(value) for value in trace.pose[out[0], index, :2])
-            found.append(Left(name=scenario.objects[index].name, time=float(trace.time[out[0]]), x=px, y=py))
-    return sorted(found, key=lambda item: item.time)
-
-
 def _begin(trace: Trace, robots: int, arrived: Sequence[str], parked: Sequence[str], ended: str) -> str:
     """How far it went and who arrived."""
     time = seconds(trace.time[-1])
@@ -199,11 +183,3 @@ def _troubles(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list
     if count > 1:
         parts.append(f"{count - 1} more get{'s' * (count == 2)} nowhere")
     return parts
-
-
-def _gone(left: Sequence[Left]) -> list[str]:
-    """Who left the world."""
-    if not left:
-        return []
-    more = f" and {len(left) - 1} more after it" if len(left) > 1 else ""
-    return [f"'{left[0].name}' left the world at {seconds(left[0].time)}{more}"]

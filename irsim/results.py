@@ -318,6 +318,8 @@ class RunResult(Result):
     """Robots that cannot move and have no goal of their own; they never arrive."""
     jammed: list[str] = Field(default_factory=list)
     """Moving obstacles that stand at the end since they hit another obstacle."""
+    left: list[Left] = Field(default_factory=list)
+    """Moving objects whose position left the world, the first ones; ``world.boundary: walls`` keeps them in."""
     events: list[EventRecord]
     """The first events in order; of the arrivals of an object at the same goal only the first."""
     event_count: int

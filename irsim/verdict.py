@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from irsim.episode import seed_of
+from irsim.leaving import MOST_LEFT, left_told, left_world
 from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
-from irsim.results import EventRecord, Finding, HorizonSource, RobotResult, RunResult
+from irsim.results import EventRecord, Finding, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.randomness import random_parts
 from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, moves_by_itself
 from irsim.text import clean, seconds
@@ -76,6 +78,7 @@ def run_result(
     held = jammed(env.simulation, events)
     parked = [record.name for record in env.scenario.robots() if env.scenario.parked(record)]
     robots = _robots(env, events, counts, parked)
+    left = _left(env)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -90,7 +93,7 @@ def run_result(
         random=random_parts(env.scenario),
         behavior=behavior,
         outcome=outcome,
-        summary=_summary(env, robots, hits, behavior, parked, held, events),
+        summary=_summary(env, robots, hits, behavior, parked, held, events, left),
         reason=None if outcome == "success" else _reason(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -99,6 +102,7 @@ def run_result(
         robots=robots,
         parked=parked,
         jammed=list(held),
+        left=left[:MOST_LEFT],
         events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in told[:_MAX_EVENTS]],
         event_count=len(told),
         warnings=warnings,
@@ -218,6 +222,18 @@ def _path_length(env: Env, row: int) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
+def _left(env: Env) -> list[Left]:
+    """Who left the world; in very large runs only robots."""
+    simulation, large = env.simulation, (int(env.simulation.count[0]) + 1) * env.simulation.objects > _MOST_POSES
+    records = env.scenario.objects
+
+    def track(row: int) -> NDArray[np.float64]:
+        past = [] if large and records[row].role != "robot" else [simulation.state.trajectory(row)[:, :3]]
+        return np.vstack([simulation.state.initial_state(row)[None, :3], *past])
+
+    return left_world(env.scenario, track, int(simulation.count[0]))
+
+
 def _summary(
     env: Env,
     robots: list[RobotResult],
@@ -226,10 +242,13 @@ def _summary(
     parked: Sequence[str],
     held: dict[str, Event],
     events: Sequence[Event],
+    left: Sequence[Left],
 ) -> str:
     told = [_arrivals(robots, env.sim_time, parked)]
     if hit := _first_hit({robot.name for robot in robots}, hits):
         told.append(hit)
+    if out := left_told(env.scenario, left):
+        told.append(out)
     if gone := _gone_again(env, robots):
         told.append(gone)
     if others := others_arrived(env.scenario, events):

@@ -73,9 +73,11 @@ def test_tells_why_a_robot_is_stuck(settings: dict[str, str], why: str) -> None:
 
 
 def test_tells_who_left_the_world() -> None:
-    found = tried(goal="[20, 4]")
+    found = tried(state="[1.05, 4, 0]", goal="[20, 4]")
     assert [item.name for item in found.left] == ["rover"]
     assert found.left[0].time == pytest.approx(9.0, abs=0.3)
+    assert "'rover' left the world at 9 s ('world.boundary: walls' would keep it in)" in found.summary
+    assert tried(goal="[20, 4]", world="{width: 10, height: 8, boundary: walls}").left == []
 
 
 def test_is_the_same_every_time_and_ends_within_its_budget() -> None:

@@ -15,6 +15,7 @@ from irsim.benchmarks import BenchmarkError
 from irsim.cli.app import app
 from irsim.errors import OverLimitError, ScenarioError
 from irsim.runs import open_run
+from irsim.runs.inspection import inspect_run
 from irsim.runs.replaying import replayed
 from irsim.scenario.limits import Limits
 
@@ -49,6 +50,35 @@ def test_exactly_one_of_path_and_text() -> None:
 
 def test_success_needs_no_reason() -> None:
     assert irsim.run(text=text()).reason is None
+
+
+def test_who_leaves_the_world_is_told_wherever_it_goes(tmp_path: Path) -> None:
+    """Though it arrives, and also when it comes back: when, who, and what would keep it in."""
+
+    def room(goal: float, world: str = "") -> str:
+        return text(goal, world=world).replace("[1, 3]", "[1.05, 3]")
+
+    told = "'rover' left the world at 19 s ('world.boundary: walls' would keep it in)"
+    out = irsim.run(text=room(25), record=tmp_path / "run")
+    assert out.outcome == "success"
+    assert told in out.summary
+    assert [(item.name, item.x) for item in out.left] == [("rover", pytest.approx(20.05))]
+    assert told in inspect_run(open_run(tmp_path / "run")).summary
+    there_and_back = irsim.run(text=room(4).replace("goal: [4, 3]", "waypoints: [[22, 3], [18, 3]]"))
+    assert told in there_and_back.summary
+    walled = irsim.run(text=room(25, world=", boundary: walls"))
+    assert (walled.outcome, walled.left) == ("collision", [])
+    assert irsim.run(text=room(15)).left == []
+    scout = f"  - {{name: scout, kinematics: {{name: diff}}, state: [1, 1], goal: [30, 1]{DASH}}}\n"
+    several = irsim.run(text=room(25) + scout)
+    assert "'rover' left the world at 19 s and 1 more after it" in several.summary
+    assert [item.name for item in several.left] == ["rover", "scout"]
+
+
+def test_what_starts_outside_has_not_left() -> None:
+    outside = irsim.run(text=text(4).replace("state: [1, 3]", "state: [-2, 3]"))
+    assert outside.left == []
+    assert "left the world" not in outside.summary
 
 
 @pytest.mark.parametrize(

@@ -90,6 +90,15 @@ def test_run_with_another_behavior(workspace: Path) -> None:
     assert tool(workspace, "run_episode", scenario_path=file, behavior=behavior, max_steps=STEPS) == expected
 
 
+def test_who_leaves_the_world(workspace: Path) -> None:
+    robot = "{kinematics: {name: diff}, shape: {name: circle}, state: [8, 5], goal: [12, 5], behavior: {name: dash}}"
+    (workspace / "out.yaml").write_text(f"world: {{width: 10, height: 10}}\nrobot: {robot}\n", encoding="utf-8")
+    expected = bytes_of(irsim.run("out.yaml", strict=True).model_dump_json())
+    assert b"left the world at 2.1 s ('world.boundary: walls' would keep it in)" in expected
+    assert shell("run", "out.yaml", "--strict") == expected
+    assert tool(workspace, "run_episode", scenario_path="out.yaml") == expected
+
+
 @pytest.mark.parametrize("name", ["crossing", "random-polygons"])
 def test_benchmark(workspace: Path, name: str) -> None:
     file = f"{name}/scenario.yaml"

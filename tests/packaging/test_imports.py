@@ -73,6 +73,7 @@ LAYERS = (
     dry_run
     episode
     learning
+    leaving
     lib
     labels
     lookup
