@@ -538,6 +538,7 @@ TOOL_CODES: dict[str, Code] = {
         "step outside the run", "The recorded run has no such step; the message has the steps it does have."
     ),
     "unknown-tool": Code("unknown tool", "The server has no tool of that name; the message names the nearest."),
+    "unknown-prompt": Code("unknown prompt", "The server has no prompt of that name; the message lists those it has."),
     "unknown-argument": Code(
         "unknown argument", "The tool has no argument of that name; the message names the nearest, or all there are."
     ),

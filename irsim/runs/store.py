@@ -52,6 +52,7 @@ QUOTA = 500 * 1000 * 1000
 """Bytes that the runs of a workspace may take together; the least recently used ones make room."""
 DAY = 24 * 3600.0
 """Seconds after its last use that a run is kept."""
+_AGAIN = "runs are let go 24 h after their last use: the same scenario and seed give the same run again"
 _KEPT_IN = ".irsim"
 _LONGEST_STEM = 24
 _ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
@@ -182,9 +183,8 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
         used(folder)
         return folder
     recent = recent_ids(runs)
-    if not recent:
-        raise RunError("unknown-run", f"there is no run {clean(name)!r}, nor any other", "record one first")
-    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"recent ones are {', '.join(recent)}")
+    fix = f"recent ones are {', '.join(recent)}" if recent else "none is kept here"
+    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_AGAIN}")
 
 
 def used(folder: Path) -> None:

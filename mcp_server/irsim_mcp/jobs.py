@@ -176,7 +176,8 @@ class Jobs:
         found = next((job for job in run_folders(folder) if job.name == job_id), None)
         if found is None:
             recent = recent_ids(folder)
-            fix = f"recent ones are {', '.join(recent)}" if recent else "start one with benchmark"
+            fix = f"recent ones are {', '.join(recent)}" if recent else "none is kept here"
+            fix += "; jobs are let go after 24 h: benchmark with the same arguments gives the same again"
             raise failure("unknown-job", f"there is no job {clean(job_id)!r}", where="job_id", fix=fix)
         return found
 

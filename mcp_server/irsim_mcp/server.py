@@ -78,14 +78,17 @@ class IrsimServer(MCPServer[Any]):
         """Fill in a prompt."""
         prompts = {prompt.name: prompt for prompt in await self.list_prompts()}
         if name not in prompts:
-            wrong = f"unknown-prompt: there is no prompt {clean(name)!r}. Fix: there are {', '.join(prompts)}."
-            raise MCPError(INVALID_PARAMS, wrong)
+            fix = f"there are {', '.join(prompts)}"
+            raise MCPError(
+                INVALID_PARAMS, str(failure("unknown-prompt", f"there is no prompt {clean(name)!r}", fix=fix))
+            )
         known = {argument.name: argument.required for argument in prompts[name].arguments or ()}
         missing = [argument for argument, needed in known.items() if needed and argument not in (arguments or {})]
         unknown = [clean(argument) for argument in arguments or {} if argument not in known]
         if missing or unknown:
             wrong = f"lacks {', '.join(missing)}" if missing else f"takes no {', '.join(unknown[:3])}"
-            raise MCPError(INVALID_PARAMS, f"bad-argument: {name} {wrong}. Fix: it takes {', '.join(known)}.")
+            refused = failure("bad-argument", f"{name} {wrong}", fix=f"it takes {', '.join(known)}")
+            raise MCPError(INVALID_PARAMS, str(refused))
         return await super().get_prompt(name, arguments, context)
 
 

@@ -18,6 +18,7 @@ from mcp.types import INVALID_PARAMS, PaginatedRequestParams, RequestParams
 
 from irsim import resources
 from irsim.text import clean
+from irsim_mcp.errors import failure
 
 __all__ = ["Skills", "skill_files"]
 
@@ -69,7 +70,8 @@ class Skills(Extension):
 
     async def _list(self, context: ServerRequestContext[Any, Any], params: PaginatedRequestParams) -> dict[str, Any]:
         if params.cursor:
-            raise MCPError(INVALID_PARAMS, "there is one page of skills only; leave out cursor")
+            refused = failure("bad-argument", "there is one page of skills only", where="cursor", fix="leave it out")
+            raise MCPError(INVALID_PARAMS, str(refused))
         return {"skills": [_entry(folder) for folder in self._folders], **_CACHED}
 
     async def _get(self, context: ServerRequestContext[Any, Any], params: _Get) -> dict[str, Any]:
@@ -77,7 +79,8 @@ class Skills(Extension):
             if params.uri == _uri(folder, _MAIN):
                 return {"skill": _entry(folder), **_CACHED}
         names = ", ".join(_uri(folder, _MAIN) for folder in self._folders)
-        raise MCPError(INVALID_PARAMS, f"there is no skill {clean(params.uri)!r}; there are {names}")
+        refused = failure("unknown-skill", f"there is no skill {clean(params.uri)!r}", fix=f"there are {names}")
+        raise MCPError(INVALID_PARAMS, str(refused))
 
 
 def skill_folders(folder: Path) -> list[Path]:

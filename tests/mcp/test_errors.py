@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
 import pytest
 from irsim_mcp.errors import failure
+from mcp import MCPError
 
 from irsim.codes import CODES, TOOL_CODES
-from tests.mcp.conftest import ERAS, ROOM, connected, error_of
+from tests.mcp.conftest import ERAS, ROOM, connected, error_of, text_of
 
 pytestmark = pytest.mark.anyio
+
+NO_CODES = {"irsim-mcp"}
+"""Looks like one: the name of the program before what it says."""
 
 
 @pytest.fixture(scope="module")
@@ -153,6 +158,57 @@ def test_errors_are_short_and_documented() -> None:
     assert told.endswith("Fix: wait.")
     with pytest.raises(LookupError, match="undocumented"):
         failure("no-such-code", "what")
+
+
+def test_every_code_that_is_told_anywhere_is_in_the_list() -> None:
+    """Read off the sources: codes at the beginning of texts, as ``code``, and given to whatever takes known codes."""
+    known = {*CODES, *TOOL_CODES}
+    told: dict[str, str] = {}
+    given: dict[str, dict[str, str]] = {}  # by the name of what is called
+    root = Path(__file__).resolve().parents[2]
+    for path in (*(root / "irsim").rglob("*.py"), *(root / "mcp_server").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            place = f"{path.relative_to(root)}:{getattr(node, 'lineno', 0)}"
+            text = text_in(node)
+            if text is not None and (found := re.match(r"([a-z]+(?:-[a-z0-9]+)+): \S", text)):
+                told[found[1]] = place
+            if isinstance(node, ast.Call):
+                name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+                if node.args and (text := text_in(node.args[0])) is not None:
+                    given.setdefault(name, {})[text] = place
+                told |= {text_in(one.value) or "": place for one in node.keywords if one.arg == "code"}
+            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "code":
+                told[text_in(node.value) or ""] = place
+            if isinstance(node, ast.Dict):
+                pairs = zip(node.keys, node.values, strict=True)
+                told |= {text_in(value) or "": place for key, value in pairs if key and text_in(key) == "code"}
+    for taken in given.values():
+        if known & taken.keys():
+            told |= {text: place for text, place in taken.items() if re.fullmatch(r"[a-z]+(-[a-z0-9]+)+", text)}
+    assert len(known & told.keys()) > 120
+    assert {code: place for code, place in told.items() if code and code not in known | NO_CODES} == {}
+
+
+def text_in(node: ast.AST) -> str | None:
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+async def test_other_refusals_have_a_code_too(empty: Path) -> None:
+    async with connected(empty) as client:
+        with pytest.raises(MCPError, match=r"^unknown-prompt: there is no prompt 'nope'\. Fix: there are design_scen"):
+            await client.get_prompt("nope")
+        told = await client.call_tool("lookup", {"topic": "unknown-prompt"})
+    assert text_of(told).startswith("unknown-prompt: unknown prompt")
+
+
+async def test_what_was_let_go_can_be_made_again(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        for name, argument, code in (("inspect_run", "run_id", "run"), ("get_job", "job_id", "job")):
+            told = error_of(await client.call_tool(name, {argument: "room-123456"}))
+            assert told.startswith(f"unknown-{code}: there is no {code} 'room-123456' ({argument}). Fix: none is kept")
+            assert "let go" in told
+            assert "24 h" in told
+            assert "the same" in told
 
 
 def test_a_fault_of_ours_points_at_no_argument() -> None:

@@ -86,7 +86,7 @@ async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> Non
 
 async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
     async with connected(workspace) as client:
-        assert "record one first" in error_of(await client.call_tool("inspect_run", {"run_id": "x"}))
+        assert "none is kept here; runs are let go 24 h after" in error_of(await client.call_tool("inspect_run", {"run_id": "x"}))
         run_id = await crashed(client)
         for wrong in ("crash-000000", "../..", "", "\x00", "a" * 100, f"{run_id}/../{run_id}"):
             for tool in ("inspect_run", "render_snapshot"):

@@ -186,7 +186,7 @@ def test_last_is_the_run_begun_last_whatever_was_looked_at_since(room: Path) -> 
 
 
 def test_an_unknown_run_names_recent_ones(room: Path) -> None:
-    with pytest.raises(RunError, match="record one first"):
+    with pytest.raises(RunError, match="none is kept here"):
         open_run("room-123456")
     ids = [str(irsim.run(room, seed=n, steps=1, record=True).run_id) for n in range(7)]
     with pytest.raises(RunError, match="unknown-run") as caught:
