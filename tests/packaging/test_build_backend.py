@@ -87,7 +87,7 @@ def test_scripts_pass_their_arguments_on(backend: ModuleType, tmp_path: Path) ->
     zig.chmod(0o755)
     scripts = backend.write_zig_scripts(tmp_path, str(zig))
     done = subprocess.run([scripts["c++"], "-O2", "two words.cpp"], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == ["c++", "-mcpu=baseline", "-O2", "two words.cpp"]
+    assert done.stdout.splitlines() == ["c++", "-mcpu=baseline", "-s", "-O2", "two words.cpp"]
 
 
 def test_a_missing_compiler_package_is_named(backend: ModuleType, bare: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -55,7 +55,8 @@ def checkout(tmp_path: Path) -> tuple[Path, Run]:
     shutil.copy(core.__file__, tmp_path / "irsim")
     paths = [str(tmp_path), str(tmp_path / "mcp_server"), *(path for path in sys.path if "site-packages" in path)]
     paths += [path for path in sys.path if path and Path(path).is_dir() and str(ROOT) not in path]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(dict.fromkeys(paths)), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(dict.fromkeys(paths))}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a dozen processes would compile the copy again
 
     def run(words: Sequence[str], code: int = 0) -> str:
         # Without site: the hook of an editable install would lead back to this tree.

@@ -47,8 +47,9 @@ ZIGLANG = "ziglang>=0.13,<0.18"
 
 ZIG_TOOLS = {
     # -mcpu=baseline: zig's own default is the CPU of this machine, which would make results depend on it.
-    "cc": "cc -mcpu=baseline",
-    "c++": "c++ -mcpu=baseline",
+    # -s: its C++ library is compiled at the first link, and once more for a link that strips, as the module's does.
+    "cc": "cc -mcpu=baseline -s",
+    "c++": "c++ -mcpu=baseline -s",
     "ar": "ar",
     "ranlib": "ranlib",
 }
