@@ -11,7 +11,7 @@ namespace {
 constexpr double kRounding = 1.0 + 1e-12;
 
 /// The nearest so far.
-struct Nearest {
+struct Closest {
   double distance = kInfinity;
   int partner = -1;
 
@@ -36,7 +36,7 @@ void clearances(const World& world, const Shapes& shapes, const Fixed& fixed, co
     if (world.is_static[i]) stands[static_cast<int>(company[i])] = true;
   }
   std::vector<Vec2> centres(movers.size());  // of the bounding circles of the movers
-  std::vector<Nearest> before(robots.size() * kCompanies);
+  std::vector<Closest> before(robots.size() * kCompanies);
   for (std::size_t t = 0; t < rows; ++t) {
     const Pose* pose = poses + t * world.objects;
     for (const int i : world.moving) moving.place(shapes, i, pose[i], unit(pose[i].theta));
@@ -44,8 +44,8 @@ void clearances(const World& world, const Shapes& shapes, const Fixed& fixed, co
     for (std::size_t r = 0; r < robots.size(); ++r) {
       const int self = robots[r];
       const Footprint own = body(self);
-      Nearest* last = before.data() + r * kCompanies;
-      Nearest found[kCompanies];
+      Closest* last = before.data() + r * kCompanies;
+      Closest found[kCompanies];
       // whoever was nearest in the row before is a good first guess: most others are farther than that
       for (int k = 0; k < kCompanies; ++k) {
         if (last[k].partner >= 0) found[k].consider(distance(own, body(last[k].partner)), last[k].partner);

@@ -27,7 +27,7 @@ Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
 }
 
 /// Corners of the outermost cells of each row.
-void add_extremes(const OccupancyGrid& grid, std::vector<Disc>& discs) {
+void add_extremes(const OccupancyGrid& grid, std::vector<PlainDisc>& discs) {
   for (int j = 0; j < grid.rows(); ++j) {
     int first = grid.next_occupied(j, 0, grid.columns() - 1), last = first;
     if (first < 0) continue;
@@ -42,7 +42,7 @@ void add_extremes(const OccupancyGrid& grid, std::vector<Disc>& discs) {
 }  // namespace
 
 void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
-  std::vector<Disc> discs;
+  std::vector<PlainDisc> discs;
   const int base = static_cast<int>(vertices.size());
   for (const Outline& outline : outlines) {
     Part part{outline.kind, static_cast<int>(vertices.size()) - base, 0, outline.radius, 0.0, outline.cells.get()};
@@ -63,7 +63,7 @@ void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
     }
     for (const Vec2& v : outline.vertices) discs.push_back({v, outline.radius});
   }
-  const Disc around = enclosing_circle(discs);
+  const PlainDisc around = enclosing_circle(discs);
   centre.push_back(around.centre);
   centroid.push_back(centroid_of(outlines, around.centre));
   radius.push_back(around.radius);

@@ -6,7 +6,7 @@ namespace irsim {
 namespace {
 
 /// A part with its world-frame vertices and box.
-struct Piece {
+struct Shape {
   const Part& part;
   const Vec2* vertices;
   const Box& box;
@@ -21,9 +21,9 @@ Box edge_box(const Vec2* edge) {
           std::max(edge[0].y, edge[1].y)};
 }
 
-bool contains(const Piece& piece, Vec2 p) { return piece.filled() && inside_ring(piece.begin(), piece.edges(), p); }
+bool contains(const Shape& piece, Vec2 p) { return piece.filled() && inside_ring(piece.begin(), piece.edges(), p); }
 
-bool circles_touch(const Piece& a, const Piece& b, Vec2& where) {
+bool circles_touch(const Shape& a, const Shape& b, Vec2& where) {
   const Vec2 ca = *a.begin(), d = *b.begin() - ca;
   const double reach = a.part.radius + b.part.radius, distance2 = squared(d);
   if (!(distance2 <= reach * reach)) return false;
@@ -35,7 +35,7 @@ bool circles_touch(const Piece& a, const Piece& b, Vec2& where) {
   return true;
 }
 
-bool circle_touches(const Piece& circle, const Piece& other, Vec2& where) {
+bool circle_touches(const Shape& circle, const Shape& other, Vec2& where) {
   const Vec2 centre = *circle.begin();
   const double radius2 = circle.part.radius * circle.part.radius;
   for (int i = 0; i < other.edges(); ++i) {
@@ -48,7 +48,7 @@ bool circle_touches(const Piece& circle, const Piece& other, Vec2& where) {
   return false;
 }
 
-bool edges_touch(const Piece& a, const Piece& b, Vec2& where) {
+bool edges_touch(const Shape& a, const Shape& b, Vec2& where) {
   for (int i = 0; i < a.edges(); ++i) {
     const Vec2* p = a.begin() + i;
     const Box p_box = edge_box(p);
@@ -63,13 +63,13 @@ bool edges_touch(const Piece& a, const Piece& b, Vec2& where) {
   return false;
 }
 
-bool cells_touch(const OccupancyGrid& grid, const Piece& other, Vec2& where) {
+bool cells_touch(const OccupancyGrid& grid, const Shape& other, Vec2& where) {
   if (other.part.kind == Kind::circle) return disc_meets(grid, *other.begin(), other.part.radius, where);
   if (other.part.kind == Kind::cells) return false;
   return outline_meets(grid, other.begin(), other.edges(), other.filled(), other.box, where);
 }
 
-bool pieces_touch(const Piece& a, const Piece& b, Vec2& where) {
+bool pieces_touch(const Shape& a, const Shape& b, Vec2& where) {
   if (a.part.cells != nullptr) return cells_touch(*a.part.cells, b, where);
   if (b.part.cells != nullptr) return cells_touch(*b.part.cells, a, where);
   const bool a_round = a.part.kind == Kind::circle, b_round = b.part.kind == Kind::circle;

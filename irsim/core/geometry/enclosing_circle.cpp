@@ -4,12 +4,12 @@ namespace irsim {
 namespace {
 
 /// How far `disc` sticks out of `circle`; negative inside.
-double excess(const Disc& circle, const Disc& disc) {
+double excess(const PlainDisc& circle, const PlainDisc& disc) {
   return norm(disc.centre - circle.centre) + disc.radius - circle.radius;
 }
 
 /// Smallest circle around two discs.
-Disc around(const Disc& a, const Disc& b) {
+PlainDisc around(const PlainDisc& a, const PlainDisc& b) {
   const Vec2 d = b.centre - a.centre;
   const double length = norm(d);
   if (length + b.radius <= a.radius) return a;
@@ -19,8 +19,8 @@ Disc around(const Disc& a, const Disc& b) {
 }
 
 /// The circle that touches three discs from outside (Apollonius); radius infinite if there is none.
-Disc around(const Disc& a, const Disc& b, const Disc& c) {
-  const Disc none{{}, kInfinity};
+PlainDisc around(const PlainDisc& a, const PlainDisc& b, const PlainDisc& c) {
+  const PlainDisc none{{}, kInfinity};
   const Vec2 p = b.centre - a.centre, q = c.centre - a.centre;
   const double det = 2.0 * cross(p, q);
   if (det == 0.0) return none;
@@ -34,7 +34,7 @@ Disc around(const Disc& a, const Disc& b, const Disc& c) {
   const double root = v * v - u * w;
   if (root < 0.0) return none;
   const double largest = std::max({a.radius, b.radius, c.radius});
-  Disc best = none;
+  PlainDisc best = none;
   for (const double sign : {-1.0, 1.0}) {
     const double radius = u == 0.0 ? w / (2.0 * v) : (v + sign * std::sqrt(root)) / u;
     if (radius >= largest && radius < best.radius) best = {a.centre + s + t * radius, radius};
@@ -43,15 +43,15 @@ Disc around(const Disc& a, const Disc& b, const Disc& c) {
 }
 
 struct Basis {
-  Disc members[3];
+  PlainDisc members[3];
   int count = 0;
-  Disc circle{{}, kInfinity};
+  PlainDisc circle{{}, kInfinity};
 };
 
 /// The smallest circle around the basis and `extra` that `extra` helps to hold, and what holds it.
-Basis extend(const Basis& basis, const Disc& extra, double tolerance) {
+Basis extend(const Basis& basis, const PlainDisc& extra, double tolerance) {
   Basis best;
-  const auto consider = [&](const Disc& circle, std::initializer_list<int> kept) {
+  const auto consider = [&](const PlainDisc& circle, std::initializer_list<int> kept) {
     if (!(circle.radius < best.circle.radius) || excess(circle, extra) > tolerance) return;
     for (int i = 0; i < basis.count; ++i)
       if (excess(circle, basis.members[i]) > tolerance) return;
@@ -70,18 +70,18 @@ Basis extend(const Basis& basis, const Disc& extra, double tolerance) {
 
 }  // namespace
 
-Disc enclosing_circle(const std::vector<Disc>& discs) {
+PlainDisc enclosing_circle(const std::vector<PlainDisc>& discs) {
   if (discs.empty()) return {};
   Basis basis;
   basis.members[0] = basis.circle = discs.front();
   basis.count = 1;
   double scale = discs.front().radius;
-  for (const Disc& disc : discs) scale = std::max(scale, norm(disc.centre - discs.front().centre) + disc.radius);
+  for (const PlainDisc& disc : discs) scale = std::max(scale, norm(disc.centre - discs.front().centre) + disc.radius);
   const double tolerance = 1e-13 * scale;
   for (std::size_t round = 0; round < 4 * discs.size() + 16; ++round) {  // the radius grows; the bound is for NaN
-    const Disc* worst = nullptr;
+    const PlainDisc* worst = nullptr;
     double most = tolerance;
-    for (const Disc& disc : discs) {
+    for (const PlainDisc& disc : discs) {
       const double e = excess(basis.circle, disc);
       if (e > most) most = e, worst = &disc;
     }

@@ -7,12 +7,12 @@
 
 namespace irsim {
 
-struct Disc {
+struct PlainDisc {
   Vec2 centre;
   double radius = 0.0;
 };
 
 /// The smallest circle that contains all discs (points are discs of radius 0).
-Disc enclosing_circle(const std::vector<Disc>& discs);
+PlainDisc enclosing_circle(const std::vector<PlainDisc>& discs);
 
 }  // namespace irsim

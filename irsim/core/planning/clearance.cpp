@@ -9,10 +9,10 @@ namespace {
 constexpr double kDiagonal = 0.70710678118654752;
 constexpr float kTouching = 1e-6f;  // [m]
 
-struct Step {
+struct Move {
   int dx, dy;
 };
-constexpr Step kSteps[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+constexpr Move kMoves[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
 /// The part of a segment inside of a box; false if there is none.
 bool clipped(Vec2& a, Vec2& b, const Box& box) {
@@ -39,7 +39,7 @@ bool clipped(Vec2& a, Vec2& b, const Box& box) {
 template <class Visit>
 void Clearance::around(int node, Visit&& visit) const {
   const int i = node % lattice_.nx, j = node / lattice_.nx;
-  for (const Step& step : kSteps) {
+  for (const Move& step : kMoves) {
     if (lattice_.holds(i + step.dx, j + step.dy)) visit(lattice_.node(i + step.dx, j + step.dy));
   }
 }

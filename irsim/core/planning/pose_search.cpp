@@ -18,11 +18,11 @@ constexpr double kBackward = 1.5;   // cost of backing, per length
 constexpr double kSwitch = 0.3;     // of changing direction [m]
 constexpr double kSteering = 0.02;  // of an arc [m]
 constexpr double kGreed = 1.5;      // weight of the distance to the goal: far fewer nodes, paths at most so much longer
-constexpr int kMostNodes = 60000;
+constexpr int kMostPoses = 60000;
 constexpr double kFieldCell = 0.1;  // of the distances to the goal [m]
 constexpr double kMostField = 250000;
 
-struct Node {
+struct PoseNode {
   Pose pose;
   double cost;
   int parent, way;
@@ -46,7 +46,7 @@ class PoseSearch {
       if (closed_[k]) continue;
       closed_[k] = 1;
       if (norm(nodes_[k].pose.position() - p_.goal) <= std::max(p_.near, step_)) return legs(k);
-      if (nodes_.size() > kMostNodes) return {};
+      if (nodes_.size() > kMostPoses) return {};
       if (p_.radius > 0.0) {
         arcs(k);
       } else {
@@ -119,13 +119,13 @@ class PoseSearch {
     open_.push({-(cost + kGreed * left), static_cast<int>(nodes_.size()) - 1});
   }
 
-  double price(const Node& from, double length, int way) const {
+  double price(const PoseNode& from, double length, int way) const {
     const bool turned = from.way != 0 && way != 0 && from.way != way;
     return from.cost + length * (way < 0 ? kBackward : 1.0) + (turned ? kSwitch : 0.0);
   }
 
   void arcs(int k) {
-    const Node from = nodes_[k];
+    const PoseNode from = nodes_[k];
     const int pieces = std::max(2, static_cast<int>(std::ceil(step_ / p_.radius * kHeadings * kFiner / kTurn)));
     for (const int way : {1, -1}) {
       if (way < 0 && !p_.backs) continue;
@@ -153,7 +153,7 @@ class PoseSearch {
   }
 
   void turns(int k) {
-    const Node from = nodes_[k];
+    const PoseNode from = nodes_[k];
     const Vec2 at = from.pose.position();
     const double slot = kTurn / kHeadings, here = from.pose.theta / slot;
     for (const double to : {std::floor(here - 1e-6) * slot, std::ceil(here + 1e-6) * slot}) {
@@ -196,7 +196,7 @@ class PoseSearch {
   std::vector<std::optional<Body>> bodies_;
   Lattice lattice_{};
   std::vector<double> distance_;
-  std::vector<Node> nodes_;
+  std::vector<PoseNode> nodes_;
   std::vector<std::uint8_t> closed_;
   std::priority_queue<std::pair<double, int>> open_;
   std::unordered_map<std::int64_t, double> best_;
