@@ -9,7 +9,7 @@ from irsim.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.gaps import find_gaps
 from irsim.lookup.guides import GUIDES
-from irsim.lookup.tables import key_table, plain_table
+from irsim.lookup.tables import key_list, key_table, plain_table
 from irsim.lookup.topics import lookup
 from irsim.lookup.walk import COLOR, Node
 from irsim.registry import KINEMATICS, REGISTRIES
@@ -123,15 +123,14 @@ def _plot(source: _Source) -> str:
 def _templates(source: _Source) -> str:
     intro = (
         "Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file. How a run "
-        "ends is told for the default parameters."
+        "ends is told for the default parameters. After a parameter: what it takes; its default."
     )
     parts = [intro]
     for template in templates.load_all():
         answer = source.about(template.name)
         about = f"{template.purpose} Ends in {' or '.join(template.outcomes)}."
         words = f"About: {', '.join(template.tags)}."
-        table = key_table(_all_keys(answer))
-        parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{table.strip()}")
+        parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{key_list(_all_keys(answer))}")
     return "\n\n".join(parts)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from irsim.lookup.answer import Key
 
-__all__ = ["key_table", "plain_table"]
+__all__ = ["key_list", "key_table", "plain_table"]
 
 
 def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = None) -> str:
@@ -24,6 +24,11 @@ def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = No
         note = f" **Not simulated: {missing}.**" if missing else ""
         rows.append((name, _takes(key), f"`{key.default}`" if key.default is not None else "", key.text + note))
     return plain_table(("key", "takes", "default", "meaning"), rows)
+
+
+def key_list(keys: Iterable[Key]) -> str:
+    """One line per key: name, what it takes, default, meaning; shorter than a table."""
+    return "\n".join(f"- `{key.name}` ({_takes(key)}; {key.default}): {key.text}" for key in keys)
 
 
 def plain_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
