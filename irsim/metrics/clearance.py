@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim import _core as core
-from irsim.metrics.company import KINDS, NOBODY, company_of
+from irsim.metrics.company import KINDS, NOBODY, STATIC, company_of
 from irsim.simulation import Simulation
 
 if TYPE_CHECKING:
     from irsim.scenario.objects import ResolvedScenario
 
-__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least"]
+__all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least", "static_distance"]
 
 _MOST_WORK = 20_000_000
 """Bodies placed at most to tell more than the nearest of each kind."""
@@ -110,6 +110,23 @@ def clearance(
     )
     names = tuple(record.name for record in records)
     return Clearance(distance, partner, np.asarray(robots, dtype=np.int64), names)
+
+
+def static_distance(poses: NDArray[np.float64], simulation: Simulation, objects: Sequence[int]) -> NDArray[np.float64]:
+    """(T, M) distance between footprints [m] of some objects to the nearest static thing; NaN where there is none.
+
+    Args:
+        poses: (T, N, 3) as in :func:`clearance`.
+        simulation: In the scene that they are of; its first world.
+        objects: Whose, as indices.
+    """
+    company = company_of(simulation.scenario.objects)
+    company[company != STATIC] = NOBODY
+    if not len(objects) or (company == NOBODY).all():
+        return np.full((len(poses), len(objects)), np.nan)
+    poses = np.ascontiguousarray(poses, dtype=np.float64)
+    distance, _ = core.clearances(simulation.world, simulation.state, 0, poses, list(objects), company)
+    return distance[:, :, STATIC]
 
 
 def closest(distances: Clearance) -> list[Approach | None]:

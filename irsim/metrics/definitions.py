@@ -116,6 +116,8 @@ def _extras() -> tuple[Metric, ...]:
         extra("social_force_robot", "m/s", "norm of the social force of humans on it, summed times dt", better="less"),
         extra("social_force_agents", "m/s", "norms of its social forces on humans, summed times dt", better="less"),
         extra("social_work", "m/s", "both of these together", better="less"),
+        extra("obstacle_force_robot", "m/s", "push of the nearest static thing on it, summed times dt", better="less"),
+        extra("obstacle_force_agents", "m/s", "pushes of the nearest static things on humans, summed times dt"),
         extra("pedestrian_velocity_avg", "m/s", "mean speed of the humans until it arrived"),
         extra("control_effort", "s", "squared controls, each over its limit, summed times dt", better="less"),
         extra("left_world", "0/1", "its position was outside the world", "max", "less"),

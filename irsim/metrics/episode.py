@@ -87,7 +87,7 @@ def episode_metrics(
         trace,
         list(events),
         distances,
-        simulation.scenario,
+        simulation,
         np.asarray(simulation.radius[: simulation.objects], dtype=np.float64),
         [_top_speed(records[robot].vel_max, records[robot].kinematics) for robot in robots],
     )

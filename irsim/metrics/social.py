@@ -10,20 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.behaviors.sfm import Sfm
-from irsim.metrics.company import HUMAN
+from irsim.metrics.company import HUMAN, STATIC
 from irsim.metrics.track import Track
 from irsim.observers.events import partner_of
 
 if TYPE_CHECKING:
     from irsim.observers.events import Event
 
-__all__ = ["group_gaps", "social", "social_forces"]
+__all__ = ["group_gaps", "obstacle_force", "social", "social_forces"]
 
 Floats = NDArray[np.float64]
 _GROWN = 0.45  # the space of a group reaches so far round its members [m]
 _EQUAL = 0.1  # speeds that differ by less than this share are equal
 _STRAIGHT = 1e-12  # smaller angles are rounding errors [rad]
 _SAME_PLACE = 1e-6  # no direction, no force [m]
+_WALL_REACH = 5.0  # walls push within so many sigmas
 
 
 def social(track: Track) -> dict[str, float]:
@@ -36,6 +37,8 @@ def social(track: Track) -> dict[str, float]:
     - ``social_force_robot`` [m/s]: norm of the sum of the social forces of all humans on it, summed times dt;
       ``social_force_agents``: norms of its forces on each human, summed times dt; ``social_work``: both together.
       Forces are those of Moussaid et al. (2009) with the parameters and the weight that ``sfm`` has by default.
+    - ``obstacle_force_robot`` [m/s]: magnitude of :func:`obstacle_force` on it, summed times dt;
+      ``obstacle_force_agents``: of those on each human. NaN where nothing stands still.
     - ``pedestrian_velocity_avg`` [m/s]: way of all humans / (their number x time).
     """
     nan = math.nan
@@ -48,6 +51,8 @@ def social(track: Track) -> dict[str, float]:
         "social_force_robot": nan,
         "social_force_agents": nan,
         "social_work": nan,
+        "obstacle_force_robot": _summed(track.distance[1:, STATIC], track.step_time),
+        "obstacle_force_agents": _summed(track.others_static[1:], track.step_time),
         "pedestrian_velocity_avg": nan,
     }
     if track.groups:
@@ -102,6 +107,25 @@ def _force(way: Floats, closing: Floats) -> Floats:
         force = along * braking[..., None] + normal * aside[..., None]
     acts = (distance >= _SAME_PLACE) & (length > 0) & (distance <= options.neighbor_threshold)
     return np.asarray(np.where(acts[..., None], options.force_factor_social * force, 0.0))
+
+
+def obstacle_force(distance: Floats) -> Floats:
+    """Magnitude of the push of the nearest static thing [m/s^2], with the default parameters and weight of ``sfm``.
+
+    ``sfm`` adds the pushes of all walls, which cancel in the middle of a corridor; here the nearest thing of any shape
+    counts alone, so that what behaviors are there makes no difference.
+
+    Args:
+        distance: Between surfaces [m]; NaN: there is nothing.
+    """
+    options = Sfm()
+    push = options.force_factor_obstacle * np.exp(-np.maximum(distance, 0.0) / options.sigma_obstacle)
+    return np.asarray(np.where(distance > _WALL_REACH * options.sigma_obstacle, 0.0, push))
+
+
+def _summed(distance: Floats, step_time: float) -> float:
+    known = distance[~np.isnan(distance)]
+    return float(obstacle_force(known).sum() * step_time) if len(known) else math.nan
 
 
 def group_gaps(point: Floats, members: Floats) -> Floats:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from irsim.metrics.clearance import Clearance
     from irsim.observers.events import Event
     from irsim.observers.trace import Trace
-    from irsim.scenario.objects import ResolvedScenario
+    from irsim.simulation import Simulation
 
 __all__ = ["HOLONOMIC", "Track", "spaced", "tracks", "wrapped"]
 
@@ -44,6 +44,7 @@ class Track:
         limits: (C,) greatest magnitude of each.
         outside: (K,) its position is outside the world.
         others: (K, M, 3) poses of the humans.
+        others_static: (K, M) distance of each to the nearest static thing [m].
         people: Names of the humans.
         groups: Of each social group its members, as columns of ``others``.
         reaches: (M,) bounding radii of the humans [m].
@@ -67,6 +68,7 @@ class Track:
     limits: Floats
     outside: NDArray[np.bool_]
     others: Floats
+    others_static: Floats
     people: tuple[str, ...]
     groups: tuple[tuple[int, ...], ...]
     reaches: Floats
@@ -136,7 +138,7 @@ def tracks(
     trace: Trace,
     events: list[Event],
     distances: Clearance,
-    scenario: ResolvedScenario,
+    simulation: Simulation,
     radii: Floats,
     top_speeds: list[float],
 ) -> list[Track]:
@@ -146,18 +148,21 @@ def tracks(
         trace: The episode.
         events: What happened in it.
         distances: Of the robots.
-        scenario: What was simulated.
+        simulation: What was simulated, in the scene of the trace.
         radii: (N,) bounding radii [m].
         top_speeds: Of the robots [m/s].
     """
+    from irsim.metrics.clearance import static_distance
     from irsim.observers.events import collision_of, first_events, partner_of
 
+    scenario = simulation.scenario
     records = scenario.objects
     kinds, groups = company_of(records), social_groups(records)
     passable = {record.name for record in records if record.unobstructed}
     number = {name: index for index, name in enumerate(trace.names)}
     arrivals = first_events(events, "arrival")
     humans = np.flatnonzero(kinds == HUMAN)
+    beside = static_distance(trace.pose, simulation, humans.tolist())
     first = int(trace.step[0])
     found = []
     for place, robot in enumerate(distances.robots.tolist()):
@@ -192,6 +197,7 @@ def tracks(
                 limits=np.maximum(np.abs(record.vel_min), np.abs(record.vel_max)),
                 outside=(x < x0) | (x > x1) | (y < y0) | (y > y1),
                 others=trace.pose[rows][:, them],
+                others_static=beside[rows][:, humans != robot],
                 people=tuple(trace.names[human] for human in them),
                 groups=tuple(group for group in together if len(group) > 1),
                 reaches=radii[them],

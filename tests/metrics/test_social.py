@@ -12,8 +12,9 @@ import yaml
 
 import irsim
 from irsim.behaviors.sfm import Sfm
+from irsim.lib.algorithm.social_force_model import SocialForceModelBatch
 from irsim.metrics import robot_metrics
-from irsim.metrics.social import group_gaps, social_forces
+from irsim.metrics.social import group_gaps, obstacle_force, social_forces
 from irsim.observers.events import Event
 from tests.core import crowd_oracle
 from tests.metrics.test_robot_metrics import scenario, straight, trace
@@ -118,6 +119,30 @@ def test_social_work_of_two_who_stand() -> None:
     assert found["social_force_agents"] == pytest.approx(2 * each * 2.0)
     assert found["social_work"] == pytest.approx(2 * each * 2.0)
     assert found["pedestrian_velocity_avg"] == 0.0
+
+
+def test_forces_of_obstacles_are_those_of_the_model() -> None:
+    wall = "  - {shape: {name: rectangle, length: 40, width: 1}, state: [10, 4, 0]}\n"
+    resolved = scenario(([1, 5.3], [9, 5.3]), rest=f"obstacle:\n{wall}{HUMAN}")
+    poses = np.stack([straight(20) + np.array([0, 0.3]), resting((10, 4), 20), resting((5, 6.3), 20)], axis=1)
+    found = robot_metrics(trace(resolved, poses, [[9, 5.3]]), resolved, [])[0]
+    model = SocialForceModelBatch(
+        [[1, 5.3, 0, 0, 0.2, 0, 0, 0], [5, 6.3, 0, 0, 0.3, 0, 0, 0]], line_obs_list=[[-10, 4.5, 30, 4.5]]
+    )
+    robot, human = 10.0 * np.linalg.norm(model.obstacle_force(), axis=1) * 2.0
+    assert found["obstacle_force_robot"] == pytest.approx(robot)
+    assert found["obstacle_force_agents"] == pytest.approx(human)
+
+
+def test_forces_of_obstacles_end_and_are_unknown_where_there_are_none() -> None:
+    assert obstacle_force(np.array([-0.1, 0.0, 0.8, 4.0, 4.01])) == pytest.approx(
+        [10, 10, 10 / math.e, 10 * math.exp(-5), 0]
+    )
+    resolved = scenario(([1, 5], [9, 5]), rest=PAIR)
+    poses = np.stack([straight(20), resting((5, 5), 20), resting((5, 9), 20)], axis=1)
+    found = robot_metrics(trace(resolved, poses, [[9, 5]]), resolved, [])[0]
+    assert math.isnan(found["obstacle_force_robot"])
+    assert math.isnan(found["obstacle_force_agents"])
 
 
 def test_speed_of_the_people() -> None:

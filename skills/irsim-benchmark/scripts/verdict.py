@@ -32,13 +32,14 @@ LESS = """
     jerk_max personal_space_intrusion_ratio min_distance_to_goal final_distance_to_goal
     cumulative_heading_change path_irregularity path_efficiency curvature roughness angle_over_length
     motion_energy discomfort_ratio near_misses freezing_count freezing_time group_space_intrusion_ratio
-    group_collision_rate social_force_robot social_force_agents social_work control_effort left_world collision
-    pedestrian_delay aggregated_time
+    group_collision_rate social_force_robot social_force_agents social_work obstacle_force_robot control_effort
+    left_world collision pedestrian_delay aggregated_time
 """.split()  # noqa: SIM905
 EITHER = """
     velocity_min velocity_max acceleration_min jerk_min time_to_collision_min proxemics_intimate_ratio
     proxemics_personal_ratio proxemics_social_ratio proxemics_public_ratio distance_to_human_avg
-    discomfort_min_dist human_collisions_by_robot human_collisions_by_human pedestrian_velocity_avg
+    discomfort_min_dist human_collisions_by_robot human_collisions_by_human obstacle_force_agents
+    pedestrian_velocity_avg
 """.split()  # noqa: SIM905
 # Which way is better, None if that depends; as in references/metrics.md.
 BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)
