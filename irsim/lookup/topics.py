@@ -367,17 +367,14 @@ def _topics(schema: Node) -> set[str]:
 def _index() -> Answer:
     schema = json_schema()
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))
-    sections = [key(schema, name, node) for name, node in language["properties"].items()]
+    sections = Key(name="scenario", text=", ".join(language["properties"]))
     kinds = [Key(name=kind, text=_overview(registry)) for kind, registry in sorted(REGISTRIES.items())]
     return Answer(
         topic="",
         kind="index",
         title="What irsim describe knows",
         groups={
-            "sections of a scenario": [
-                Key(name=section.name, text=_one_sentence(section.text)) for section in sections
-            ],
-            "components": kinds,
+            "the scenario and its components": [sections, *kinds],
             "templates": [Key(name="templates", text=", ".join(templates.names()))],
             "more": [
                 Key(name="guides", text=", ".join(GUIDES)),
