@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import PurePosixPath
+
 from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 
 from irsim_mcp.services import Services
 
-__all__ = ["ARTIFACTS", "RUN", "add_run_resources", "uri"]
+__all__ = ["ARTIFACTS", "RUN", "add_run_resources", "media_type", "uri"]
 
 RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
 ARTIFACTS = (
@@ -22,6 +25,18 @@ ARTIFACTS = (
 )
 """The same as in :mod:`irsim.runs.artifacts`, which a server does not load."""
 _MOST_BYTES = 1_000_000
+
+
+_TYPES = {".json": "application/json", ".csv": "text/csv", ".yaml": "application/yaml"}
+
+
+def media_type(uri: str) -> str | None:
+    """What a part of a run is, by its name; None for other resources. What begins in the middle of a file is text."""
+    path, _, query = uri.partition("?")
+    if not path.startswith("irsim://runs/"):
+        return None
+    middle = re.search(r"(^|&)offset=0*[1-9]", query) and not path.endswith("/replay.json")
+    return "text/plain" if middle else _TYPES.get(PurePosixPath(path).suffix, "text/plain")
 
 
 def uri(run_id: str, artifact: str) -> str:

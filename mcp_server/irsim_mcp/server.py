@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from mcp import MCPError
 from mcp.server import MCPServer
 from mcp.server.caching import CacheHint
+from mcp.server.lowlevel.helper_types import ReadResourceContents
 from mcp.server.mcpserver import Context
-from mcp.types import INVALID_PARAMS, CallToolResult, GetPromptResult, InputRequiredResult
+from mcp.types import INVALID_PARAMS, CallToolResult, GetPromptResult, InputRequiredResult, ResourceTemplate
+from pydantic import AnyUrl
 
 from irsim import __version__
 from irsim.text import clean
@@ -22,7 +26,7 @@ from irsim_mcp.limits import ServerLimits
 from irsim_mcp.prompts import add_prompts
 from irsim_mcp.replay_page import replay_app
 from irsim_mcp.resources import add_resources
-from irsim_mcp.run_resources import add_run_resources
+from irsim_mcp.run_resources import RUN, add_run_resources, media_type
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.services import Services
 from irsim_mcp.skills import Skills
@@ -71,6 +75,21 @@ class IrsimServer(MCPServer[Any]):
             fix = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
             raise failure("unknown-tool", f"there is no tool {clean(name)!r}", fix=fix)
         return await super().call_tool(name, arguments, context)
+
+    async def list_resource_templates(self) -> list[ResourceTemplate]:
+        """The templates; without a type where each resource has its own."""
+        listed = await super().list_resource_templates()
+        return [one.model_copy(update={"mime_type": None}) if one.uri_template == RUN else one for one in listed]
+
+    async def read_resource(
+        self, uri: AnyUrl | str, context: Context[Any, Any] | None = None
+    ) -> Iterable[ReadResourceContents] | InputRequiredResult:
+        """Read a resource; parts of runs are of the type of their name."""
+        found = await super().read_resource(uri, context)
+        kind = media_type(str(uri))
+        if kind is None or isinstance(found, InputRequiredResult):
+            return found
+        return [replace(content, mime_type=kind) for content in found]
 
     async def get_prompt(
         self, name: str, arguments: dict[str, Any] | None = None, context: Context[Any, Any] | None = None

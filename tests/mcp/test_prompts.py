@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from irsim_mcp.prompts import drives
+from irsim_mcp.prompts import drives, template_names
 from mcp import Client, MCPError
 from mcp.types import PromptReference, ResourceTemplateReference, TextContent
 
@@ -109,7 +109,7 @@ async def test_completions(workspace: Path, era: str) -> None:
         assert await completed(client, design, "difficulty", "") == ["easy", "medium", "hard"]
         assert await completed(client, debug, "run_id", "room") == [run_id]
         found = await completed(client, compare, "scenario", "cross")
-        assert found == ["crossing-mine.yaml", "crossing", "crossing-pedestrians"]
+        assert found == ["crossing-mine.yaml", *(name for name in template_names() if name.startswith("cross"))]
         everything = await completed(client, compare, "scenario", "")
         assert "room.yaml" in everything
         assert not {"link.yaml", "evil\x1b[2J.yaml"} & set(everything)

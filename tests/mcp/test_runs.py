@@ -86,7 +86,9 @@ async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> Non
 
 async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
     async with connected(workspace) as client:
-        assert "none is kept here; runs are let go 24 h after" in error_of(await client.call_tool("inspect_run", {"run_id": "x"}))
+        assert "none is kept here; runs are let go 24 h after" in error_of(
+            await client.call_tool("inspect_run", {"run_id": "x"})
+        )
         run_id = await crashed(client)
         for wrong in ("crash-000000", "../..", "", "\x00", "a" * 100, f"{run_id}/../{run_id}"):
             for tool in ("inspect_run", "render_snapshot"):
@@ -137,6 +139,13 @@ async def test_runs_are_resources(workspace: Path, era: str) -> None:
         for name in ARTIFACTS:
             assert await read(client, f"irsim://runs/{run_id}/{name}")
         assert await read(client, f"irsim://runs/{run_id}/scenario.yaml") == CRASH
+        assert [item.mime_type for item in templates if "/runs/" in item.uri_template] == [None]
+        types = {"json": "application/json", "csv": "text/csv", "yaml": "application/yaml"}
+        for name in ARTIFACTS:
+            (content,) = (await client.read_resource(f"irsim://runs/{run_id}/{name}")).contents
+            assert content.mime_type == types[name.rpartition(".")[2]]
+        (content,) = (await client.read_resource(f"irsim://runs/{run_id}/result.json?offset=9")).contents
+        assert content.mime_type == "text/plain"  # no JSON by itself
         part = json.loads(await read(client, f"irsim://runs/{run_id}/trace.json?from_step=3&to_step=9&every=2"))
         assert [row["step"] for row in part["rows"]] == [3, 5, 7, 9]
         for wrong in (f"{run_id}/secret", "nobody-123456/run.json", f"{run_id}/..%2Frun.json"):
