@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
@@ -45,6 +46,17 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Who says how long a run may last."""
 
 
+_UNUSUAL = re.compile(r"[^\n -~]")
+
+
+def _escaped(found: re.Match[str]) -> str:
+    """A character as it is or, if it is not printable, as the units of UTF-16 that JSON escapes."""
+    if found[0].isprintable():
+        return found[0]
+    units = found[0].encode("utf-16-be").hex()
+    return "".join(f"\\u{units[start : start + 4]}" for start in range(0, len(units), 4))
+
+
 class Result(BaseModel):
     """Base of all results: fields are documented, nothing else gets in.
 
@@ -53,6 +65,15 @@ class Result(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", defer_build=True)
+
+    def model_dump_json(self, **options: Any) -> str:
+        """The result as JSON, the same bytes in Python, ``--json`` and MCP; what is not printable is escaped.
+
+        Args:
+            **options: Those of pydantic, such as ``indent``.
+        """
+        text = super().model_dump_json(**options)
+        return text if text.isprintable() else _UNUSUAL.sub(_escaped, text)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:

@@ -60,8 +60,14 @@ def is_terminal(*, stderr: bool = False) -> bool:
     return stream.isatty()
 
 
-def print_json(model: BaseModel, indent: int | None = 2) -> None:
-    """One JSON document on standard output."""
+def print_json(model: BaseModel, *, line: bool = False) -> None:
+    """One JSON document on standard output: one line, for people on a terminal indented.
+
+    Args:
+        model: The result.
+        line: One line for people, too.
+    """
+    indent = 2 if is_terminal() and not line else None
     sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
 
 

@@ -57,7 +57,7 @@ def validate(
                 report, text = not_found(file, str(error)), ""
         valid &= report.valid
         if json_output:
-            print_json(report, indent=None)
+            print_json(report, line=True)
         else:
             _show(report, file, text)
     if not valid:

@@ -46,7 +46,7 @@ from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
-from irsim_mcp.worker import Progress, process_options
+from irsim_mcp.worker import HEAD, Progress, process_options
 
 __all__ = ["Jobs"]
 
@@ -245,8 +245,8 @@ class _Keeper(threading.Thread):
                     if line.startswith(b'{"progress"'):
                         self._about["done"], self._about["total"] = json.loads(line)["progress"]
                         _note(self._job, self._about)
-                    elif line.startswith(b'{"result": '):
-                        return {"text": line.decode().strip()[len('{"result": ') : -1]}
+                    elif line.startswith(HEAD.encode()):
+                        return {"text": line.decode().strip()[len(HEAD) : -1]}
                     else:
                         return dict(json.loads(line))
             return _problem("out-of-time", f"{self._seconds:g} s of computing were over")

@@ -12,6 +12,7 @@ from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.sandbox import Workspace
+from irsim_mcp.whole import Found
 from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
@@ -71,7 +72,7 @@ class Services:
         seconds: float,
         progress: Progress | None = None,
         **arguments: Any,
-    ) -> dict[str, Any]:
+    ) -> Found:
         """Have a worker do something with a scenario that is given as a file or as text.
 
         Args:
@@ -91,7 +92,7 @@ class Services:
 
     async def text_job(
         self, task: str, text: str, argument: str, *, path: str, seconds: float, **arguments: Any
-    ) -> dict[str, Any]:
+    ) -> Found:
         """Have a worker do something with the text of a file that is not written yet.
 
         Args:
@@ -111,7 +112,7 @@ class Services:
 
     async def run_job(
         self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
-    ) -> dict[str, Any]:
+    ) -> Found:
         """Have a worker do something with a recorded run.
 
         Args:
@@ -173,11 +174,12 @@ class Services:
         return text
 
 
-def _result(answer: dict[str, Any], argument: str) -> dict[str, Any]:
+def _result(answer: dict[str, Any], argument: str) -> Found:
     """What a worker found out; raises what went wrong, about an argument."""
     if "error" in answer:
         raise _as_failure(answer["error"], argument)
-    result: dict[str, Any] = answer["result"]
+    result = Found(answer["result"])
+    result.text = answer["text"]
     return result
 
 

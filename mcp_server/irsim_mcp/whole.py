@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from mcp.types import TextContent
 
 from irsim_mcp.errors import failure
 
-__all__ = ["whole"]
+__all__ = ["Found", "whole"]
 
 
-def whole(found: dict[str, Any], room: int, elsewhere: str) -> TextContent:
+class Found(dict[str, Any]):
+    """A result of a worker, and its text as that wrote it."""
+
+    text: str = ""
+
+
+def whole(found: Found, room: int, elsewhere: str) -> TextContent:
     """The JSON that ``--json`` prints.
 
     Args:
@@ -23,7 +28,7 @@ def whole(found: dict[str, Any], room: int, elsewhere: str) -> TextContent:
     Raises:
         ToolError: It is longer.
     """
-    text = json.dumps(found)
+    text = found.text
     if len(text) > room:
         what = f"the whole result has {len(text):,} characters; at most {room:,} are given"
         raise failure("over-limit", what, where="response_format", fix=elsewhere)

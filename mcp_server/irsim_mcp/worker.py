@@ -21,11 +21,13 @@ from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
 
-__all__ = ["Progress", "Workers", "missing_limits", "process_options"]
+__all__ = ["HEAD", "Progress", "Workers", "missing_limits", "process_options"]
 
 Progress = Callable[[int, int], Awaitable[None]]
 """Told (steps done, steps at most)."""
 
+HEAD = '{"result": '
+"""What the line with the result begins with; it ends with a brace."""
 _LONGEST_ANSWER = 16 * 1024**2
 _STARTING = 1.0
 """Seconds that starting a process takes, added to the time of the work."""
@@ -127,7 +129,8 @@ class Workers:
                 lines = BufferedByteReceiveStream(process.stdout)
                 while True:
                     try:
-                        message = json.loads(await lines.receive_until(b"\n", _LONGEST_ANSWER))
+                        line = await lines.receive_until(b"\n", _LONGEST_ANSWER)
+                        message = json.loads(line)
                     except (anyio.EndOfStream, anyio.IncompleteRead, anyio.DelimiterNotFound):
                         await process.wait()
                         break
@@ -135,7 +138,7 @@ class Workers:
                         run = message["run"]
                         continue
                     if "progress" not in message:
-                        return dict(message)
+                        return {**message, "text": line.decode()[len(HEAD) : -1]}
                     reached = (message["progress"][0], message["progress"][1])
                     if progress is not None:
                         await progress(*reached)
