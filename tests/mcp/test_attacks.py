@@ -35,6 +35,7 @@ SCENARIOS = {
     "python name": ("world: {width: !!python/name:os.system }\n", "unsupported-tag"),
     "python module": ("robot: !!python/module:antigravity {}\n", "unsupported-tag"),
     "merge bomb": (bomb("{x: 1, y: 2, z: 3}", "{<<: [%s]}"), "alias-expansion"),
+    "merge bomb in a merge": ("a: &a {x: 1}\nb: {<<: [" + "{<<: [*a, *a]}, " * 40 + "*a]}\n", "alias-expansion"),
     "alias bomb": (bomb("[a, b, c, d, e, f, g, h, i]", "[%s]"), "alias-expansion"),
     "many aliases": ("a: &a 1\nb: [" + "*a, " * 65 + "*a]\n", "alias-expansion"),
     "deep": ("world: " + "[" * 20_000 + "]" * 20_000, "too-deep"),

@@ -49,6 +49,7 @@ RULES = {
         "mcp/test_attacks.py::test_scenarios",
         "mcp/test_attacks.py::test_scenarios_that_are_not_validated_first",
         "scenario/test_load.py::test_limits",
+        "scenario/test_attacks.py::test_merge_keys_cost_neither_time_nor_memory",
     ),
     "YAML: keys given twice, NaN, infinity": ("mcp/test_security.py::test_odd_values_are_refused",),
     "YAML 1.1: surprises are told": ("mcp/test_security.py::test_surprises_of_yaml_are_told",),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
+import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -46,6 +49,42 @@ def test_merge_bomb() -> None:
     assert 300 < len(bomb) < 500
     with within(0.1 * SLOW_MACHINE):
         assert codes(bomb) == ["alias-expansion"]
+
+
+def nested_merges() -> str:
+    """Each mapping merges a list of mappings that merge lists, all in one document of few bytes."""
+    inner = "{k0: 0, k1: 0, k2: 0}"
+    for name in "abcde":
+        inner = f"{{<<: [&{name} {inner}, {', '.join(['*' + name] * 12)}], own_{name}: 1}}"
+    return f"world: {inner}\n"
+
+
+def merges_below_merges() -> str:
+    """Merge keys whose values are merge keys again, and lists of the same bomb beside them."""
+    return merge_bomb() + "robot: [" + ", ".join(["{<<: {<<: [*g, *g]}}"] * 20) + "]\n"
+
+
+def wide_merge() -> str:
+    keys = ", ".join(f"k{number}: 0" for number in range(1000))
+    return f"a: &a {{{keys}}}\nb: [" + ", ".join(["{<<: [*a, *a, *a, *a]}"] * 1000) + "]\n"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="measures the memory of a process")
+@pytest.mark.parametrize("bomb", [merge_bomb, nested_merges, merges_below_merges, wide_merge])
+def test_merge_keys_cost_neither_time_nor_memory(bomb: Callable[[], str]) -> None:
+    """In a process of its own, whose memory is its own."""
+    code = (
+        "import json, resource, sys, time\nfrom irsim.scenario.read import read\n"
+        "text = sys.stdin.read()\nread('world: {width: 5}')\n"
+        "most = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "before, begin = most(), time.process_time()\ncodes = [item.code for item in read(text).errors]\n"
+        "print(json.dumps([codes, time.process_time() - begin, (most() - before) / 1024]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], input=bomb(), capture_output=True, text=True, check=True)
+    codes, seconds, megabytes = json.loads(done.stdout)
+    assert "alias-expansion" in codes
+    assert seconds < 0.1 * SLOW_MACHINE
+    assert megabytes < 20
 
 
 def test_alias_bomb() -> None:
