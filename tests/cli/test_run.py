@@ -109,3 +109,11 @@ def test_a_behavior_that_raises_is_a_failure_that_names_the_line(irsim: Run, roo
     assert result.exit_code == 1
     assert "ZeroDivisionError" in result.stderr
     assert "raising_behavior.py:5" in result.stderr
+
+
+def test_a_misspelt_option_of_the_behavior_asked_for_is_an_error(irsim: Run, room: Path) -> None:
+    for words in (("run", "--behavior"), ("benchmark", "--behaviors")):
+        result = irsim(words[0], "room.yaml", words[1], "{name: orca, timeHorizn: 5}")
+        assert result.exit_code == 2
+        told = "error bad-argument: 'timeHorizn' is not a key of behavior orca. Fix: rename it to 'timeHorizon'."
+        assert told in " ".join(result.stderr.split())
