@@ -112,7 +112,7 @@ def sanitize(session: nox.Session) -> None:
 def slow(session: nox.Session) -> None:
     """Tests marked slow: packages installed into empty environments, a build without a compiler, fuzzing."""
     install(session, "-e", ".[test]")
-    timed(session, "slow tests", "pytest", "-m", "slow", "-n", "2", "--durations", "15")
+    timed(session, "slow tests", "pytest", "-m", "slow", "-n", "2", "--dist", "loadgroup", "--durations", "15")
 
 
 @nox.session(python=find_python(OLDEST), reuse_venv=True)

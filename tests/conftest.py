@@ -9,6 +9,16 @@ import pytest
 from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest first, by the seconds that ``slow`` tells, so that no process is left with them at the end."""
+
+    def seconds(item: pytest.Item) -> int:
+        mark = item.get_closest_marker("slow")
+        return mark.args[0] if mark and mark.args else 0
+
+    items.sort(key=seconds, reverse=True)
+
+
 @pytest.fixture(autouse=True)
 def registered_features() -> Iterator[None]:
     """Forget what a test has registered: the schema of the next one must not know it."""

@@ -27,7 +27,7 @@ def test_the_same_documents_every_time() -> None:
     assert len(set(texts)) > 30
 
 
-@pytest.mark.slow
+@pytest.mark.slow(20)
 def test_a_thousand_documents() -> None:
     tally = try_all((index, document(1, index)) for index in range(1000))
     assert [(wrong.index, wrong.what) for wrong in tally.wrong] == []

@@ -78,7 +78,7 @@ async def test_three_servers(workspace: Path) -> None:
     await servers(workspace, 3, 4)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(110)
 async def test_eight_servers(workspace: Path) -> None:
     await servers(workspace, 8, 50)
 
@@ -88,7 +88,7 @@ async def test_three_clients(workspace: Path) -> None:
         await servers(workspace, 3, 4, url)
 
 
-@pytest.mark.slow
+@pytest.mark.slow(110)
 async def test_eight_clients(workspace: Path) -> None:
     with served(workspace, "--http", "0") as (url, _):
         await servers(workspace, 8, 50, url)

@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.slow
+# One process has them all, and so builds sdist and wheel once; the other one builds without a compiler meanwhile.
+pytestmark = [pytest.mark.slow(60), pytest.mark.xdist_group("packages")]
 
 ROOT = Path(__file__).resolve().parents[2]
 COMPILERS = ("c++", "g++", "gcc", "cc", "clang", "clang++", "cmake", "ninja", "make", "ar")
@@ -130,7 +131,11 @@ def unpacked(sdist: Path, folder: Path) -> Path:
 
 without_compiler = pytest.param(
     install_without_compiler,
-    marks=pytest.mark.skipif(os.name == "nt", reason="an empty PATH does not hide Visual Studio"),
+    marks=[
+        pytest.mark.skipif(os.name == "nt", reason="an empty PATH does not hide Visual Studio"),
+        pytest.mark.slow(200),
+        pytest.mark.xdist_group("without compiler"),
+    ],
 )
 
 
