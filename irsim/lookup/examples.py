@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 import yaml
@@ -38,10 +39,11 @@ def example_of(path: tuple[str, ...], component: str | None = None) -> str | Non
     return None
 
 
-def _scenarios() -> Iterator[Any]:
-    for name in templates.names():
-        text = templates.scenario_file(name).read_text(encoding="utf-8")
-        yield yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+@cache
+def _scenarios() -> tuple[Any, ...]:
+    """The bundled scenarios, read once: a server and the reference pages ask for hundreds of examples."""
+    texts = (templates.scenario_file(name).read_text(encoding="utf-8") for name in templates.names())
+    return tuple(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)) for text in texts)
 
 
 def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
