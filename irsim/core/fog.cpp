@@ -40,6 +40,8 @@ struct Cells {
   /// The cells under samples half a cell apart, and under the end.
   void along(Vec2 from, Vec2 beam, double range) const {
     const double step = 0.5 * std::min(cell.x, cell.y);
+    const double all = std::fabs(from.x) + std::fabs(from.y) + std::fabs(beam.x) + std::fabs(beam.y);
+    if (!(all < kFarthest)) return;  // a pose that is no number
     const auto [low, high] = over(from, beam);
     if (!(low <= high && high < kFarthest)) return;  // beside the world, or so far away that steps drown in rounding
     const double last = std::min(range, high + step);
