@@ -268,7 +268,7 @@ def test_the_command(files) -> None:
     assert "failed: crowd, dash: collision: seed" in shown.output
     told = runner.invoke(app, ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "2-4", "--json"])
     same = irsim.benchmark(files[0], ["dash", "rvo"], [2, 3, 4])
-    assert told.stdout.rstrip("\n") == same.model_dump_json(indent=2)
+    assert told.stdout.rstrip("\n") == same.model_dump_json()
     assert same.reproduce == f"irsim benchmark {files[0]} --behaviors dash,rvo --seeds 2-4"
     table = list(
         csv.DictReader(io.StringIO(runner.invoke(app, ["benchmark", *files, "--csv", "--seeds", "1,3"]).stdout))

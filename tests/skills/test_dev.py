@@ -190,7 +190,7 @@ def test_the_steps_it_names_are_commands() -> None:
         assert f"def {name}(" in noxfile
     assert (ROOT / "tests" / "mcp" / "golden" / "write.py").is_file()
     project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    assert "slow:" in project
+    assert "slow(seconds):" in project
 
 
 def git(folder: Path, *words: str) -> None:
