@@ -60,11 +60,12 @@ def _escaped(found: re.Match[str]) -> str:
 class Result(BaseModel):
     """Base of all results: fields are documented, nothing else gets in.
 
-    As with :class:`irsim._options.Options`, the documentation is read when someone asks for it, and a model is built
-    when it is needed: every command and every call of a tool starts with this module.
+    As with :class:`irsim._options.Options`, the documentation is read when someone asks for it: every command and every
+    call of a tool starts with this module. Models are built at once: where pydantic builds one when it is first used, it
+    reads the locals of whoever uses it, and CPython 3.13.0 crashes on some of these.
     """
 
-    model_config = ConfigDict(extra="forbid", defer_build=True)
+    model_config = ConfigDict(extra="forbid")
 
     def model_dump_json(self, **options: Any) -> str:
         """The result as JSON, the same bytes in Python, ``--json`` and MCP; what is not printable is escaped.
