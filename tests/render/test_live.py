@@ -31,6 +31,7 @@ def scenario(tmp_path: Path) -> Path:
 def no_figures():
     plt = pytest.importorskip("matplotlib.pyplot")
     plt.close("all")
+    plt.get_backend()  # chosen now: before Matplotlib 3.10 choosing one later would close the figures that are there
     yield
     plt.close("all")
 
