@@ -61,8 +61,8 @@ class Result(BaseModel):
     """Base of all results: fields are documented, nothing else gets in.
 
     As with :class:`irsim._options.Options`, the documentation is read when someone asks for it: every command and every
-    call of a tool starts with this module. Models are built at once: where pydantic builds one when it is first used, it
-    reads the locals of whoever uses it, and CPython 3.13.0 crashes on some of these.
+    call of a tool starts with this module. Models are built at once: pydantic would read the locals of whoever uses one
+    first, and CPython 3.13.0 crashes on some of these.
     """
 
     model_config = ConfigDict(extra="forbid")
