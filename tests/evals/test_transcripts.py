@@ -51,6 +51,7 @@ def lines(path: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     return first, rest
 
 
+@pytest.mark.slow(8)
 @pytest.mark.parametrize("path", TRANSCRIPTS, ids=lambda path: path.stem)
 async def test_a_transcript_still_leads_to_its_end(path: Path, tmp_path: Path) -> None:
     asked, steps = lines(path)
