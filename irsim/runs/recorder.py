@@ -209,8 +209,6 @@ class Recorder:
         names, step_time = self._simulation.names, self._meta["step_time"]
         told = to_json([_told(event, names, step_time) for event in events])
         log, number = self._log, f"{self._pieces:04d}"
-        if events and not log.rows:
-            self._write(f"events-{number}.json", told)
         if log.rows:
             movers, pose = self._movers, self._simulation.pose
             written(self.folder / f"trace-{number}.npz", lambda file: save_chunk(file, log, movers, pose, told))
@@ -223,6 +221,8 @@ class Recorder:
                 self._scans = False
                 self._detach()
                 self._write_meta(trace_until=last)
+        elif events:
+            self._write(f"events-{number}.json", told)
         self._pieces += 1
         self._due = time.monotonic() + _PERIOD
         if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:

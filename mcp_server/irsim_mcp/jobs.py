@@ -95,7 +95,7 @@ class Jobs:
             )
         job = made_folder(folder, _STEM)
         held = claim(job / LOCK)
-        about = {"id": job.name, "created": time.time(), "status": "running", "done": 0, "total": total}
+        about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)
         work = {
             "task": task,
