@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from irsim.diagnostics import Diagnostic
 
 __all__ = [
+    "ArgumentError",
     "BehaviorError",
     "IrsimError",
     "NotSimulatedError",
@@ -48,6 +49,22 @@ class OverLimitError(IrsimError, ValueError):
     """
 
     code = "over-limit"
+
+    def __init__(self, message: str, fix: str) -> None:
+        self.message, self.fix = message, fix
+        super().__init__(f"{self.code}: {message}. Fix: {fix}.")
+
+
+class ArgumentError(IrsimError, ValueError):
+    """Something was given to a function or a command that it cannot be.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.codes`.
+        message: What is wrong.
+        fix: What to give instead.
+    """
+
+    code = "bad-argument"
 
     def __init__(self, message: str, fix: str) -> None:
         self.message, self.fix = message, fix

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Literal
 
 from irsim.diagnostics import nearest
-from irsim.errors import IrsimError
+from irsim.errors import ArgumentError
 from irsim.text import clean
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from irsim.render.snapshot import Extra
     from irsim.results import RobotPlan
 
-__all__ = ["OVERLAYS", "Overlay", "OverlayError", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
+__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
 
 Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -30,34 +30,19 @@ OVERLAYS: dict[Overlay, tuple[str, ...]] = {
 """What a snapshot may show besides bodies, and the plot keys that switch it."""
 
 
-class OverlayError(IrsimError, ValueError):
-    """Something that no picture shows.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
-        message: What is wrong.
-        fix: What to give instead.
-    """
-
-    code = "bad-argument"
-
-    def __init__(self, word: str) -> None:
-        self.message, near = f"there is no overlay {clean(word, 40)!r}", nearest(word, OVERLAYS)
-        self.fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
-        super().__init__(f"{self.code}: {self.message}. Fix: {self.fix}")
-
-
 def overlays_from(words: Iterable[str]) -> list[Overlay]:
     """Overlays by name.
 
     Raises:
-        OverlayError: One has no such name.
+        ArgumentError: One has no such name.
     """
     known: dict[str, Overlay] = {name: name for name in OVERLAYS}
     asked = [word.strip() for word in words if word.strip()]
     unknown = next((word for word in asked if word not in known), None)
     if unknown is not None:
-        raise OverlayError(unknown)
+        near = nearest(unknown, OVERLAYS)
+        fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
+        raise ArgumentError(f"there is no overlay {clean(unknown, 40)!r}", fix)
     return [known[word] for word in asked]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from irsim.errors import IrsimError
+from irsim.errors import ArgumentError
 from irsim.overlays import Overlay, additions, planned, plot_keys
 
 if TYPE_CHECKING:
@@ -18,20 +18,10 @@ FEWEST, MOST = 2, 12
 """Moments of one picture."""
 
 
-class StripError(IrsimError, ValueError):
-    """No such strip can be drawn.
+class StripError(ArgumentError):
+    """No such strip can be drawn."""
 
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
-        message: What is wrong.
-        fix: What to give instead.
-    """
-
-    code, where = "bad-argument", "strip"
-
-    def __init__(self, message: str, fix: str) -> None:
-        self.message, self.fix = message, fix
-        super().__init__(f"{self.code}: {message}. Fix: {fix}.")
+    where = "strip"
 
 
 def moments_of(last: int, count: int) -> list[int]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.errors import IrsimError
+from irsim.errors import ArgumentError
 from irsim.render.palette import Color
 
 __all__ = [
@@ -30,7 +30,6 @@ __all__ = [
     "Mark",
     "Picture",
     "Region",
-    "RegionError",
     "Scene",
     "Sector",
     "Stroke",
@@ -81,26 +80,6 @@ Geometry = Circle | Region | Line | Sector
 
 _OCCUPIED = 50
 _CORNERS, _FARTHEST, _SMALLEST = 4, 1e7, 1e-3
-
-
-class RegionError(IrsimError, ValueError):
-    """What was given is no part of a world to look at.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
-        message: What is wrong.
-        fix: What to give instead.
-    """
-
-    code = "bad-argument"
-
-    def __init__(self, corners: Sequence[float]) -> None:
-        given = ", ".join(f"{value:g}" for value in corners)
-        self.message, self.fix = (
-            f"there is no region {given}",
-            "give x_min, y_min, x_max, y_max in metres, in this order",
-        )
-        super().__init__(f"{self.code}: {self.message}. Fix: {self.fix}.")
 
 
 @dataclass(slots=True, eq=False)
@@ -261,14 +240,15 @@ def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
     """X from, x to, y from, y to of a part of a world given as x_min, y_min, x_max, y_max [m].
 
     Raises:
-        ValueError: It is none.
+        ArgumentError: It is none.
     """
     corners = [float(value) for value in region]
     if len(corners) == _CORNERS and all(abs(value) <= _FARTHEST for value in corners):
         x0, y0, x1, y1 = corners
         if x1 - x0 >= _SMALLEST and y1 - y0 >= _SMALLEST:
             return x0, x1, y0, y1
-    raise RegionError(corners)
+    given = ", ".join(f"{value:g}" for value in corners)
+    raise ArgumentError(f"there is no region {given}", "give x_min, y_min, x_max, y_max in metres, in this order")
 
 
 def _plain(value: Any) -> Any:
