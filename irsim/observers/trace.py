@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -183,9 +182,10 @@ def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], 
 
 def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
     """Every sensor with beams as ``<object>/<number>``, and which of the ranges of a world are its own."""
-    records, numbers = simulation.scenario.objects, Counter[int]()
+    records = simulation.scenario.objects
+    numbers: dict[int, int] = {}
     found = []
     for owner, first, count in simulation.world.scans():
-        found.append((f"{records[owner].name}/{numbers[owner]}", slice(first, first + count)))
-        numbers[owner] += 1
+        number = numbers[owner] = numbers.get(owner, -1) + 1
+        found.append((f"{records[owner].name}/{number}", slice(first, first + count)))
     return found

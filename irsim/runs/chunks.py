@@ -1,31 +1,33 @@
-"""A piece of a trace as a file: NPZ, not compressed, with what changes row by row and what does not only once."""
+"""A piece of a record as a file: NPZ, not compressed, with what changes row by row and what does not only once."""
 
 from __future__ import annotations
 
 import json
 import zipfile
-import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
-from typing import IO, Any
+from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from irsim import _core as core
 from irsim.observers.trace import Trace
-from irsim.runs.store import RunError
+from irsim.runs.store import Buffer, RunError
 
-__all__ = ["Layout", "load_chunk", "load_events", "save_chunk"]
+__all__ = ["Layout", "chunk_of", "load_chunk", "load_events"]
 
 _MOST_BYTES = 256 * 1024**2
 _MOST_NUMBERS = 2**27
-_EVENTS = "events.json"
+_ABOUT = "piece.json"
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
-_ENTRY, _MADE_BY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "H", "3H2I", "4H2IH"))
+_ENTRY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "3H2I", "4H2IH"))
+_MADE_BY = b"\x14\x00"
 _VERSION, _EPOCH = 20, 33  # that can read it; the 1st of January 1980, as ZIP counts
 
 
@@ -44,59 +46,63 @@ class Layout:
     step_time: float
 
 
-def save_chunk(
-    file: IO[bytes], log: core.Log, movers: NDArray[np.int32], pose: NDArray[np.float64], events: bytes
-) -> None:
-    """Write what a log holds.
+def chunk_of(
+    log: core.Log, movers: Sequence[int], pose: NDArray[np.float64], events: Sequence[Mapping[str, Any]]
+) -> list[Buffer]:
+    """What a log holds, as the parts of a file; they are good until the log changes.
 
-    ``steps``: the first one and how many. ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the
-    objects ``movers``; ``pose_at`` (N, 3) of everybody. ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4
-    stopped) and ``ranges`` (K, beams) hold from the rows ``goal_rows``, ``flag_rows`` and ``scan_rows`` on; without any
-    row of scans none were kept. What happened lies beside the arrays as ``events.json``.
+    ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the objects that move; ``pose_at`` (N, 3) of
+    everybody; ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4 stopped) and ``ranges`` (K, beams) as often
+    as they changed. ``piece.json`` says which steps these are (``first`` and how many), who ``movers`` are, from which
+    rows on each goal, flag and scan holds (``goal_rows``, ``flag_rows``, ``scan_rows``; no scans without any), and
+    what happened (``events``).
 
     Args:
-        file: Where to.
         log: What happened since the last piece.
         movers: Objects whose poses it holds.
         pose: (N, 3) present pose of everybody.
-        events: What happened, as JSON.
+        events: What happened.
     """
-    arrays: dict[str, NDArray[Any]] = {
-        "steps": np.array([log.first, log.rows], dtype=np.int64),
+    about = {
+        "first": log.first,
+        "rows": log.rows,
         "movers": movers,
-        "pose_at": pose,
+        "goal_rows": log.goal_rows.tolist(),
+        "flag_rows": log.flag_rows.tolist(),
+        "scan_rows": log.scan_rows.tolist(),
+        "events": events,
+    }
+    arrays: dict[str, NDArray[Any]] = {
         "pose": log.pose,
         "control": log.control,
-        "goal_rows": log.goal_rows,
+        "pose_at": pose,
         "goal": log.goal,
-        "flag_rows": log.flag_rows,
         "flags": log.flags,
-        "scan_rows": log.scan_rows,
         "ranges": log.ranges,
     }
     entries = [
         (f"{name}.npy", _head(array), array.data.cast("B") if array.size else b"") for name, array in arrays.items()
     ]
-    _write_archive(file, [*entries, (_EVENTS, b"", events)])
+    return _archive([(_ABOUT, b"", to_json(about)), *entries])
 
 
-def _write_archive(file: IO[bytes], entries: Sequence[tuple[str, bytes, bytes | memoryview]]) -> None:
+def _archive(entries: Sequence[tuple[str, bytes, Buffer]]) -> list[Buffer]:
     """A ZIP archive of entries that are not compressed: a name, and the two parts of what it holds.
 
     :mod:`zipfile` takes six times as long, more than the steps of a short run. PKWARE's APPNOTE 6.3, sections 4.3.7
     (before each entry), 4.3.12 (directory) and 4.3.16 (its end).
     """
-    directory, place = [], 0
+    parts, directory, place = list[Buffer](), list[bytes](), 0
     for name, head, body in entries:
         size = len(head) + len(body)
-        known = _ENTRY.pack(_VERSION, 0, 0, 0, _EPOCH, zlib.crc32(body, zlib.crc32(head)), size, size, len(name), 0)
-        file.writelines((b"PK\x03\x04", known, name.encode(), head, body))
-        directory.append(
-            b"PK\x01\x02" + _MADE_BY.pack(_VERSION) + known + _PLACE.pack(0, 0, 0, 0, place) + name.encode()
-        )
-        place += 4 + _ENTRY.size + len(name) + size
+        known = _ENTRY.pack(_VERSION, 0, 0, 0, _EPOCH, crc32(body, crc32(head)), size, size, len(name), 0)
+        title = name.encode()
+        parts += (b"PK\x03\x04", known, title, head, body)
+        directory += (b"PK\x01\x02", _MADE_BY, known, _PLACE.pack(0, 0, 0, 0, place), title)
+        place += 4 + len(known) + len(title) + size
     told = b"".join(directory)
-    file.write(told + b"PK\x05\x06" + _END.pack(0, 0, len(entries), len(entries), len(told), place, 0))
+    end = _END.pack(0, 0, len(entries), len(entries), len(told), place, 0)
+    return [*parts, told, b"PK\x05\x06", end]
 
 
 def _head(array: NDArray[Any]) -> bytes:
@@ -110,24 +116,25 @@ def load_chunk(path: Path, layout: Layout) -> Trace:
     """Read such a file.
 
     Raises:
-        RunError: It is not what :func:`save_chunk` writes.
+        RunError: It is not what :func:`chunk_of` makes.
     """
     with _changes(path):
         _check_size(path)
         with np.load(path, allow_pickle=False) as file:
-            return _trace({name: file[name] for name in file.files}, layout)
+            arrays = {name: file[name] for name in file.files}
+        return _trace(json.loads(arrays.pop(_ABOUT)), arrays, layout)
 
 
 def load_events(path: Path) -> Any:
-    """Read what happened from such a file, as :func:`save_chunk` was given it.
+    """Read what happened from such a file, as :func:`chunk_of` was given it.
 
     Raises:
-        RunError: It is not what :func:`save_chunk` writes.
+        RunError: It is not what :func:`chunk_of` makes.
     """
     with _changes(path):
         _check_size(path)
         with zipfile.ZipFile(path) as archive:
-            return json.loads(archive.read(_EVENTS))
+            return json.loads(archive.read(_ABOUT))["events"]
 
 
 @contextmanager
@@ -143,17 +150,21 @@ def _changes(path: Path) -> Iterator[None]:
         TypeError,
         EOFError,
         NotImplementedError,
+        OverflowError,
+        RecursionError,
         zipfile.BadZipFile,
     ) as error:
         raise RunError("unreadable-run", f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
 
 
-def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
-    first, rows = (int(value) for value in arrays["steps"])
+def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
+    first, rows = int(about["first"]), int(about["rows"])
     count, beams = len(layout.names), sum(number for _, number in layout.sensors)
     if first < 0 or not 0 < rows * max(1, count * 3, beams) <= _MOST_NUMBERS:
         raise ValueError("more rows than are written")
-    movers, columns = arrays["movers"], arrays["control"].shape[-1]
+    movers, columns = [int(row) for row in about["movers"]], arrays["control"].shape[-1]
+    if movers and min(movers) < 0:
+        raise ValueError("movers out of range")
     _expect(arrays["pose_at"], (count, 3))
     _expect(arrays["pose"], (rows, len(movers), 3))
     _expect(arrays["control"], (rows, len(movers), columns))
@@ -161,12 +172,12 @@ def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
     pose[:, movers] = arrays["pose"]
     control = np.zeros((rows, count, 3))
     control[:, movers, :columns] = arrays["control"]
-    flags = _held(arrays, "flag_rows", "flags", rows, (count,)).astype(np.uint8)
+    flags = _held(about["flag_rows"], arrays["flags"], rows, (count,)).astype(np.uint8)
     ranges: dict[str, NDArray[np.float32]] = {}
     if layout.sensors:
         scans = np.zeros((0, beams), dtype=np.float32)
-        if len(arrays["scan_rows"]):
-            scans = _held(arrays, "scan_rows", "ranges", rows, (beams,)).astype(np.float32, copy=False)
+        if about["scan_rows"]:
+            scans = _held(about["scan_rows"], arrays["ranges"], rows, (beams,)).astype(np.float32, copy=False)
         cuts = np.cumsum([number for _, number in layout.sensors])[:-1]
         ranges = {key: part for (key, _), part in zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)}
     step = np.arange(first, first + rows, dtype=np.int64)
@@ -175,7 +186,7 @@ def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
         time=step.astype(np.float64) * layout.step_time,
         pose=pose,
         control=control,
-        goal=_held(arrays, "goal_rows", "goal", rows, (count, 3)),
+        goal=_held(about["goal_rows"], arrays["goal"], rows, (count, 3)),
         arrived=(flags & _BITS["arrived"]).astype(bool),
         collided=(flags & _BITS["collided"]).astype(bool),
         stopped=(flags & _BITS["stopped"]).astype(bool),
@@ -185,17 +196,15 @@ def _trace(arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
     )
 
 
-def _held(
-    arrays: dict[str, NDArray[Any]], rows_name: str, name: str, rows: int, shape: tuple[int, ...]
-) -> NDArray[Any]:
+def _held(begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[int, ...]) -> NDArray[Any]:
     """(T, …) of values that each hold from their row on."""
-    begins, values = arrays[rows_name], arrays[name]
     _expect(values, (len(begins), *shape))
     if not values.size:
         return np.zeros((rows, *shape), dtype=values.dtype)
-    if begins[0] != 0 or (np.diff(begins) <= 0).any() or begins[-1] >= rows:
-        raise ValueError(f"{rows_name} out of order")
-    return np.repeat(values, np.diff([*begins, rows]), axis=0)
+    lengths = np.diff([*begins, rows])
+    if begins[0] != 0 or (lengths <= 0).any():
+        raise ValueError("rows out of order")
+    return np.repeat(values, lengths, axis=0)
 
 
 def _expect(array: NDArray[Any], shape: tuple[int, ...]) -> None:

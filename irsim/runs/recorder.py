@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import platform
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import to_json
 
 from irsim import _core as core
 from irsim.observers.trace import sensors
-from irsim.runs.chunks import save_chunk
+from irsim.runs.chunks import chunk_of
 from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
 from irsim.runs.store import (
     BEGUN,
     META,
     RESULT,
+    Buffer,
     RunError,
     begun,
     claim,
@@ -94,7 +92,7 @@ class Recorder:
         else:
             assert folder is not None
             self.folder = _new(folder)
-        self._claim = claim(self.folder / BEGUN, _text_of(simulation).encode())
+        self._claim = claim(os.path.join(self.folder, BEGUN), _text_of(simulation).encode())
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
         self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
         self._scan_rows = _MOST_SCANS // self._scan if scans else 0  # that may still come
@@ -106,13 +104,13 @@ class Recorder:
         self._pieces = self._events = self._bytes = self._scan_bytes = self._pruned_at = 0
         self._done = False
         self._due = time.monotonic() + _PERIOD
-        kept = sensors(simulation) if scans else []
-        self._meta = {
+        kept, source = sensors(simulation) if scans else [], simulation.scenario.source
+        self._meta: dict[str, Any] = {
             "id": self.folder.name,
             "cancelled": False,
-            "created": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+            "created": time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()),
             "scenario": scenario,
-            **_origin(simulation),
+            "folder": None if source is None else os.path.dirname(os.path.abspath(source)),
             "seed": int(simulation.key()[0]),
             "horizon": horizon,
             "step_time": float(simulation.scenario.world.step_time),
@@ -125,7 +123,7 @@ class Recorder:
             **_versions(),
         }
         try:
-            begun(self.folder / "resolved.json", plain_scenario(simulation))
+            begun(os.path.join(self.folder, "resolved.json"), plain_scenario(simulation))
             self._write_meta()
         except BaseException:
             self._stop()
@@ -163,7 +161,7 @@ class Recorder:
         self._flush()
         result.notes = lacking(self._meta, result.steps)
         result.run_id = self.folder.name
-        result.artifacts = {name: str(self.folder / name) for name in ARTIFACTS}
+        result.artifacts = {name: os.path.join(self.folder, name) for name in ARTIFACTS}
         self._write(RESULT, result.model_dump_json(indent=1).encode())
         used(self.folder)
         self._stop()
@@ -207,11 +205,11 @@ class Recorder:
         events = self._simulation.state.events(0, self._events)
         self._events += len(events)
         names, step_time = self._simulation.names, self._meta["step_time"]
-        told = to_json([_told(event, names, step_time) for event in events])
+        told = [_told(event, names, step_time) for event in events]
         log, number = self._log, f"{self._pieces:04d}"
         if log.rows:
             movers, pose = self._movers, self._simulation.pose
-            written(self.folder / f"trace-{number}.npz", lambda file: save_chunk(file, log, movers, pose, told))
+            self._write(f"trace-{number}.npz", *chunk_of(log, movers, pose, told))
             self._bytes += log.bytes
             self._scan_bytes += 4 * log.ranges.size
             self._scan_rows -= log.rows
@@ -222,7 +220,7 @@ class Recorder:
                 self._detach()
                 self._write_meta(trace_until=last)
         elif events:
-            self._write(f"events-{number}.json", told)
+            self._write(f"events-{number}.json", to_json(told))
         self._pieces += 1
         self._due = time.monotonic() + _PERIOD
         if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
@@ -233,8 +231,8 @@ class Recorder:
         self._meta.update(changes)
         self._write(META, to_json(self._meta, indent=1))
 
-    def _write(self, name: str, text: bytes) -> None:
-        written(self.folder / name, lambda file: file.write(text))
+    def _write(self, name: str, *parts: Buffer) -> None:
+        written(os.path.join(self.folder, name), *parts)
 
 
 @contextmanager
@@ -269,12 +267,12 @@ def recording(
         recorder.close()
 
 
-def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, NDArray[np.int32]]:
+def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
     """A log of what can move: everybody where Python takes part."""
     records = simulation.scenario.objects
     movers = [row for row, record in enumerate(records) if simulation.in_python or not record.static]
     columns = max((records[row].vel_dim for row in movers), default=0)
-    return core.Log(simulation.world, movers, min(3, columns), scans), np.array(movers, dtype=np.int32)
+    return core.Log(simulation.world, movers, min(3, columns), scans), movers
 
 
 def _told(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
@@ -291,16 +289,6 @@ def _new(folder: Path) -> Path:
         raise RunError("file-exists", f"'{folder}' exists and is not empty", "name another folder for the run")
     folder.mkdir(parents=True, exist_ok=True)
     return folder.resolve()
-
-
-def _origin(simulation: Simulation) -> dict[str, Any]:
-    """Where files are that the scenario names, and the fingerprint of its text."""
-    source = simulation.scenario.source
-    text = _text_of(simulation)
-    return {
-        "folder": None if source is None else os.path.dirname(os.path.abspath(source)),
-        "sha256": hashlib.sha256(text.encode()).hexdigest(),
-    }
 
 
 def _text_of(simulation: Simulation) -> str:

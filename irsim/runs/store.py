@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import os
 import re
-import secrets
 import shutil
 import stat
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any, Literal
+from typing import Any, Literal, TypeAlias
 
 from irsim.errors import IrsimError
 from irsim.text import clean
@@ -25,6 +24,7 @@ __all__ = [
     "META",
     "QUOTA",
     "RESULT",
+    "Buffer",
     "RunError",
     "Status",
     "begun",
@@ -44,6 +44,8 @@ __all__ = [
     "written",
 ]
 
+Buffer: TypeAlias = bytes | memoryview
+"""Bytes, as they are."""
 Status = Literal["running", "finished", "cancelled", "interrupted"]
 META, RESULT, LOCK = "run.json", "result.json", "lock"
 BEGUN = "scenario.yaml"
@@ -56,7 +58,9 @@ _AGAIN = "runs are let go 24 h after their last use: the same scenario and seed 
 _KEPT_IN = ".irsim"
 _LONGEST_STEM = 24
 _ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
+_NO_SLUG = re.compile(r"[^a-z0-9]+")
 _TEMPORARY, _TRASH = ".new-", ".gone-"
+_NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
 _NAMED = 5
 _TIDIED = ".tidied"
 _BETWEEN_TIDYING = 5.0
@@ -94,24 +98,25 @@ def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> P
     Raises:
         RunError: ``.irsim`` or ``runs`` is a link or no folder: nothing is read or written through links.
     """
-    root = Path.cwd() if workspace is None else Path(workspace)
-    top = root / _KEPT_IN
-    folder = top / "runs"
+    top = os.path.join(os.getcwd() if workspace is None else workspace, _KEPT_IN)
+    folder = os.path.join(top, "runs")
     for part in (top, folder):
         mode = _mode(part)
         if mode is not None and not stat.S_ISDIR(mode):
             raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
     if make:
-        ignore = top / ".gitignore"
-        if mode is None:
-            with _refusals(folder):
-                folder.mkdir(parents=True, exist_ok=True)
+        ignore = os.path.join(top, ".gitignore")
+        try:
+            if mode is None:
+                os.makedirs(folder, exist_ok=True)
+        except OSError as error:
+            raise _refusal(folder, error) from None
         if _mode(ignore) is None:
-            written(ignore, lambda file: file.write(b"*\n"))
-    return folder
+            written(ignore, b"*\n")
+    return Path(folder)
 
 
-def _mode(path: Path) -> int | None:
+def _mode(path: str) -> int | None:
     """What kind of thing is there, None without any."""
     try:
         return os.lstat(path).st_mode
@@ -121,12 +126,16 @@ def _mode(path: Path) -> int | None:
 
 def made_folder(runs: Path, stem: str) -> Path:
     """A new folder for a run: ``<stem as a slug>-<six hexadecimal digits>``."""
-    slug = re.sub(r"[^a-z0-9]+", "-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
+    slug = _NO_SLUG.sub("-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
     while True:
-        folder = runs / f"{slug}-{secrets.token_hex(3)}"
-        with _refusals(folder), suppress(FileExistsError):
-            folder.mkdir()
-            return folder
+        folder = os.path.join(runs, f"{slug}-{os.urandom(3).hex()}")
+        try:
+            os.mkdir(folder)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise _refusal(folder, error) from None
+        return Path(folder)
 
 
 def run_folders(runs: Path) -> list[Path]:
@@ -190,7 +199,7 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
 def used(folder: Path) -> None:
     """Note that a run is used at this moment."""
     with suppress(OSError):
-        os.utime(folder / META)
+        os.utime(os.path.join(folder, META))
 
 
 def plain_file(folder: Path, name: str) -> Path | None:
@@ -236,43 +245,58 @@ def json_of(folder: Path, name: str) -> Any:
 # writing --------------------------------------------------------------------------------------------------------------
 
 
-def begun(target: Path, text: bytes) -> None:
+def begun(target: str | Path, text: bytes) -> None:
     """Write a file of a folder that has no ``run.json`` yet: nobody takes that for a run, so half a file harms nobody.
 
     Raises:
         RunError: The system refuses.
     """
-    with _refusals(target):
-        target.write_bytes(text)
+    try:
+        _put(os.open(target, _NEW, 0o600), text)
+    except OSError as error:
+        raise _refusal(target, error) from None
 
 
-def written(target: Path, write: Callable[[IO[bytes]], object]) -> None:
+def written(target: str | Path, *parts: Buffer) -> None:
     """Write a file of a run by way of a temporary one, so that nobody ever sees half of it.
 
     Raises:
         RunError: The system refuses.
     """
-    temporary = target.with_name(f"{_TEMPORARY}{secrets.token_hex(4)}")
-    with _refusals(target):
-        descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0), 0o600)
+    temporary = os.path.join(os.path.dirname(target), f"{_TEMPORARY}{os.urandom(4).hex()}")
+    try:
+        descriptor = os.open(temporary, _NEW, 0o600)
         try:
-            with os.fdopen(descriptor, "wb") as file:
-                write(file)
+            _put(descriptor, *parts)
             os.replace(temporary, target)
         except BaseException:
             with suppress(OSError):
                 os.unlink(temporary)
             raise
-
-
-@contextmanager
-def _refusals(target: Path) -> Iterator[None]:
-    """What the system refuses, in our words."""
-    try:
-        yield
     except OSError as error:
-        what = f"'{target}' cannot be written: {error.strerror or error}"
-        raise RunError("file-access", what, "check permissions and the space left") from None
+        raise _refusal(target, error) from None
+
+
+def _put(descriptor: int, *parts: Buffer) -> None:
+    try:
+        _write(descriptor, *parts)
+    finally:
+        os.close(descriptor)
+
+
+def _write(descriptor: int, *parts: Buffer) -> None:
+    """Write all of it, without copies and buffers, which short runs would feel."""
+    done = os.writev(descriptor, parts) if hasattr(os, "writev") else 0
+    if done < sum(map(len, parts)):
+        rest = memoryview(b"".join(parts))[done:]
+        while rest:
+            rest = rest[os.write(descriptor, rest) :]
+
+
+def _refusal(target: str | Path, error: OSError) -> RunError:
+    """What the system refuses, in our words."""
+    what = f"'{target}' cannot be written: {error.strerror or error}"
+    return RunError("file-access", what, "check permissions and the space left")
 
 
 @dataclass(frozen=True)
@@ -286,7 +310,7 @@ class Claim:
         os.close(self.descriptor)
 
 
-def claim(file: Path, text: bytes = b"") -> Claim:
+def claim(file: str | Path, text: bytes = b"") -> Claim:
     """Say that this process writes a run or a job.
 
     Args:
@@ -296,15 +320,16 @@ def claim(file: Path, text: bytes = b"") -> Claim:
     Raises:
         RunError: The system refuses.
     """
-    with _refusals(file):
+    try:
         descriptor = os.open(file, os.O_CREAT | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
         try:
             _locked(descriptor, wait=True)
-            with open(descriptor, "wb", closefd=False) as stream:
-                stream.write(text)
+            _write(descriptor, text)
         except BaseException:
             os.close(descriptor)
             raise
+    except OSError as error:
+        raise _refusal(file, error) from None
     return Claim(descriptor)
 
 
@@ -325,8 +350,7 @@ def mark_cancelled(folder: Path) -> None:
     meta = json_of(folder, META)
     if not isinstance(meta, dict) or plain_file(folder, RESULT) is not None:
         return
-    text = json.dumps({**meta, "cancelled": True}, indent=1)
-    written(folder / META, lambda file: file.write(text.encode()))
+    written(folder / META, json.dumps({**meta, "cancelled": True}, indent=1).encode())
 
 
 def _being_written(folder: Path) -> bool:
@@ -398,12 +422,12 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
 
 def tidy(runs: Path) -> None:
     """:func:`prune`, unless somebody did so a moment ago."""
-    mark = runs / _TIDIED
+    mark = os.path.join(runs, _TIDIED)
     with suppress(OSError):
-        if 0 <= time.time() - mark.stat().st_mtime < _BETWEEN_TIDYING:
+        if 0 <= time.time() - os.stat(mark).st_mtime < _BETWEEN_TIDYING:
             return
     with suppress(OSError):
-        mark.touch()
+        Path(mark).touch()
     prune(runs)
 
 
@@ -421,7 +445,7 @@ def _size_of(folder: Path) -> tuple[int, list[str]]:
 
 def remove(folder: Path) -> None:
     """First out of sight as a whole, then bit by bit."""
-    trash = folder.with_name(f"{_TRASH}{folder.name}-{secrets.token_hex(3)}")
+    trash = folder.with_name(f"{_TRASH}{folder.name}-{os.urandom(3).hex()}")
     with suppress(OSError):
         os.rename(folder, trash)
         shutil.rmtree(trash, ignore_errors=True)

@@ -200,7 +200,7 @@ def _state(job: Path) -> dict[str, Any]:
 def _note(job: Path, about: Mapping[str, Any]) -> None:
     text = json.dumps(about)
     with suppress(OSError):  # the folder may have been removed by somebody
-        written(job / META, lambda file: file.write(text.encode()))
+        written(job / META, text.encode())
 
 
 class _Keeper(threading.Thread):
@@ -219,7 +219,7 @@ class _Keeper(threading.Thread):
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError):
-                written(self._job / RESULT, lambda file: file.write(text.encode()))
+                written(self._job / RESULT, text.encode())
         finally:
             self._held.release()
 

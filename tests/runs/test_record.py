@@ -74,9 +74,10 @@ def test_a_piece_of_the_trace_is_an_archive_for_everybody(room: Path) -> None:
     with zipfile.ZipFile(path) as archive:
         assert archive.testzip() is None
     with np.load(path, allow_pickle=False) as arrays:
-        assert list(arrays["steps"]) == [0, result.steps + 1]
+        about = json.loads(arrays["piece.json"])
+        assert (about["first"], about["rows"]) == (0, result.steps + 1)
         assert arrays["pose"].shape == (result.steps + 1, 1, 3)
-        assert len(json.loads(arrays["events.json"])) == len(result.events)
+        assert len(about["events"]) == len(result.events)
 
 
 def test_texts_are_recorded_too(workspace: Path, room: Path) -> None:

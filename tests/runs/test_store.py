@@ -9,6 +9,8 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -179,13 +181,48 @@ def test_pickles_and_packed_arrays_are_refused(room: Path) -> None:
     path = runs_folder() / run_id / "trace-0000.npz"
     with np.load(path) as file:
         arrays = dict(file)
-    for change in ({"pose": np.array([object()])}, {"steps": np.array([0, 2**40])}, {"flag_rows": np.array([5, 3])}):
-        np.savez(path, **{**arrays, **change})
+    about = arrays.pop("piece.json")
+
+    def refused(save: Callable[..., None], **changes: Any) -> None:
+        save(path, **{**arrays, **changes})
+        with zipfile.ZipFile(path, "a") as archive:
+            archive.writestr("piece.json", about)
         with pytest.raises(RunError, match="unreadable-run"):
             open_run(run_id).trace()
-    np.savez_compressed(path, **{**arrays, "more": np.zeros(10**7)})
+
+    refused(np.savez, pose=np.array([object()]))
+    refused(np.savez_compressed, more=np.zeros(10**7))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"rows": 2**40},
+        {"rows": 0},
+        {"first": -1},
+        {"first": 1e999},
+        {"flag_rows": [5, 3]},
+        {"goal_rows": []},
+        {"goal_rows": {}},
+        {"scan_rows": 7},
+        {"movers": [10**30]},
+        {"movers": [-1]},
+        {"movers": None},
+        {"events": None},
+        {"events": [{}]},
+    ],
+)
+def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any]) -> None:
+    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    path = runs_folder() / run_id / "trace-0000.npz"
+    with zipfile.ZipFile(path) as archive:
+        content = {name: archive.read(name) for name in archive.namelist()}
+    content["piece.json"] = json.dumps({**json.loads(content["piece.json"]), **change}).encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in content.items():
+            archive.writestr(name, data)
     with pytest.raises(RunError, match="unreadable-run"):
-        open_run(run_id).trace()
+        read_all(run_id)
 
 
 def endless(workspace: Path) -> subprocess.Popen[bytes]:
