@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
-__all__ = ["checkout", "schema_file", "skills_directory", "templates_directory"]
+__all__ = ["checkout", "read_yaml", "schema_file", "skills_directory", "templates_directory"]
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -33,3 +34,10 @@ def skills_directory() -> Path:
     """Directory with one folder per agent skill (inside the package: where agents look)."""
     root = checkout()
     return root / "skills" if root else _PACKAGE / ".agents" / "skills"
+
+
+def read_yaml(text: str) -> Any:
+    """What a text of ours says, read by libyaml where PyYAML has it: ten times as fast."""
+    import yaml  # a server only needs it once it is asked for something
+
+    return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))

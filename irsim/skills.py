@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-import yaml
-
 from irsim import resources
 from irsim.diagnostics import nearest
 from irsim.errors import IrsimError
@@ -131,7 +129,7 @@ def install(place: Path, skills: Iterable[Skill], *, force: bool = False, dry_ru
 
 
 def _read(page: Path) -> Skill:
-    front = yaml.safe_load(page.read_text(encoding="utf-8").split("---\n", 2)[1])
+    front = resources.read_yaml(page.read_text(encoding="utf-8").split("---\n", 2)[1])
     return Skill(front["name"], front["description"], str(front.get("metadata", {}).get("version", "")), page.parent)
 
 

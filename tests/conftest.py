@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
+
+# How fast a machine draws and runs examples is no property of the code.
+settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("irsim")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -10,6 +10,7 @@ import yaml
 
 from irsim import templates
 from irsim.lookup.walk import yaml_text
+from irsim.resources import read_yaml
 
 __all__ = ["example_of"]
 
@@ -43,7 +44,7 @@ def example_of(path: tuple[str, ...], component: str | None = None) -> str | Non
 def _scenarios() -> tuple[Any, ...]:
     """The bundled scenarios, read once: a server and the reference pages ask for hundreds of examples."""
     texts = (templates.scenario_file(name).read_text(encoding="utf-8") for name in templates.names())
-    return tuple(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)) for text in texts)
+    return tuple(read_yaml(text) for text in texts)
 
 
 def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:

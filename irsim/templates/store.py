@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-import yaml
-
 from irsim import resources
 from irsim.diagnostics import nearest
 from irsim.templates.metadata import Template, TemplateError
@@ -34,7 +32,7 @@ def load(name: str) -> Template:
             f"did you mean {near}?" if near else None,
         )
     file = scenario_file(name)
-    described = yaml.safe_load(file.with_name("template.yaml").read_text(encoding="utf-8"))
+    described = resources.read_yaml(file.with_name("template.yaml").read_text(encoding="utf-8"))
     text = file.read_text(encoding="utf-8")
     return Template.model_validate({"name": name, "text": text, **described})
 

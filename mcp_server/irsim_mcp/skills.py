@@ -134,10 +134,8 @@ def _description(main: Path) -> str:
 
 def _entry(folder: Path) -> dict[str, Any]:
     """A skill as clients get it: where it is, its head, all its files with digests."""
-    import yaml
-
     head = _HEAD.match((folder / _MAIN).read_text(encoding="utf-8"))
-    frontmatter = yaml.safe_load(head[1]) if head else {}
+    frontmatter = resources.read_yaml(head[1]) if head else {}
     files = []
     for name, path in skill_files(folder).items():
         data = path.read_bytes()

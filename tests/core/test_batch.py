@@ -24,7 +24,7 @@ from tests.core.worlds import (
 WORLD_SIZED = ("count", "scene", "noise", "seed")
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     seeds=st.lists(st.integers(0, 2**64 - 1), min_size=1, max_size=7),
     threads=st.integers(1, 5),

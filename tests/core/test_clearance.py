@@ -28,7 +28,7 @@ def between(a, pose_a, b, pose_b) -> float:
     return float(distance[0, 0, 0])
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
 def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
     gap = placed(a[1], pose_a).distance(placed(b[1], pose_b)) - a[2] - b[2]
@@ -40,7 +40,7 @@ def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
         assert found <= 1e-9
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     a=st.lists(shape(), min_size=1, max_size=3),
     b=st.lists(shape(), min_size=1, max_size=3),
@@ -54,7 +54,7 @@ def test_a_compound_is_as_near_as_its_nearest_part(a, b, way, turn) -> None:
     assert between([p for p, *_ in a], ORIGIN, [p for p, *_ in b], pose) == pytest.approx(gap, abs=1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(grid=grids(), body=shape(), pose=POSE)
 def test_as_far_from_a_map_as_from_its_nearest_cell(grid, body, pose) -> None:
     part, geometry, radius = body
@@ -111,7 +111,7 @@ def naive(poses, radii, robots, kinds) -> tuple[np.ndarray, np.ndarray]:
     return distance, partner
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 12))
 def test_the_nearest_of_each_kind(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
@@ -152,7 +152,7 @@ def test_arguments_that_do_not_fit() -> None:
         core.clearances(world, state, 0, np.zeros((1, 2, 3)), [2], kinds)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     bodies=st.lists(shape(), min_size=2, max_size=5),
     ways=st.lists(st.tuples(POSE, POSE), min_size=5, max_size=5),

@@ -18,7 +18,7 @@ LAW = {"angular": "steer"}
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     pose=st.tuples(NUMBER, NUMBER, st.floats(-PI, PI)),
     goal=st.one_of(st.tuples(NUMBER, NUMBER), st.tuples(NUMBER, NUMBER, st.floats(-PI, PI))),

@@ -14,7 +14,7 @@ from tests.core import oracle
 from tests.core.worlds import DRIVES, PI, obstacle, robot, scene
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     pose=st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-PI, PI)),
     goal=st.one_of(

@@ -112,7 +112,7 @@ PARTS = [
 ]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
     objects = [robot(pose=[50, 50, 0], goals=[[52, 50]])]

@@ -18,7 +18,7 @@ THREE = st.lists(NUMBER, min_size=3, max_size=3)
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     x=NUMBER, y=NUMBER, theta=st.floats(-PI, PI), psi=st.floats(-0.9, 0.9), wanted=THREE, before=THREE, data=st.data()
 )

@@ -25,7 +25,7 @@ SHAPES = [
 ]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_scans_are_those_of_every_beam_against_every_edge(data: st.DataObject) -> None:
     coarse = data.draw(st.booleans())  # poses on a grid: beams meet corners and run along edges
@@ -152,7 +152,7 @@ def union_of(parts) -> shapely.Geometry:
 
 
 @pytest.mark.parametrize("parts", COMPOUNDS)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(x=st.floats(-3, 5), y=st.floats(-3, 4), theta=st.floats(-3, 3))
 def test_compounds_show_the_boundary_of_their_union(parts, x: float, y: float, theta: float) -> None:
     sensor = lidar(40, angle_range=6.0)

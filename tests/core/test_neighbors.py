@@ -116,7 +116,7 @@ def test_what_is_a_wall_and_what_is_not() -> None:
     assert [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 100.0)] == [2, 5]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 10**6), reach=st.floats(0.1, 8.0))
 def test_walls_within_reach(seed: int, reach: float) -> None:
     rng = np.random.default_rng(seed)

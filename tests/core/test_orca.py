@@ -86,7 +86,7 @@ def allowed(planes: np.ndarray, max_speed: float, preferred: np.ndarray, slack: 
     return v[inside]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.lists(PLANE, min_size=1, max_size=7), st.floats(0.1, 2), st.tuples(st.floats(-2, 2), st.floats(-2, 2)))
 def test_best_velocity_is_the_best_corner(planes: Any, max_speed: float, preferred: tuple[float, float]) -> None:
     lines, wanted = np.array(planes), np.array(preferred)
@@ -104,7 +104,7 @@ def test_best_velocity_is_the_best_corner(planes: Any, max_speed: float, preferr
         assert len(tight) == 0
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.lists(PLANE, min_size=2, max_size=6), st.lists(ANGLE, max_size=2), st.floats(0.3, 2))
 def test_where_nothing_is_free_the_largest_violation_is_least(planes: Any, walls: Any, max_speed: float) -> None:
     hard = [(0.0, 0.0, math.cos(a), math.sin(a)) for a in walls]

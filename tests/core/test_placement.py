@@ -20,7 +20,7 @@ def placement(objects, size: float, min_distance: float = 0.0, attempts: int = 2
     )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 2**64 - 1), distance=st.sampled_from([0.0, 1.0]))
 def test_nothing_overlaps(seed: int, distance: float) -> None:
     walls = [

@@ -51,7 +51,7 @@ def expected(crowd: Crowd, i: int, view: oracle.View, velocity: np.ndarray, disc
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -154,7 +154,7 @@ def test_goals_in_a_closed_room_of_rectangles_are_reached(drive: str, seed: int)
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_walls_are_never_run_into(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)

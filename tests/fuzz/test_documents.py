@@ -14,6 +14,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of proce
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
 
 
+@pytest.mark.slow(14)
 def test_what_was_found_once() -> None:
     texts = [case.read_bytes().decode("utf-8") for case in CASES]
     tally = try_all(enumerate(texts), workers=1)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -65,7 +65,6 @@ def test_pixels_mean_what_the_map_server_says() -> None:
     assert (occupancy_of(colors, meta()) == occupancy_of(GREYS, meta())).all()
 
 
-@settings(deadline=None)
 @given(
     seed=st.integers(0, 1000),
     mode=st.sampled_from(MODES),

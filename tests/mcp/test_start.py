@@ -55,6 +55,7 @@ def test_neither_engine_nor_drawing_is_loaded_at_start() -> None:
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.slow(20)
 def test_neither_is_loaded_by_anything_one_can_ask_for(workspace: Path) -> None:
     root = Path(__file__).resolve().parents[2]
     command = [sys.executable, "-m", "tests.mcp.everything", str(workspace)]

@@ -56,7 +56,7 @@ grids = st.tuples(st.integers(3, 14), st.integers(3, 14), st.integers(0, 2**31),
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(grids, st.data())
 def test_shortest_on_a_grid(grid: NDArray[np.float64], data: st.DataObject) -> None:
     nx, ny = grid.shape
@@ -106,7 +106,7 @@ def scenes(draw: st.DrawFn) -> list[Any]:
     return things
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(scenes(), shapes, st.booleans())
 def test_paths_are_free_of_collisions(things: list[Any], robot: Any, smooth: bool) -> None:
     env_map = Map(6, 6, 0.25, things)

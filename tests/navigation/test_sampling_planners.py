@@ -52,7 +52,7 @@ def test_valid_and_reproducible(cls: Any) -> None:
     assert not np.array_equal(paths[0], paths[2])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 1000), st.sampled_from([RRT, RRTStar, InformedRRTStar]), st.booleans())
 def test_any_body(seed: int, cls: Any, smooth: bool) -> None:
     rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.replay.columns import Columns, changes, quantised
@@ -11,7 +11,6 @@ from tests.replay.reading import unpacked
 NUMBERS = st.integers(-(2**31), 2**31 - 1)
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow])  # on a busy machine a draw can take its time
 @given(st.lists(st.lists(NUMBERS, min_size=3, max_size=3), max_size=4), st.integers(0, 2), st.text(max_size=9))
 def test_a_block_is_read_back(rows: list[list[int]], order: int, text: str) -> None:
     table = np.array(rows, dtype=np.int32).reshape(-1, 3)

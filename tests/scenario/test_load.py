@@ -50,7 +50,7 @@ def test_nan_and_dates() -> None:
     ),
     st.booleans(),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_data_is_that_of_the_safe_loader(data: Any, block: bool) -> None:
     text = yaml.safe_dump({"custom": data}, default_flow_style=not block, allow_unicode=True)
     composed = compose(text, DEFAULT_LIMITS)

@@ -111,7 +111,7 @@ def paths(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return [path, *(deeper for key, item in items for deeper in paths(item, (*path, key)))]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.dictionaries(st.text("xyz", min_size=1, max_size=3), trees, min_size=1, max_size=4),
     trees,
@@ -129,7 +129,7 @@ def test_the_text_means_what_the_edit_means(data: dict[str, Any], value: Any, dr
         assert _near(yaml.safe_load(changed), applied(data, [edit]))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(trees)
 def test_a_value_on_one_line_is_read_back(value: Any) -> None:
     line = yaml_flow(value)

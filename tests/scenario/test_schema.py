@@ -166,7 +166,7 @@ REMOVE = "(remove)"
         max_size=2,
     )
 )
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 def test_agrees_with_the_models_on_damaged_files(changes: list[tuple[tuple[Any, ...], Any]]) -> None:
     data = copy.deepcopy(FULL)
     for path, value in changes:

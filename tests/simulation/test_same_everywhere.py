@@ -61,7 +61,7 @@ def scenarios(draw: st.DrawFn) -> str:
     return "\n".join(lines) + "\n"
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(text=scenarios(), seed=st.integers(0, 2**64 - 4), threads=st.integers(2, 5))
 def test_alone_in_batch_and_rolled_out_agree(tmp_path: Path, text: str, seed: int, threads: int) -> None:
     path = tmp_path / "world.yaml"

@@ -124,6 +124,7 @@ def test_two_behaviors_that_cannot_be_told_apart(tmp_path: Path) -> None:
     assert (failed.outcome, failed.sim_time) == ("timeout", pytest.approx(40.0))
 
 
+@pytest.mark.slow(8)
 def test_success_over_density(tmp_path: Path) -> None:
     *filling, words = commands("density")
     folder = SKILL / "examples" / "density"

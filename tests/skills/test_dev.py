@@ -75,6 +75,7 @@ def checkout(tmp_path: Path) -> tuple[Path, Run]:
     return tmp_path, run
 
 
+@pytest.mark.slow(15)
 def test_a_shape_is_one_file_and_its_test(checkout: tuple[Path, Run]) -> None:
     folder, run = checkout
     put_into(folder, "new-shape")
@@ -97,6 +98,7 @@ def test_a_shape_is_one_file_and_its_test(checkout: tuple[Path, Run]) -> None:
     assert "ends in **success**" in read("new-shape", "elements.md")
 
 
+@pytest.mark.slow(6)
 def test_a_sensor_works_by_the_name_of_its_module(tmp_path: Path) -> None:
     folder = Path(shutil.copytree(EXAMPLES / "new-sensor", tmp_path / "copy"))
     for words in commands("new-sensor"):

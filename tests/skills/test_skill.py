@@ -52,6 +52,7 @@ def test_the_skeleton_is_valid_without_a_remark_and_succeeds(tmp_path: Path) -> 
     assert irsim.run(path, seed=3).outcome == "success"
 
 
+@pytest.mark.slow(17)
 def test_commands_work_as_written(tmp_path: Path) -> None:
     after = SKELETON.replace("behavior:", "sensors: [{name: lidar2d}]\n    behavior:")
     for name, text in (("hall", SKELETON), ("before", SKELETON), ("after", after)):

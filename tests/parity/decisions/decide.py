@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import yaml
 
+DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # of libyaml, where there is one
+
 
 def decide(irsim: ModuleType, document: dict[str, Any], ids: list[int], folder: Path) -> np.ndarray:
     """(K, 3) executed commands of the objects `ids` in the first step, filled up with zeros."""
     path = folder / "scene.yaml"
-    path.write_text(yaml.safe_dump(document), encoding="utf-8")
+    path.write_text(yaml.dump(document, Dumper=DUMPER), encoding="utf-8")
     env = irsim.make(str(path), headless=True, log_level="ERROR", seed=0)
     env.step()
     out = np.zeros((len(ids), 3))
