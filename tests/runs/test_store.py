@@ -19,7 +19,18 @@ import pytest
 
 import irsim
 from irsim.runs import RunError, list_runs, open_run
-from irsim.runs.store import META, claim, find_run, made_folder, mark_cancelled, prune, runs_folder, status_of, tidy
+from irsim.runs.store import (
+    META,
+    claim,
+    find_run,
+    made_folder,
+    mark_cancelled,
+    prune,
+    runs_folder,
+    status_of,
+    tidy,
+    written,
+)
 
 ENDLESS = """\
 world: {width: 100, height: 100, collision_mode: unobstructed}
@@ -223,6 +234,21 @@ def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any
             archive.writestr(name, data)
     with pytest.raises(RunError, match="unreadable-run"):
         read_all(run_id)
+
+
+@pytest.mark.parametrize("pieces", [True, False])
+def test_files_are_whole_however_little_the_system_takes_at_once(
+    workspace: Path, pieces: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = os.write
+    if pieces:
+        monkeypatch.setattr(os, "writev", lambda file, parts: write(file, b"".join(parts)[:3]), raising=False)
+    else:
+        monkeypatch.delattr(os, "writev", raising=False)
+    monkeypatch.setattr(os, "write", lambda file, data: write(file, data[:2]))
+    written(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
+    assert (workspace / "file").read_bytes() == b"one, two and three"
+    assert [path.name for path in workspace.iterdir()] == ["file"]
 
 
 def endless(workspace: Path) -> subprocess.Popen[bytes]:
