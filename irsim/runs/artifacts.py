@@ -12,24 +12,12 @@ import numpy as np
 
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
-from irsim.runs.store import RunError, text_of
+from irsim.runs.store import ARTIFACTS, FILES, RunError, text_of
 from irsim.scenario.limits import Limits
 from irsim.text import clean
 
-__all__ = ["ARTIFACTS", "artifact"]
+__all__ = ["artifact"]
 
-ARTIFACTS = (
-    "scenario.yaml",
-    "resolved.json",
-    "run.json",
-    "result.json",
-    "events.json",
-    "trace.json",
-    "trace.csv",
-    "replay.json",
-)
-"""What there is of a run."""
-_FILES = ARTIFACTS[:4]
 _DECIMALS = 4
 _COLUMNS = ("x", "y", "heading", "speed", "turn_rate", "control", "goal", "status")
 
@@ -55,7 +43,7 @@ def artifact(
 
     Args:
         run: Which run.
-        name: One of :data:`ARTIFACTS`.
+        name: One of :data:`irsim.runs.store.ARTIFACTS`.
         from_step: First step.
         to_step: Last step; by default the last there is.
         every: Every how many-th step of a trace.
@@ -67,7 +55,7 @@ def artifact(
     Raises:
         RunError: There is no such artifact, object or step.
     """
-    if name in _FILES:
+    if name in FILES:
         text = text_of(run.folder, name)
         if text is None:
             raise RunError("unknown-run", f"run {run.id} has no {name}: it is {run.status}")

@@ -21,6 +21,7 @@ from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
 from irsim.runs.store import (
     BEGUN,
+    FILES,
     META,
     RESULT,
     Buffer,
@@ -40,10 +41,8 @@ if TYPE_CHECKING:
     from irsim.results import RunResult
     from irsim.simulation import Simulation
 
-__all__ = ["ARTIFACTS", "Recorder", "recording"]
+__all__ = ["Recorder", "recording"]
 
-ARTIFACTS = (BEGUN, "resolved.json", META, RESULT)
-"""Files of every complete run; trace and events are in numbered pieces beside them."""
 _PIECE = 4_000_000
 """Bytes of a piece of the trace."""
 _PERIOD = 0.5
@@ -161,7 +160,7 @@ class Recorder:
         self._flush()
         result.notes = lacking(self._meta, result.steps)
         result.run_id = self.folder.name
-        result.artifacts = {name: os.path.join(self.folder, name) for name in ARTIFACTS}
+        result.artifacts = {name: os.path.join(self.folder, name) for name in FILES}
         self._write(RESULT, result.model_dump_json(indent=1).encode())
         used(self.folder)
         self._stop()

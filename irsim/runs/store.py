@@ -18,8 +18,10 @@ from irsim.errors import IrsimError
 from irsim.text import clean
 
 __all__ = [
+    "ARTIFACTS",
     "BEGUN",
     "DAY",
+    "FILES",
     "LOCK",
     "META",
     "QUOTA",
@@ -50,6 +52,10 @@ Status = Literal["running", "finished", "cancelled", "interrupted"]
 META, RESULT, LOCK = "run.json", "result.json", "lock"
 BEGUN = "scenario.yaml"
 """Written once, when a run begins, and locked as long as it is written; ``run.json`` is touched by each use."""
+FILES = (BEGUN, "resolved.json", META, RESULT)
+"""Of every complete run; trace and events are in numbered pieces beside them."""
+ARTIFACTS = (*FILES, "events.json", "trace.json", "trace.csv", "replay.json")
+"""What there is of a run as text: files, and what is made of the pieces."""
 QUOTA = 500 * 1000 * 1000
 """Bytes that the runs of a workspace may take together; the least recently used ones make room."""
 DAY = 24 * 3600.0

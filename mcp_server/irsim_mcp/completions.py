@@ -9,11 +9,12 @@ from typing import Any
 from mcp.server import MCPServer
 from mcp.types import Completion, CompletionArgument, CompletionContext, PromptReference, ResourceTemplateReference
 
+from irsim.runs.store import ARTIFACTS
 from irsim.text import clean
 from irsim_mcp.docs import DOC, topics
 from irsim_mcp.prompts import DIFFICULTIES, drives, template_names
 from irsim_mcp.resources import SCHEMA, SECTIONS, TEMPLATE
-from irsim_mcp.run_resources import ARTIFACTS, RUN
+from irsim_mcp.run_resources import RUN
 from irsim_mcp.services import Services
 
 __all__ = ["add_completions"]

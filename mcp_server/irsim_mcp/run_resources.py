@@ -8,22 +8,12 @@ from pathlib import PurePosixPath
 from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 
+from irsim.runs.store import ARTIFACTS
 from irsim_mcp.services import Services
 
-__all__ = ["ARTIFACTS", "RUN", "add_run_resources", "media_type", "uri"]
+__all__ = ["RUN", "add_run_resources", "media_type", "uri"]
 
 RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
-ARTIFACTS = (
-    "scenario.yaml",
-    "resolved.json",
-    "run.json",
-    "result.json",
-    "events.json",
-    "trace.json",
-    "trace.csv",
-    "replay.json",
-)
-"""The same as in :mod:`irsim.runs.artifacts`, which a server does not load."""
 _MOST_BYTES = 1_000_000
 
 

@@ -16,10 +16,11 @@ import irsim
 from irsim.cli.app import app
 from irsim.metrics import Approach
 from irsim.runs import Run, RunError, inspection, open_run
-from irsim.runs.artifacts import ARTIFACTS, artifact
+from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
 from irsim.runs.recorder import Recorder
 from irsim.runs.replaying import replayed
+from irsim.runs.store import ARTIFACTS
 
 PAIR = """\
 world: {width: 10, height: 6, time_limit: 6}
