@@ -101,11 +101,15 @@ def _list_runs() -> None:
         table.add_column(heading, no_wrap=True)
     table.add_column("scenario", overflow="fold")
     for run in runs[:_LISTED]:
-        result = run.result
-        steps = run.last_step if result is None else result.steps
+        try:
+            result = run.result
+            steps = run.last_step if result is None else result.steps
+            outcome: str = run.status if result is None else result.outcome
+        except RunError:
+            steps, outcome = -1, "unreadable"
         table.add_row(
             run.id,
-            run.status if result is None else result.outcome,
+            outcome,
             "-" if steps < 0 else str(steps),
             str(run.meta.get("seed")),
             clean(run.meta.get("created"))[:16].replace("T", " "),

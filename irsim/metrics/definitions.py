@@ -46,7 +46,12 @@ def _canonical() -> tuple[Metric, ...]:
         ),
         Metric("stalled_time", "s", "slower than 0.05 m/s and 0.05 rad/s, not arrived", better="less"),
         Metric("time_to_goal", "s", "time of first arrival", better="less"),
-        Metric("path_length", "m", "distance travelled until it arrived", better="less"),
+        Metric(
+            "path_length",
+            "m",
+            "distance travelled until it arrived (in the result of one run: to its end)",
+            better="less",
+        ),
         Metric("spl", "0-1", "success x L*/max(path, L*), L* the shortest way round static things", better="more"),
         Metric("velocity_min", "m/s", "least speed until it arrived", "min"),
         Metric("velocity_avg", "m/s", "distance travelled / time until it arrived", better="more"),

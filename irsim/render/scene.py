@@ -248,7 +248,10 @@ def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
         if x1 - x0 >= _SMALLEST and y1 - y0 >= _SMALLEST:
             return x0, x1, y0, y1
     given = ", ".join(f"{value:g}" for value in corners)
-    raise ArgumentError(f"there is no region {given}", "give x_min, y_min, x_max, y_max in metres, in this order")
+    sizes = f"x_max and y_max at least {_SMALLEST:g} m beyond x_min and y_min, all within {_FARTHEST:g} m of 0"
+    raise ArgumentError(
+        f"there is no region {given}", f"give x_min, y_min, x_max, y_max in metres, in this order: {sizes}"
+    )
 
 
 def _plain(value: Any) -> Any:

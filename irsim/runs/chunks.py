@@ -18,7 +18,7 @@ from pydantic_core import to_json
 
 from irsim import _core as core
 from irsim.observers.trace import Trace
-from irsim.runs.store import Buffer, RunError
+from irsim.runs.store import Buffer, unreadable
 
 __all__ = ["Layout", "chunk_of", "load_chunk", "load_events"]
 
@@ -154,7 +154,7 @@ def _changes(path: Path) -> Iterator[None]:
         RecursionError,
         zipfile.BadZipFile,
     ) as error:
-        raise RunError("unreadable-run", f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
+        raise unreadable(f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
 
 
 def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:

@@ -191,7 +191,7 @@ def _rows(asked: _Question) -> _Found:
     rows: list[list[Cell]] = []
     for number in range(asked.start, stop):
         row, index = int(picked[number // count]), asked.objects[number % count]
-        cells = [cell for field in asked.fields for cell in _cells(asked.trace, field, row, index, controls)]
+        cells = [cell for field in asked.fields for cell in _cells(asked, field, row, index, controls)]
         rows.append([int(asked.trace.step[row]), _number(asked.trace.time[row]), asked.trace.names[index], *cells])
     return _Found(["step", "time", "robot", *columns], rows, total, every)
 
@@ -203,16 +203,17 @@ def _controls(asked: _Question) -> int:
     return max((count for count in chosen if isinstance(count, int) and 0 < count <= 3), default=2)
 
 
-def _cells(trace: Trace, field: Field, row: int, index: int, controls: int) -> list[Cell]:
+def _cells(asked: _Question, field: Field, row: int, index: int, controls: int) -> list[Cell]:
+    trace, aimless = asked.trace, not asked.run.resolved["objects"][index].get("goals")
     x, y, heading = trace.pose[row, index].tolist()
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
     if field == "control":
         return [_number(value) for value in trace.control[row, index, :controls]]
     if field == "goal":
-        return [_number(goal_x), _number(goal_y)]
+        return [None, None] if aimless else [_number(goal_x), _number(goal_y)]
     if field == "status":
         flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
-        return [" ".join(word for word, flag in flags if flag[row, index]) or "under way"]
+        return [" ".join(word for word, flag in flags if flag[row, index]) or ("" if aimless else "under way")]
     if field == "nearest_hit":
         prefix = f"{trace.names[index]}/"
         blocks = [block for key, block in trace.ranges.items() if key.startswith(prefix)]
@@ -228,7 +229,7 @@ def _cells(trace: Trace, field: Field, row: int, index: int, controls: int) -> l
         "x": x,
         "y": y,
         "heading": heading,
-        "goal_distance": math.hypot(goal_x - x, goal_y - y),
+        "goal_distance": math.nan if aimless else math.hypot(goal_x - x, goal_y - y),
     }[field]
     return [_number(value)]
 

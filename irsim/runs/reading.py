@@ -9,6 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
@@ -26,6 +28,7 @@ from irsim.runs.store import (
     runs_folder,
     status_of,
     text_of,
+    unreadable,
 )
 
 __all__ = ["Run", "list_runs", "open_run"]
@@ -70,7 +73,7 @@ class Run:
         """The scenario as given."""
         text = text_of(self.folder, "scenario.yaml")
         if text is None:
-            raise RunError("unreadable-run", f"run {self.id} has no scenario.yaml")
+            raise unreadable(f"run {self.id} has no scenario.yaml")
         return text
 
     @cached_property
@@ -79,7 +82,7 @@ class Run:
         try:
             events = [Event(**item) for name in self._pieces("trace", "events") for item in self._happened(name)]
         except TypeError as error:
-            raise RunError("unreadable-run", f"the events of run {self.id} have been changed: {error}") from None
+            raise unreadable(f"the events of run {self.id} have been changed: {error}") from None
         if self.result is not None:
             return events
         last = self.last_step
@@ -93,8 +96,8 @@ class Run:
             return None
         try:
             return RunResult.model_validate_json(text)
-        except ValueError as error:
-            raise RunError("unreadable-run", f"the result of run {self.id} has been changed: {error}") from None
+        except ValueError:
+            raise unreadable(f"result.json of run {self.id} has been changed") from None
 
     @cached_property
     def resolved(self) -> dict[str, Any]:
@@ -102,7 +105,7 @@ class Run:
         data: Any = json_of(self.folder, "resolved.json")
         objects = data.get("objects") if isinstance(data, dict) else None
         if not isinstance(objects, list) or not all(isinstance(item, dict) for item in objects):
-            raise RunError("unreadable-run", f"resolved.json of run {self.id} is missing or has been changed")
+            raise unreadable(f"resolved.json of run {self.id} is missing or has been changed")
         return dict(data)
 
     @property
@@ -131,8 +134,11 @@ class Run:
         """
         pieces = [self._piece(name) for name in self._pieces("trace")]
         if not pieces:
-            raise RunError("unreadable-run", f"run {self.id} was cut short before its first step was kept")
-        return joined(pieces)
+            raise unreadable(f"run {self.id} was cut short before its first step was kept")
+        trace = joined(pieces)
+        if (np.diff(trace.step) != 1).any():
+            raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
+        return trace
 
     def files(self) -> list[str]:
         """Names of its files."""
@@ -145,9 +151,16 @@ class Run:
             raise RunError("unknown-run", f"run {self.id} has been let go") from None
 
     def _pieces(self, *kinds: str) -> list[str]:
-        """Files of these kinds in the order of their numbers."""
-        found = [match for name in self._names() if (match := _PIECE.fullmatch(name))]
-        return [m.group() for m in sorted(found, key=lambda m: int(m.group(2))) if m.group(1) in kinds]
+        """Files of these kinds in the order of their numbers.
+
+        Raises:
+            RunError: One is missing among them.
+        """
+        found = sorted((int(m[2]), m[1], m[0]) for name in self._names() if (m := _PIECE.fullmatch(name)))
+        for number, (there, _, _) in enumerate(found):
+            if there != number:
+                raise unreadable(f"piece {number:04d} of run {self.id} is missing, or there twice")
+        return [name for _, kind, name in found if kind in kinds]
 
     def _piece(self, name: str) -> Trace:
         sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
@@ -160,7 +173,7 @@ class Run:
     def _path(self, name: str) -> Path:
         path = plain_file(self.folder, name)
         if path is None:
-            raise RunError("unreadable-run", f"'{name}' of run {self.id} is no ordinary file")
+            raise unreadable(f"'{name}' of run {self.id} is no ordinary file")
         return path
 
 
@@ -178,7 +191,7 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     meta = json_of(folder, META)
     needed = {"names": list, "sensors": list, "step_time": float, "seed": int}
     if not isinstance(meta, dict) or not all(isinstance(meta.get(key), kind) for key, kind in needed.items()):
-        raise RunError("unreadable-run", f"run.json of run {folder.name} has been changed")
+        raise unreadable(f"run.json of run {folder.name} has been changed")
     return Run(folder, meta)
 
 

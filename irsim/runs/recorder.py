@@ -206,6 +206,8 @@ class Recorder:
         names, step_time = self._simulation.names, self._meta["step_time"]
         told = [_told(event, names, step_time) for event in events]
         log, number = self._log, f"{self._pieces:04d}"
+        if log.rows or events:
+            self._pieces += 1
         if log.rows:
             movers, pose = self._movers, self._simulation.pose
             self._write(f"trace-{number}.npz", *chunk_of(log, movers, pose, told))
@@ -220,7 +222,6 @@ class Recorder:
                 self._write_meta(trace_until=last)
         elif events:
             self._write(f"events-{number}.json", to_json(told))
-        self._pieces += 1
         self._due = time.monotonic() + _PERIOD
         if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
             self._pruned_at = self._bytes

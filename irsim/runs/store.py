@@ -42,6 +42,7 @@ __all__ = [
     "runs_folder",
     "status_of",
     "tidy",
+    "unreadable",
     "used",
     "written",
 ]
@@ -89,6 +90,11 @@ class RunError(IrsimError, ValueError):
     def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
         self.code, self.message, self.fix, self.where = code, message, fix, where
         super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
+
+
+def unreadable(what: str) -> RunError:
+    """The error for files of a run that are not as they were written."""
+    return RunError("unreadable-run", what, "run it again: the same scenario and seed give the same run")
 
 
 # folders --------------------------------------------------------------------------------------------------------------
@@ -225,12 +231,12 @@ def text_of(folder: Path, name: str) -> str | None:
         return None
     try:
         if path.stat().st_size > _MOST_TEXT:
-            raise RunError("unreadable-run", f"'{name}' of run {folder.name} is larger than irsim writes such files")
+            raise unreadable(f"'{name}' of run {folder.name} is larger than irsim writes such files")
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
         return None
     except UnicodeDecodeError:
-        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is not text") from None
+        raise unreadable(f"'{name}' of run {folder.name} is not text") from None
 
 
 def json_of(folder: Path, name: str) -> Any:
@@ -245,7 +251,7 @@ def json_of(folder: Path, name: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        raise RunError("unreadable-run", f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
+        raise unreadable(f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
 
 
 # writing --------------------------------------------------------------------------------------------------------------
@@ -407,10 +413,9 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
         Ids of what was let go.
     """
     _sweep(runs)
-    total, gone, now = 0, list[str](), time.time()
-    for folder in _sorted_folders(runs, (META,)):
-        size, leftovers = _size_of(folder)
-        total += size
+    sizes = {folder: _size_of(folder) for folder in reversed(_sorted_folders(runs, (META,)))}  # the latest used last
+    total, gone, now = sum(size for size, _ in sizes.values()), list[str](), time.time()
+    for folder, (size, leftovers) in sizes.items():
         if keep is not None and folder.name == keep.name:
             continue
         try:

@@ -9,6 +9,8 @@ from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 
 from irsim.runs.store import ARTIFACTS
+from irsim.text import clean
+from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 
 __all__ = ["RUN", "add_run_resources", "media_type", "uri"]
@@ -40,11 +42,11 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
     async def run_artifact(
         run_id: str,
         artifact: str,
-        from_step: int = 0,
-        to_step: int | None = None,
-        every: int = 1,
+        from_step: str = "0",
+        to_step: str | None = None,
+        every: str = "1",
         robot: str | None = None,
-        offset: int = 0,
+        offset: str = "0",
     ) -> str:
         try:
             found = await services.run_job(
@@ -52,11 +54,11 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
                 run_id,
                 seconds=services.limits.check_seconds,
                 name=artifact,
-                from_step=max(0, from_step),
-                to_step=to_step,
-                every=max(1, every),
+                from_step=_number("from_step", from_step),
+                to_step=None if to_step is None else _number("to_step", to_step),
+                every=_number("every", every, least=1),
                 robot=robot,
-                offset=max(0, offset),
+                offset=_number("offset", offset),
                 most=_MOST_BYTES,
             )
         except ToolError as error:
@@ -71,3 +73,15 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
     server.resource(RUN, name="run", title="Recorded run", description=description, mime_type="text/plain")(
         run_artifact
     )
+
+
+def _number(name: str, text: str, *, least: int = 0) -> int:
+    """A number of an address.
+
+    Raises:
+        ToolError: It is none, or less than ``least``.
+    """
+    if not re.fullmatch("[0-9]{1,15}", text) or int(text) < least:
+        fix = f"give a whole number from {least} on"
+        raise failure("bad-argument", f"{name} is {clean(text, 40)!r}", where=name, fix=fix)
+    return int(text)

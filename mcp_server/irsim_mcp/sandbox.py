@@ -50,9 +50,10 @@ class Workspace:
         if target.is_file():
             return target.relative_to(self.root).as_posix()
         if target.is_dir():
-            raise failure("not-a-file", f"{clean(name)!r} is a folder", where=argument, fix=self._advice(target))
+            what = f"{clean(name)!r} is a folder" if name else "it is empty"
+            raise failure("not-a-file", what, where=argument, fix=self._advice(target, argument))
         what = f"there is no file {clean(name)!r} in the workspace {self.root}"
-        raise failure("file-not-found", what, where=argument, fix=self._advice(target))
+        raise failure("file-not-found", what, where=argument, fix=self._advice(target, argument))
 
     def new_file(self, name: str) -> str:
         """The path of a scenario file that may be written, relative to the workspace.
@@ -111,14 +112,15 @@ class Workspace:
             return None
         return found.relative_to(self.root).as_posix() if inside else None
 
-    def _advice(self, target: Path) -> str:
+    def _advice(self, target: Path, argument: str) -> str:
         """Scenario files that may be meant."""
         there = self.scenarios()
         near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _NAMED, 0.5)
         if near:
             return f"did you mean {' or '.join(map(repr, map(clean, near)))}?"
         some = ", ".join(repr(clean(name)) for name in there[:_NAMED])
-        return f"the workspace has {some}" if some else "write the file first, or pass the text as scenario_yaml"
+        text = "pass the text as scenario_yaml" if argument == "scenario_path" else "give its text"
+        return f"the workspace has {some}" if some else f"write the file first, or {text}"
 
     def scenarios(self) -> list[str]:
         """YAML files of the workspace and of its folders."""

@@ -138,7 +138,7 @@ class Services:
         Raises:
             ToolError: The path is refused, or the text is too long.
         """
-        if not base:
+        if base is None:
             return {}
         if "\n" in base or base.lstrip().startswith("{") or ": " in base:
             return {"base_text": self._text(base, "base")}

@@ -270,6 +270,11 @@ def test_the_command_line(crash: Path) -> None:
     assert "recorded: irsim inspect crash-" in call("run", str(crash), "--seed", "3", "--record")
     run = open_run("last")
     assert run.id in call("inspect")
+    result = run.folder / "result.json"
+    kept = result.read_text()
+    result.write_text('{"a": 1}')
+    assert "unreadable" in call("inspect")
+    result.write_text(kept)
     for view in VIEWS:
         shown = json.loads(call("inspect", run.id, "--view", view, "--json"))
         assert shown == json.loads(inspect_run(run, view=view).model_dump_json())

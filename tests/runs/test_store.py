@@ -236,6 +236,22 @@ def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any
         read_all(run_id)
 
 
+def test_a_run_with_a_piece_missing_is_refused(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as small:
+        small.setattr("irsim.runs.recorder._PIECE", 1)
+        small.setattr("irsim.episode._CHUNK_STEPS", 7)
+        run_id = str(irsim.run(room, seed=4, record=True).run_id)
+    read_all(run_id)
+    folder = runs_folder() / run_id
+    (folder / "trace-0002.npz").rename(folder / "kept")
+    with pytest.raises(RunError, match=r"unreadable-run: piece 0002 .*Fix: run it again"):
+        read_all(run_id)
+    (folder / "trace-0003.npz").rename(folder / "trace-0002.npz")
+    (folder / "kept").rename(folder / "trace-0003.npz")
+    with pytest.raises(RunError, match="do not follow each other"):
+        read_all(run_id)
+
+
 @pytest.mark.parametrize("pieces", [True, False])
 def test_files_are_whole_however_little_the_system_takes_at_once(
     workspace: Path, pieces: bool, monkeypatch: pytest.MonkeyPatch
@@ -249,6 +265,13 @@ def test_files_are_whole_however_little_the_system_takes_at_once(
     written(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
     assert (workspace / "file").read_bytes() == b"one, two and three"
     assert [path.name for path in workspace.iterdir()] == ["file"]
+
+
+def test_a_large_run_just_used_stays_and_older_ones_go(workspace: Path) -> None:
+    old, older = made(workspace, "old", 1000, age=200), made(workspace, "older", 1000, age=300)
+    large = made(workspace, "large", 5000, age=10)
+    assert sorted(prune(runs_folder(workspace), quota=5500)) == sorted([old.name, older.name])
+    assert large.is_dir()
 
 
 def endless(workspace: Path) -> subprocess.Popen[bytes]:

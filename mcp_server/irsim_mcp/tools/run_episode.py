@@ -21,7 +21,7 @@ __all__ = ["Episode", "tool"]
 
 _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up, and say how it ended. Outcome is
-    success (every robot reached its goal without a collision), collision, or timeout; none of them is an error. The
+    success (every robot reached its goal, no collision before), collision, or timeout; none of them is an error. The
     reason says who hit what, where and when, and who was how far from its goal, doing what. Also returns robots
     (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
     use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment with
