@@ -13,6 +13,7 @@ from irsim.diagnostics import Path, format_path
 from irsim.env import Env
 from irsim.errors import PlacementError
 from irsim.results import CommentChange, KeyChange, ScenarioDiff, WorldChange
+from irsim.scenario.comments import comments
 from irsim.scenario.load import Document
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.read import Reading
@@ -60,12 +61,12 @@ def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
             why = error.diagnostics[0].message
     lines = _lines(a.document.text, b.document.text)
     lost, edited = _comments_gone(a.document.text, b.document.text)
-    comments = bool(_comments(a.document.text or ""))
+    there = bool(comments(a.document.text or ""))
     return ScenarioDiff(
         before=a.document.name or "(text)",
         after=b.document.name or "(text)",
         same=not keys and not worlds,
-        summary=_summary(keys, worlds, why, _comments_told(comments, lost, edited)),
+        summary=_summary(keys, worlds, why, _comments_told(there, lost, edited)),
         keys=keys,
         world=worlds,
         comments_lost=lost,
@@ -384,9 +385,9 @@ def _comments_gone(a: str | None, b: str | None) -> tuple[list[str], list[Commen
     """Comments that are gone, and those that say something else now."""
     if a is None or b is None:
         return [], []
-    left = _comments(b)
+    left = comments(b)
     gone = []
-    for comment in _comments(a):
+    for comment in comments(a):
         if comment in left:
             left.remove(comment)
         else:
@@ -414,12 +415,6 @@ def _comments_told(there: bool, lost: Sequence[str], edited: Sequence[CommentCha
     if there and not lost:
         told.insert(0, "no comment lost")
     return ", ".join(told)
-
-
-def _comments(text: str) -> list[str]:
-    """Comments of a YAML text; a ``#`` inside quotes is none."""
-    bare = re.sub(r"\"[^\"\n]*\"|'[^'\n]*'", lambda quoted: " " * len(quoted[0]), text)
-    return [text[m.start() : m.end()].strip() for m in re.finditer(r"(?:(?<=\s)|^)#.*", bare, re.MULTILINE)]
 
 
 def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why: str, comments: str) -> str:

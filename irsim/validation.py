@@ -71,7 +71,8 @@ def fix(
         limits: Tighter or wider limits of the loader.
 
     Returns:
-        The repaired text, comments and layout as they were, and the report on it: ``fixes`` has what was done.
+        The repaired text, comments and layout as they were, and the report on it: ``fixes`` has what was done. A repair
+        that would lose comments is left to you; the finding's ``fix`` says so.
 
     Raises:
         ScenarioNotFoundError: No such file.

@@ -71,10 +71,11 @@ def _checked(
     from irsim import api
 
     path = None if file == "-" else file
-    fixes = []
+    fixes, told = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)
         fixes = report.fixes
+        told = {(item.code, item.path): item.fix for item in report.findings}  # with the reason why one was left
         if fixes and path is None:
             text = mended
         elif fixes:
@@ -84,6 +85,8 @@ def _checked(
             write_atomically(Path(locate(file)), mended)
     report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, limits=limits)
     report.fixes = fixes
+    for item in report.findings:
+        item.fix = told.get((item.code, item.path), item.fix)
     return report, text
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from irsim.diagnostics import Diagnostic, Edit
+from irsim.scenario.comments import keeps_comments
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import load_text
 from irsim.scenario.read import Reading, read
@@ -15,6 +16,7 @@ __all__ = ["Mended", "Repair", "mend"]
 
 _ROUNDS = 8
 """Times that the text is read again after a round of repairs: some findings show once others are gone."""
+_BY_HAND = "by hand: --fix leaves it, as the comments there would be lost"
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class Mended:
     Attributes:
         text: The repaired text; the given one if nothing could be done.
         repairs: What was done, in order.
-        reading: The repaired text, read.
+        reading: The repaired text, read; a finding that is left since its repair would lose comments says so.
     """
 
     text: str
@@ -55,7 +57,7 @@ def mend(
 ) -> Mended:
     """Repair what can be repaired without guessing; hints are left alone.
 
-    A repair is kept only if it takes its finding away and brings no new error.
+    A repair is kept only if it takes its finding away, brings no new error, and every comment stays.
 
     Args:
         text: The scenario.
@@ -74,16 +76,29 @@ def mend(
         repairs += done
         if not done:
             break
-    return Mended(text, repairs, reading)
+    told = [_told(text, item, limits) for item in reading.diagnostics]
+    return Mended(text, repairs, replace(reading, diagnostics=told))
+
+
+def _told(text: str, item: Diagnostic, limits: Limits) -> Diagnostic:
+    """A finding that is left, with the reason where it is that comments would be lost."""
+    if not _is_wanted(item) or item.edit is None:
+        return item
+    changed = rewritten(text, item.edit, limits)
+    if changed is None or keeps_comments(text, changed):
+        return item
+    return replace(item, fix=f"{item.fix or _in_words(item.edit)} ({_BY_HAND})")
+
+
+def _is_wanted(item: Diagnostic) -> bool:
+    return item.edit is not None and item.edit.safe and item.severity != "hint"
 
 
 def _round(
     text: str, reading: Reading, again: Callable[[str], Reading], limits: Limits
 ) -> tuple[str, Reading, list[Repair]]:
     """Every repair that can be made at once; one by one only if together they do harm."""
-    wanted = [
-        item for item in reading.diagnostics if item.edit is not None and item.edit.safe and item.severity != "hint"
-    ]
+    wanted = [item for item in reading.diagnostics if _is_wanted(item)]
     together, done = text, list[Repair]()
     for item in wanted:
         changed = _apply(together, item, limits)
@@ -104,7 +119,7 @@ def _round(
 def _apply(text: str, item: Diagnostic, limits: Limits) -> str | None:
     assert item.edit is not None
     changed = rewritten(text, item.edit, limits)
-    return None if changed == text else changed
+    return None if changed is None or changed == text or not keeps_comments(text, changed) else changed
 
 
 def _better(before: Reading, after: Reading, done: list[Repair]) -> bool:

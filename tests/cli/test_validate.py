@@ -72,6 +72,18 @@ def test_fix_mends_the_file_in_place(irsim: Run, room: Path) -> None:
     assert "fixed" not in irsim("validate", "room.yaml", "--fix").stdout
 
 
+def test_fix_says_which_repair_would_lose_comments(irsim: Run, room: Path) -> None:
+    goal = next(line for line in ROOM.splitlines() if "goal:" in line)
+    text = ROOM.replace(goal, "    goal:\n      x: 9  # by the door\n      y: 5")
+    room.write_text(text, encoding="utf-8")
+    result = irsim("validate", "room.yaml", "--fix", "--json")
+    assert result.exit_code == 2
+    assert room.read_text(encoding="utf-8") == text
+    assert [finding["fix"] for finding in parsed(result)["findings"] if finding["severity"] == "error"] == [
+        "write [9, 5] (by hand: --fix leaves it, as the comments there would be lost)"
+    ]
+
+
 def test_fix_leaves_a_file_alone_that_it_cannot_mend(irsim: Run, room: Path) -> None:
     text = ROOM.replace("dash", "no-such-thing")
     room.write_text(text, encoding="utf-8")

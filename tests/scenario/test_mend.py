@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from irsim.scenario.comments import comments
 from irsim.scenario.mend import mend
 
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.yaml"))
@@ -143,3 +144,63 @@ def test_lines_below_a_renamed_key_are_their_own() -> None:
         ("wrong-type", 4),
         ("unknown-color", 5),
     }
+
+
+COMMENTED = """\
+world: {width: 10, height: 10}
+robot:
+  - kinematics: {nme: diff}
+    state:
+      x: 1  # east
+      y: 5  # it's # the middle
+      theta: 0
+    goal: {x: 9, y: 5}  # there
+    behavior: {name: dash}
+    sensors:
+      name: lidar2d  # in front
+      range_max: 5
+obstacle:
+  - shape:
+      name: polygon
+      vertices:
+        - [4, 6]  # a
+        - [6, 8]  # b
+        - [6, 6]
+        - [4, 8]
+    state: [0, 0, 0]
+"""
+
+
+def test_a_repair_that_would_lose_comments_is_left_to_the_author() -> None:
+    mended = mend(COMMENTED)
+    assert mended.text == COMMENTED.replace("nme", "name").replace("{x: 9, y: 5}", "[9, 5]")
+    left = {item.path: item.fix or "" for item in mended.reading.errors}
+    assert list(left) == [("robot", 0, "state"), ("robot", 0, "sensors"), ("obstacle", 0, "shape", "vertices")]
+    assert all(fix.endswith("(by hand: --fix leaves it, as the comments there would be lost)") for fix in left.values())
+    assert left["robot", 0, "state"].startswith("write [1, 5, 0]")
+    bare = mend("\n".join(line.partition("  #")[0] for line in COMMENTED.splitlines()) + "\n")
+    assert not bare.reading.errors
+
+
+def test_goals_of_several_objects_do_not_become_the_way_of_each() -> None:
+    text = (
+        "world: {width: 10, height: 10}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, "
+        "behavior: {name: dash}, number: 2, state: [[1, 5, 0], [1, 7, 0]], goal: [[9, 5], [9, 7], [9, 8]]}\n"
+    )
+    mended = mend(text)
+    assert mended.text == text
+    (item,) = [item for item in mended.reading.diagnostics if item.code == "goal-levels"]
+    assert item.fix is not None
+    assert item.fix.startswith("goal: [[9, 5], [9, 7]], or number: 3")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("a: 1  # b\n# c\n#d\ne: 'f # g'  # h", ["# b", "# c", "#d", "# h"]),
+        ("a: it's  # don't\nb: [\"#\", 'it''s #']  # \"c\"", ["# don't", '# "c"']),
+        ("a: x#y\n", []),
+    ],
+)
+def test_comments_of_a_text(text: str, found: list[str]) -> None:
+    assert comments(text) == found

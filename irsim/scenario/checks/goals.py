@@ -138,11 +138,22 @@ def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
     state: Any = entry.state
     if isinstance(state, list) and not is_vector(state) and len(state) == len(goal):
         return  # two lists that belong together, of which 'number' takes the first few
-    kept = "only the first is used" if entry.number == 1 else f"only the first {entry.number} are used"
+    if entry.number > 1:  # as waypoints all of them would drive the same way
+        yield warning(
+            "goal-levels",
+            (*path, "goal"),
+            f"{len(goal)} goals, one per object, but the entry makes {entry.number}: only the first {entry.number} are "
+            "used",
+            given=goal,
+            fix=f"goal: {flow(goal[: entry.number])}, or number: {len(goal)}; for a way of several goals write one "
+            "entry per object, each with its 'waypoints'",
+            edit=Edit("replace", (*path, "goal"), goal[: entry.number], safe=False),
+        )
+        return
     yield warning(
         "goal-levels",
         (*path, "goal"),
-        f"a list of {len(goal)} goals is one goal per object: {kept}",
+        f"a list of {len(goal)} goals is one goal per object: only the first is used",
         given=goal,
         fix="write 'waypoints:' instead of 'goal:' to visit them one after the other",
         edit=Edit("rename", (*path, "goal"), "waypoints"),
