@@ -9,7 +9,8 @@ from __future__ import annotations
 import itertools
 import math
 import shlex
-from collections.abc import Iterable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -30,6 +31,8 @@ __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark"]
 
 DEFAULT_SEEDS = 10
 _NAMED = 3
+_BETWEEN, _SELDOM = 1.0, 20.0
+"""Seconds between partial results, and how much of the time they may take: one part in so many."""
 _TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
 
 
@@ -45,6 +48,7 @@ def benchmark(
     limits: Limits | None = None,
     most_episodes: int | None = None,
     progress: Progress | None = None,
+    partial: Callable[[BenchmarkResult], object] | None = None,
 ) -> BenchmarkResult:
     """Run every scenario under every behavior with every seed, and compare.
 
@@ -62,6 +66,8 @@ def benchmark(
         limits: Limits of reading and of each run.
         most_episodes: Refuse to run more.
         progress: Told (episodes done, episodes).
+        partial: Given the result of the episodes that are done, every few seconds, for whoever wants to keep something
+            of a benchmark that is stopped.
 
     Raises:
         ScenarioError: A scenario can't be used, or not with that behavior; ScenarioNotFoundError: there is none.
@@ -108,32 +114,51 @@ def benchmark(
         for name, behavior, job, every in jobs
         for seed in (every if chances[name] else every[:1])
     ]
-    found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress)
-    episodes = [
-        EpisodeRow(
-            scenario=name,
-            behavior=behavior,
-            seed=task.seed,
-            metrics={key: None if math.isnan(value) else value for key, value in result["metrics"].items()},
-            **{key: result[key] for key in _TAKEN},
-        )
-        for (name, behavior, task), result in zip(plan, found, strict=True)
-    ]
-    from irsim import __version__
 
-    return BenchmarkResult(
-        scenarios=names,
-        behaviors=wanted,
-        seeds=chosen,
-        step_time=periods,
-        random=chances,
-        rows=rows_of(episodes, names, wanted, chances),
-        episodes=episodes,
-        notes=_notes(episodes, chances, chosen),
-        warnings=warnings,
-        version=__version__,
-        reproduce=_command(names, wanted, chosen, steps, strict, imports),
-    )
+    def result_of(found: Mapping[int, dict[str, Any]]) -> BenchmarkResult:
+        from irsim import __version__
+
+        episodes = [
+            EpisodeRow(
+                scenario=name,
+                behavior=behavior,
+                seed=task.seed,
+                metrics={key: None if math.isnan(value) else value for key, value in result["metrics"].items()},
+                **{key: result[key] for key in _TAKEN},
+            )
+            for (name, behavior, task), result in ((plan[number], found[number]) for number in sorted(found))
+        ]
+        return BenchmarkResult(
+            scenarios=names,
+            behaviors=wanted,
+            seeds=chosen,
+            step_time=periods,
+            random=chances,
+            rows=rows_of(episodes, names, wanted, chances),
+            episodes=episodes,
+            notes=_notes(episodes, chances, chosen),
+            warnings=warnings,
+            version=__version__,
+            reproduce=_command(names, wanted, chosen, steps, strict, imports),
+        )
+
+    look = None if partial is None else _now_and_then(lambda found: partial(result_of(found)))
+    found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress, look=look)
+    return result_of(dict(enumerate(found)))
+
+
+def _now_and_then(tell: Callable[[Mapping[int, Any]], object]) -> Callable[[Mapping[int, Any]], None]:
+    """Tell of results every few seconds where there are new ones, and so seldom that it takes little of the time."""
+    due, last = 0.0, 0
+
+    def look(found: Mapping[int, Any]) -> None:
+        nonlocal due, last
+        if len(found) > last and (begin := time.monotonic()) >= due:
+            last = len(found)
+            tell({**found})
+            due = time.monotonic() + max(_BETWEEN, _SELDOM * (time.monotonic() - begin))
+
+    return look
 
 
 def _names(given: list[str]) -> list[str]:

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -29,7 +29,11 @@ def cores() -> int:
 
 
 def run_tasks(
-    tasks: Sequence[Task], *, workers: int, progress: Callable[[int, int], None] | None = None
+    tasks: Sequence[Task],
+    *,
+    workers: int,
+    progress: Callable[[int, int], None] | None = None,
+    look: Callable[[Mapping[int, dict[str, Any]]], None] | None = None,
 ) -> list[dict[str, Any]]:
     """Run episodes, here and, if it takes longer than a moment, in further processes.
 
@@ -39,6 +43,7 @@ def run_tasks(
         tasks: In the order of the results.
         workers: Processes at most, this one included.
         progress: Told (episodes done, episodes) in this thread.
+        look: Shown the results that there are, by the number of their task, now and then, in this thread.
 
     Raises:
         IrsimError: What an episode raised; the first in the order of the tasks.
@@ -65,6 +70,8 @@ def run_tasks(
                 helpers = [_Helper(shared) for _ in range(min(workers - 1, shared.left()))]
             if progress is not None:
                 progress(shared.done(), len(tasks))
+            if look is not None:
+                look(shared.results)
     finally:
         for helper in helpers:
             helper.end()

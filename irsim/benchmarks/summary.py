@@ -43,10 +43,10 @@ def rows_of(
     behaviors: Sequence[str],
     random: Mapping[str, Sequence[str]],
 ) -> list[BenchmarkRow]:
-    """Rows by scenario, then behavior; then of all scenarios together, if they weigh the same.
+    """Rows by scenario, then behavior, of which there are episodes; then of all together, if they weigh the same.
 
     Args:
-        episodes: All of them.
+        episodes: Those that are done.
         scenarios: Their scenarios, in order.
         behaviors: Their behaviors, in order.
         random: What the seed decides in each scenario.
@@ -62,6 +62,8 @@ def rows_of(
         certain = name != ALL and not random[name]
         for behavior in behaviors:
             mine = [episode for episode in chosen if episode.behavior == behavior]
+            if not mine:  # none is done yet
+                continue
             rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
     return rows
 
@@ -74,7 +76,7 @@ def _row(
         outcome: proportion(outcomes.count(outcome), len(outcomes), certain=certain)
         for outcome in ("success", "collision", "timeout")
     }
-    pairs = [(episode, first[_pair(episode)]) for episode in episodes] if first else []
+    pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
     return BenchmarkRow(
         scenario=name,
         behavior=behavior,

@@ -29,12 +29,11 @@ def check_finished(state: Mapping[str, Any]) -> None:
         raise failure("bad-argument", what, where="run_id", fix=fix)
 
 
-def episodes_table(job_id: str, result: Mapping[str, Any], limit: int, cursor: str | None) -> dict[str, Any]:
+def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> dict[str, Any]:
     """The episodes, those without success first, in the form of the tables of runs.
 
     Args:
-        job_id: Which benchmark.
-        result: Its result.
+        state: What is known of a benchmark that has a result.
         limit: Rows at most.
         cursor: ``next_cursor`` of the page before.
 
@@ -43,6 +42,7 @@ def episodes_table(job_id: str, result: Mapping[str, Any], limit: int, cursor: s
     """
     from irsim.labels import labels_of
 
+    result = state["result"]
     episodes = sorted(result["episodes"], key=lambda episode: episode["outcome"] == "success")
     start = _start(cursor, len(episodes))
     labels = labels_of(result["behaviors"])
@@ -50,8 +50,8 @@ def episodes_table(job_id: str, result: Mapping[str, Any], limit: int, cursor: s
     lost = [episode for episode in episodes if episode["outcome"] != "success"]
     shown = start + len(rows)
     return {
-        "run_id": job_id,
-        "status": "finished",
+        "run_id": state["id"],
+        "status": state["status"],
         "outcome": None,
         "view": "episodes",
         "summary": f"{len(episodes)} episodes, those without success first: {len(lost)}",

@@ -207,8 +207,14 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
 
 def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
+    from irsim.results import BenchmarkResult
+    from irsim.runs.store import RunError, written
 
-    result = benchmark(**job["arguments"], strict=True, limits=_limits(job), progress=progress)
+    def keep(result: BenchmarkResult) -> None:
+        with suppress(RunError):  # the folder may have been removed by somebody
+            written(job["partial"], result.model_dump_json().encode())
+
+    result = benchmark(**job["arguments"], strict=True, limits=_limits(job), progress=progress, partial=keep)
     return result.model_dump_json()
 
 

@@ -54,6 +54,8 @@ _KEPT = "jobs"
 _STEM = "benchmark"
 _CANCEL = "cancel"
 _QUOTA = 200 * 1000 * 1000
+PARTIAL = "partial.json"
+"""The result of the episodes that were done a moment ago, for when the job is stopped."""
 _PERIOD = 0.5
 """Seconds between looks at what others want and notes of how far it is."""
 _POLL = 0.1
@@ -101,6 +103,7 @@ class Jobs:
             "task": task,
             "arguments": dict(arguments),
             "workspace": str(self._workspace.root),
+            "partial": str(job / PARTIAL),
             "limits": asdict(scenario_limits(self._limits, self._workspace.root)),
             "resources": {
                 "memory": self._limits.memory,
@@ -121,7 +124,7 @@ class Jobs:
 
         Returns:
             ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
-            or ``error`` where there is one.
+            (of a job that was stopped: of the episodes that were kept) or ``error`` where there is one.
 
         Raises:
             ToolError: There is no such job.
@@ -194,6 +197,8 @@ def _state(job: Path) -> dict[str, Any]:
         if isinstance(answer, dict) and "error" in answer:
             return state | {"status": "failed", "error": answer["error"]}
         return state | {"result": answer, "done": state["total"]}
+    if status != "running" and isinstance(partial := json_of(job, PARTIAL), dict):
+        return state | {"result": partial, "done": len(partial["episodes"])}
     return state
 
 

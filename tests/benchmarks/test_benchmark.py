@@ -65,6 +65,20 @@ def test_results_do_not_depend_on_the_number_of_processes(files, monkeypatch) ->
     assert told[-1][1] == 14
 
 
+def test_partial_results_are_of_the_episodes_that_are_done(files, monkeypatch) -> None:
+    monkeypatch.setattr("irsim.benchmarks._BETWEEN", 0.0)
+    monkeypatch.setattr("irsim.benchmarks._SELDOM", 0.0)
+    parts = []
+    whole = irsim.benchmark(files, ["dash", "rvo"], 2, workers=1, partial=parts.append)
+    assert [len(part.episodes) for part in parts] == [1, 2, 3, 4, 5, 6]
+    for part in parts:
+        assert part.episodes == whole.episodes[: len(part.episodes)]
+        assert sum(row.episodes for row in part.rows if row.scenario != "(all)") == len(part.episodes)
+        assert (part.seeds, part.reproduce) == (whole.seeds, whole.reproduce)
+    assert parts[-1] == whole
+    assert parts[2].rows[1].paired["path_length"].n == 1  # of the second behavior one seed is done
+
+
 def test_behaviors_meet_the_same_scenes_and_are_compared_pair_by_pair(files) -> None:
     found = irsim.benchmark(files[0], ["dash", "{name: rvo, neighbor_threshold: 2}"], 5)
     dash, rvo = found.rows

@@ -128,6 +128,26 @@ async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> Non
         await gone(os.getpid())
 
 
+async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 0}
+        job = data_of(await client.call_tool("benchmark", asked))["job_id"]
+        with anyio.fail_after(30):
+            while not (workspace / ".irsim" / "jobs" / job / "partial.json").exists():
+                await anyio.sleep(0.1)
+        result = await client.call_tool("get_job", {"job_id": job, "cancel": True})
+        ended = data_of(result)
+        assert ended["status"] == "cancelled"
+        assert 0 < ended["done"] < ended["total"] == 6
+        assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+        assert ended["rows"][0]["success"][0] == 1
+        assert f"the {ended['done']} episodes that were done; call benchmark again for all" in ended["next"]
+        assert text_of(result).startswith(f"cancelled: {ended['done']} episodes, ")
+        table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
+        assert (table["status"], table["total"]) == ("cancelled", ended["done"])
+        assert (workspace / ended["artifact"]).is_file()
+
+
 async def test_two_jobs_at_a_time(workspace: Path) -> None:
     async with connected(workspace) as client:
         jobs = [

@@ -11,9 +11,11 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.labels import labels_of, seeds_of
+from irsim.runs.store import RESULT
 from irsim.text import clean
 from irsim_mcp.episodes import again
 from irsim_mcp.errors import failure
+from irsim_mcp.jobs import PARTIAL
 from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services, line_of
@@ -130,19 +132,21 @@ def answer(state: dict[str, Any]) -> CallToolResult:
     )
     if state["status"] == "running":
         found.next = f"get_job job_id={state['id']}"
-    elif state["status"] != "finished":
+    elif "result" not in state:
         found.next = "Nothing of it is kept; call benchmark again."
     else:
-        _fill(found, state["result"])
+        _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL)
+        found.done, found.total = state["done"], state["total"]
+        if state["status"] != "finished":
+            found.next = f"This is of the {found.done} episodes that were done; call benchmark again for all."
     text = TextContent(type="text", text=_text(found))
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
 
 
-def _fill(found: Benchmark, result: dict[str, Any]) -> None:
+def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
     extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
     labels = labels_of(result["behaviors"])
     found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_ROWS]]
-    found.done = found.total = len(result["episodes"])
     found.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
     if len(result["rows"]) > _ROWS:
@@ -150,7 +154,7 @@ def _fill(found: Benchmark, result: dict[str, Any]) -> None:
     for name, warnings in result["warnings"].items():
         notes += [f"{name}: {w['code']} at {w['path']}: {w['message']}" for w in warnings if w["severity"] == "warning"]
     found.notes = [clean(note, 300) for note in notes[:_NOTES]]
-    found.artifact = f".irsim/jobs/{found.job_id}/result.json"
+    found.artifact = f".irsim/jobs/{found.job_id}/{file}"
     found.reproduce = clean(result["reproduce"], 1000)
     lost = [e for e in result["episodes"] if e["outcome"] != "success"]
     if not lost:

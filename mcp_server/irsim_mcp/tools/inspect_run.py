@@ -104,7 +104,7 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
         fix = "leave it out; run_episode with the seed of an episode gives a run to look into"
         raise failure("bad-argument", what, where=other[0], fix=fix)
     check_finished(job)
-    return episodes_table(job["id"], job["result"], limit, cursor)
+    return episodes_table(job, limit, cursor)
 
 
 def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, Any]:
