@@ -28,13 +28,27 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             continue
         goals = scene.goals[mover.record.id]
         for index, goal in enumerate(goals):
+            if _behind_walls(context, scene, mover, goal):
+                found.add((mover.record.id, index))
+                x0, y0, x1, y1 = scene.bounds
+                tally.add(
+                    "goal-unreachable",
+                    mover.goal_path(index),
+                    mover.record,
+                    f"'{mover.record.name}' cannot get to {_what(goals, index)} ({goal[0]:g}, {goal[1]:g}): it lies "
+                    "outside of the walls round the world",
+                    f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, a larger world, or no 'boundary: walls'",
+                    scene.seed,
+                    serious=mover.record.role == "robot",
+                )
+                break
             key = (goal[0], goal[1], mover.radius, mover.reach)
             if key not in known:
                 known[key] = has_room(scene, mover, (goal[0], goal[1]))
             if known[key]:
                 continue
             found.add((mover.record.id, index))
-            what = f"waypoint {index + 1}" if len(goals) > 1 else "the goal"
+            what = _what(goals, index)
             place = free_place(room_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
             fix = f"a goal with {mover.around:.3g} m of free space around it{instead}"
@@ -45,7 +59,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 )
             tally.add(
                 "goal-blocked",
-                mover.path,
+                mover.goal_path(index),
                 mover.record,
                 f"'{mover.record.name}' has no room at {what} ({goal[0]:g}, {goal[1]:g}): "
                 + _why(context, scene, mover, goal),
@@ -55,6 +69,22 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             )
             break
     return found
+
+
+def _what(goals: list[list[float]], index: int) -> str:
+    return f"waypoint {index + 1}" if len(goals) > 1 else "the goal"
+
+
+def _behind_walls(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> bool:
+    """Whether a goal is outside of walls that the robot is inside of, farther than it has to get near."""
+    if context.scenario.world.boundary != "walls":
+        return False
+    x0, y0, x1, y1 = scene.bounds
+    x, y = _start(scene, mover)
+    r = mover.radius
+    off = math.hypot(max(x0 + r - goal[0], 0.0, goal[0] - x1 + r), max(y0 + r - goal[1], 0.0, goal[1] - y1 + r))
+    outside = not (x0 <= goal[0] <= x1 and y0 <= goal[1] <= y1)
+    return outside and x0 <= x <= x1 and y0 <= y <= y1 and off >= mover.reach
 
 
 def has_room(scene: Scene, mover: Mover, goal: Point) -> bool:

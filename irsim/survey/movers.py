@@ -30,6 +30,7 @@ class Mover:
         around: Radius of the circle about that middle that holds its body [m].
         speed: Highest [m/s].
         path: Where its goals are written.
+        several: Whether a list of goals is written there.
     """
 
     record: ObjectRecord
@@ -39,6 +40,11 @@ class Mover:
     around: float
     speed: float
     path: Path
+    several: bool = False
+
+    def goal_path(self, index: int) -> Path:
+        """Where one of its goals is written."""
+        return (*self.path, index) if self.several else self.path
 
     @property
     def is_disc(self) -> bool:
@@ -82,7 +88,8 @@ def movers_of(context: Context) -> list[Mover]:
         if radius <= 0 or len(found) >= _MOST:
             continue
         around = radius if record.shape.name == "circle" else reach_of(record.shape) + math.hypot(x, y)
-        found.append(Mover(record, parts, radius, (x, y), around, top_speed(record), _goal_path(context, record)))
+        path = _goal_path(context, record)
+        found.append(Mover(record, parts, radius, (x, y), around, top_speed(record), path, context.has_goals(path)))
     return found
 
 

@@ -35,12 +35,14 @@ class Leg:
         start: Middle of its inner disc at the start [m].
         goal: Goal [m].
         blocked: Something stands on the straight line.
+        index: Of the goal.
     """
 
     mover: Mover
     start: Point
     goal: Point
     blocked: bool
+    index: int
 
 
 def check(
@@ -78,7 +80,7 @@ def check(
         for index, goal in enumerate(scene.goals[mover.record.id]):
             to = (goal[0], goal[1])
             if room is None or not (room.holds(start) and room.holds(to)):
-                made.append(Leg(mover, start, to, False))
+                made.append(Leg(mover, start, to, False, index))
                 start = to
                 continue
             queries += 1
@@ -108,8 +110,8 @@ def check(
                 _no_way(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None and mover.record.role == "robot":
-                _narrow(mover, found, scene, tally)
-            made.append(Leg(mover, start, to, _line(room, mover, start, to)))
+                _narrow(mover, index, found, scene, tally)
+            made.append(Leg(mover, start, to, _line(room, mover, start, to), index))
             start = room.clearance.climb(arrival, mover.radius)
     return legs
 
@@ -196,7 +198,7 @@ def _no_way(
             why += ". Only outside of the world, whose edge is open, it could get round"
     tally.add(
         "goal-unreachable",
-        mover.path,
+        mover.goal_path(index),
         mover.record,
         f"'{name}' cannot get to {what} ({goal[0]:g}, {goal[1]:g}): {why}",
         fix,
@@ -205,12 +207,12 @@ def _no_way(
     )
 
 
-def _narrow(mover: Mover, found: Gap, scene: Scene, tally: Tally) -> None:
+def _narrow(mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
     need, name = 2 * mover.radius, mover.record.name
     x, y = found.place
     tally.add(
         "narrow-passage",
-        mover.path,
+        mover.goal_path(index),
         mover.record,
         f"the way of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}): "
         f"{_metres(max(0.0, found.width - need) / 2)} to each side of its {_metres(need)}",

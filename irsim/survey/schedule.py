@@ -128,7 +128,7 @@ def _stands(mover: Mover, leg: Leg, trap: Trap, scene: Scene, tally: Tally) -> N
     x, y = trap.place
     tally.add(
         "needs-planning",
-        mover.path,
+        mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids what is near and plans no way: before the wall in the way '{mover.record.name}' is "
         f"likely to stop near ({x:.2f}, {y:.2f}), from where the goal ({leg.goal[0]:g}, {leg.goal[1]:g}) lies straight "
@@ -143,7 +143,7 @@ def _dashes(mover: Mover, leg: Leg, trap: Trap | None, scene: Scene, tally: Tall
     name = mover.record.name
     tally.add(
         "dash-into-obstacle",
-        mover.path,
+        mover.goal_path(leg.index),
         mover.record,
         f"'{name}' dashes straight to ({leg.goal[0]:g}, {leg.goal[1]:g}) and looks at nobody: an obstacle stands on "
         "that line",
@@ -162,7 +162,7 @@ def _detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: float, 
     name = mover.record.name
     tally.add(
         "needs-planning",
-        mover.path,
+        mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids what is near and plans no way: on the {around:.3g} m round the obstacles "
         f"(straight: {length:.3g} m) '{name}' is likely to get stuck",

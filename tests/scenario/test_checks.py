@@ -157,7 +157,7 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
         "warning", "turning-circle", ("robot", 0, "state")),
     ({"obstacle": 2 * [{"shape": {"name": "circle"}, "state": [5, 2]}]}, "hint", "stacked", ("obstacle", 1, "state")),
     (robot(goal=[20, 1]), "hint", "outside-world", ("robot", 0, "goal")),
-    (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints")),
+    (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints", 1)),
     (
         robot(behavior={"name": "dash", "wander": True, "range_low": [0, 0, 0], "range_high": [20, 5, 0]}),
         "hint", "wander-outside", ("robot", 0, "behavior", "range_low"),

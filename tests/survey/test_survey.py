@@ -190,9 +190,41 @@ def test_goals_by_the_wall_of_the_world() -> None:
     data = scenario({**robot, "waypoints": [[6, 5], [11.9, 5]]}, boundary="walls")
     item = one(data, "goal-blocked")
     assert "waypoint 2" in item.message
-    assert item.path == ("robot", 0, "waypoints")
+    assert item.path == ("robot", 0, "waypoints", 1)
     data["robot"][0]["waypoints"][1] = [11.65, 5]
     assert codes(data) == []
+
+
+def test_goals_behind_the_wall_of_the_world_are_unreachable() -> None:
+    data = scenario({**ROBOT, "goal": [14, 5]}, boundary="walls")
+    item = one(data, "goal-unreachable")
+    assert (item.severity, item.path) == ("warning", ("robot", 0, "goal"))
+    assert "outside of the walls" in item.message
+    assert "goal-unreachable" not in codes(scenario({**ROBOT, "goal": [14, 5]}))
+    assert "goal-unreachable" not in codes(scenario({**ROBOT, "goal": [14, 5], "goal_threshold": 3}, boundary="walls"))
+
+
+def test_the_waypoint_is_told_with_its_line() -> None:
+    text = """\
+world: {width: 12, height: 10}
+robot:
+  - kinematics: {name: diff}
+    shape: {name: circle, radius: 0.2}
+    state: [1, 1, 0]
+    behavior: {name: dash}
+    waypoints:
+      - [3, 1]
+      - [3, 8]
+      - [7, 7]
+obstacle:
+  - {shape: {name: circle, radius: 1}, state: [7, 7]}
+"""
+    item = one(text, "goal-blocked")
+    assert (item.path, item.line) == (("robot", 0, "waypoints", 2), 10)
+    item = one(text.replace("[3, 8]", "[11, 9.5]").replace("[7, 7]\nob", "[6, 4.5]\nob"), "dash-into-obstacle")
+    assert (item.path, item.line) == (("robot", 0, "waypoints", 2), 10)
+    outside = one(text.replace("[3, 8]", "[3, 18]").replace("[7, 7]\nob", "[3, 1]\nob"), "outside-world")
+    assert (outside.path, outside.line) == (("robot", 0, "waypoints", 1), 9)
 
 
 def test_goals_of_pedestrians_are_hinted_at() -> None:

@@ -12,6 +12,8 @@ from irsim.scenario.load import Document
 from irsim.scenario.model import Entry, Scenario
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 from irsim.scenario.spread import is_per_object, kind_of
+from irsim.scenario.where import at
+from irsim.vectors import is_vector
 
 __all__ = ["Context"]
 
@@ -64,6 +66,11 @@ class Context:
         if is_per_object(value, kind_of(key)):
             return (*record.path, key, min(record.index, len(value) - 1))
         return (*record.path, key)
+
+    def has_goals(self, path: Path) -> bool:
+        """Whether a list of goals is written at a path, not a single one."""
+        written = at(self.data, path)
+        return isinstance(written, (list, tuple)) and not is_vector(written)
 
     def given(self, record: ObjectRecord, key: str) -> bool:
         """Whether the entry of an object writes ``key`` (null does not count)."""

@@ -79,7 +79,7 @@ def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
             if not _arrives(record, a, b):
                 continue
             key = "waypoints" if context.given(record, "waypoints") else "goal"
-            where = context.entry_path(record, key) if context.given(record, key) else record.path
+            where = _goal_path(context, record, key, index) if context.given(record, key) else record.path
             gap = f"{math.dist(a[:2], b[:2]):.3g} m"
             if index == 0:
                 what = "goal" if len(record.goals) == 1 else "first goal"
@@ -119,6 +119,12 @@ def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[
             fix=f"goal_threshold: {min(0.3, diagonal / 20):.2g}; lengths are in metres",
         )
         return
+
+
+def _goal_path(context: Context, record: ObjectRecord, key: str, index: int) -> Path:
+    """Where one of the goals of an object is written, in a list of them or alone."""
+    path = context.entry_path(record, key)
+    return (*path, index) if context.has_goals(path) else path
 
 
 def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
@@ -294,13 +300,14 @@ def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
     for key, words in what:
         for record in records:
             points = [record.state] if key == "state" else [] if record.wander else record.goals
-            lost = [p for p in points if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
+            lost = [(i, p) for i, p in enumerate(points) if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
             if lost and (context.given(record, key) or key == "state" or record.behavior is not None):
                 written = "waypoints" if key == "goal" and context.given(record, "waypoints") else key
+                index, (x, y) = lost[0][0], lost[0][1][:2]
                 yield hint(
                     "outside-world",
-                    context.entry_path(record, written),
-                    f"{words} at ({lost[0][0]:g}, {lost[0][1]:g}), outside the world "
+                    _goal_path(context, record, written, index) if key == "goal" else context.entry_path(record, key),
+                    f"{words} at ({x:g}, {y:g}), outside the world "
                     f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
                     + ("" if context.given(record, written) else f" (the default {key})"),
                     fix=f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
