@@ -476,8 +476,9 @@ CODES: dict[str, Code] = {
     ),
     "heading-not-reached": Code(
         "the goal's heading is not steered for",
-        "With 'arrive_mode: state' an arrival needs position and heading. The built-in behaviors turn to the goal's "
-        "heading on 'omni_angular' only; other drives stop with the heading they came with and never arrive.",
+        "With 'arrive_mode: state' an arrival needs position and heading. Under every built-in behavior 'omni_angular' "
+        "turns to the goal's heading, once it is within 'goal_threshold' of the place; other drives stop with the "
+        "heading they came with and do not arrive.",
     ),
     "steering-limit": Code(
         "steering angle beyond a quarter turn",

@@ -17,7 +17,7 @@ from irsim.results import DryRun, EventRecord, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 from irsim.scenario.randomness import random_parts
-from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed
+from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading
 from irsim.text import seconds
 from irsim.verdict import has_one_end, others_arrived
 
@@ -151,7 +151,7 @@ def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]
         return "its vel_max is zero"
     if any(e.kind == "no_path" and e.object == record.name for e in events):
         return "there is no path to its goal"
-    return None
+    return lacks_heading(record, trace.pose[-1, index], trace.goal[-1, index])
 
 
 def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:

@@ -1,4 +1,4 @@
-"""Why something gets nowhere: a collision that holds it, what is in its way, a goal inside its turning circle."""
+"""Why something gets nowhere: a collision that holds it, what is in its way, a heading it lacks, a goal it circles."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ __all__ = [
     "in_the_way",
     "jam_told",
     "jammed",
+    "lacks_heading",
     "moves_by_itself",
 ]
 
@@ -161,6 +162,22 @@ def in_the_way(
     if near.partner in held:
         return Obstruction(f"{where} and stands since a collision at {seconds(held[near.partner].time)}", held=True)
     return Obstruction(where, held=False)
+
+
+def lacks_heading(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArray[np.float64]) -> str | None:
+    """That an object stands at its goal, but not with its heading, in words; None if that is not so.
+
+    Args:
+        record: The object.
+        pose: (3,) where it is [m, m, rad].
+        goal: (3,) where it wants to be; the heading is NaN where it does not matter.
+    """
+    if record.arrive_mode != "state" or math.isnan(goal[2]):
+        return None
+    if not math.dist(pose[:2], goal[:2]) <= record.goal_threshold:
+        return None
+    off = abs(math.remainder(float(pose[2] - goal[2]), 2 * math.pi))
+    return f"it is at its goal, but its heading is off by {off:.2f} rad (arrive_mode: state needs it too)"
 
 
 def circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | None:

@@ -17,7 +17,7 @@ from irsim.observers.events import Event, first_events, passable_names
 from irsim.observers.outcome import robot_outcomes
 from irsim.results import EventRecord, Finding, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.randomness import random_parts
-from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, moves_by_itself
+from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading, moves_by_itself
 from irsim.text import clean, seconds
 
 if TYPE_CHECKING:
@@ -398,6 +398,9 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
         if not env.scenario.goal_written(record):
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
+    row = view.row
+    if off := lacks_heading(record, env.simulation.pose[row], env.simulation.state.goal[row]):
+        return f"stands still {place}: {off}"
     return f"stands still {place}{_held_up(env, view, held)}"
 
 

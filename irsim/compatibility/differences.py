@@ -126,6 +126,13 @@ DIFFERENCES: dict[str, Difference] = {
         "before the first step, `collision_mode` and others at any time",
         "nobody should learn from wrong results that a line did nothing",
     ),
+    "D22": Difference(
+        "under `arrive_mode: state` `dash` stands at the goal with a heading error below `angle_tolerance`, or swings "
+        "about it, and does not arrive where position and heading together are off by `goal_threshold`",
+        "the same law, but where it would leave `omni_angular` standing or swinging it turns the rest; under the other "
+        "behaviors it turns there, too",
+        "a robot at its goal should arrive",
+    ),
     "format-3": Difference(
         "`obstacle: {…}` joins group 0 and is driven by its group behavior",
         "the same, with a warning; the map is in no group",
@@ -181,6 +188,7 @@ KEY_DIFFERENCES: dict[str, str] = {
     "world.obstacle_map": "D15, D16, D17",
     "entry.role": "D9",
     "entry.distribution": "D7, format-17",
+    "entry.arrive_mode": "D22",
     "entry.fov": "D18",
     "entry.fov_radius": "D18",
     "entry.group": "format-3",

@@ -8,8 +8,29 @@
 namespace irsim {
 namespace {
 
+constexpr double kResting = 1e-9;  // turns by less in a step [rad]
+
 bool idle(const World& world, const State& state, int first, int object) {
   return world.is_static[object] || state.stopped[first + object];
+}
+
+/// With `arrive_mode: state` a drive that moves any way and turns does not rest, nor rock to and fro, before it has the
+/// heading of the goal that it stands at: where a behavior leaves it so, it turns as fast as ends exactly there.
+void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
+  const Goal& goal = state.goal[row];
+  if (!world.state_arrival[object] || !std::holds_alternative<OmniAngularOptions>(world.drive[object])) return;
+  const double gap = norm(goal.position() - state.pose[row].position()), threshold = world.goal_threshold[object];
+  if (std::isnan(goal.theta) || state.arrived[row] || !(gap <= threshold)) return;
+  const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
+  const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
+  if (turn > kResting && turn <= std::fabs(error) + enough) return;
+  const double acce = world.acce[object][2];
+  double rate = std::fabs(error) / dt;
+  if (std::isfinite(acce) && acce > 0.0) {  // such that the turn can be ended in time
+    const double change = acce * dt;
+    rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * std::fabs(error)));
+  }
+  control[2] = error > 0.0 ? rate : -rate;
 }
 
 /// Let `group` decide for the objects listed in `work.objects`.
@@ -26,6 +47,7 @@ void choose(const World& world, State& state, int w, const BehaviorGroup& group,
     state.command[first + object] = intent.kind == Intent::control_body
                                         ? intent.control
                                         : control_for(world, state, w, object, intent.velocity, intent.turning);
+    face_goal(world, state, first + object, object, state.command[first + object]);
   }
 }
 
