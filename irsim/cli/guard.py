@@ -90,7 +90,9 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
     if isinstance(error, IrsimError):
         code = getattr(error, "code", None)
         text = str(error)
-        return (str(code), text.removeprefix(f"{code}: "), INVALID) if code else ("invalid-input", text, INVALID)
+        if not code:
+            return "invalid-input", text, INVALID
+        return str(code), text.removeprefix(f"{code}: "), FAILED if code == "file-access" else INVALID
     if isinstance(error, MemoryError):
         return "out-of-memory", "not enough memory for this.", FAILED
     if isinstance(error, OSError):

@@ -25,11 +25,13 @@ from irsim.runs.store import (
     META,
     RESULT,
     Buffer,
+    Claim,
     RunError,
     begun,
     claim,
     made_folder,
     prune,
+    remove,
     runs_folder,
     tidy,
     used,
@@ -91,7 +93,7 @@ class Recorder:
         else:
             assert folder is not None
             self.folder = _new(folder)
-        self._claim = claim(os.path.join(self.folder, BEGUN), _text_of(simulation).encode())
+        self._claim: Claim | None = None
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
         self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
         self._scan_rows = _MOST_SCANS // self._scan if scans else 0  # that may still come
@@ -122,10 +124,13 @@ class Recorder:
             **_versions(),
         }
         try:
+            self._claim = claim(os.path.join(self.folder, BEGUN), _text_of(simulation).encode())
             begun(os.path.join(self.folder, "resolved.json"), plain_scenario(simulation))
             self._write_meta()
         except BaseException:
             self._stop()
+            if self._runs is not None:
+                remove(self.folder)
             raise
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
@@ -180,7 +185,8 @@ class Recorder:
     def _stop(self) -> None:
         self._done = True
         self._detach()
-        self._claim.release()
+        if self._claim is not None:
+            self._claim.release()
 
     def _end_scans(self) -> None:
         """Go on without scans."""

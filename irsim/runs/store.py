@@ -27,6 +27,7 @@ __all__ = [
     "QUOTA",
     "RESULT",
     "Buffer",
+    "Claim",
     "RunError",
     "Status",
     "begun",
