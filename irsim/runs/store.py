@@ -171,11 +171,12 @@ def _sorted_folders(runs: Path, dated_by: Sequence[str]) -> list[Path]:
 
 
 def _date(path: str) -> int | None:
-    """When a file was written [ns]; None without it."""
+    """When an ordinary file was written [ns]; None without it."""
     try:
-        return os.stat(path, follow_symlinks=False).st_mtime_ns
+        known = os.lstat(path)
     except OSError:
         return None
+    return known.st_mtime_ns if stat.S_ISREG(known.st_mode) else None
 
 
 def recent_ids(runs: Path, most: int = _NAMED) -> list[str]:
@@ -468,7 +469,7 @@ def _sweep(runs: Path) -> None:
     for folder in _children(runs):
         if folder.name.startswith(_TRASH):
             shutil.rmtree(folder, ignore_errors=True)
-        elif _ID.fullmatch(folder.name) and not (folder / META).exists():
+        elif _ID.fullmatch(folder.name) and _date(os.path.join(folder, META)) is None:
             with suppress(OSError):
                 young = time.time() - folder.stat().st_mtime < _ABANDONED
                 if not young and not _being_written(folder):

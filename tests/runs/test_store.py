@@ -274,6 +274,16 @@ def test_a_large_run_just_used_stays_and_older_ones_go(workspace: Path) -> None:
     assert large.is_dir()
 
 
+def test_what_only_leads_to_a_run_is_none(room: Path) -> None:
+    run_id = str(irsim.run(room, seed=0, record=True).run_id)
+    path = runs_folder() / run_id / META
+    path.rename(room.parent / "elsewhere.json")
+    path.symlink_to(room.parent / "elsewhere.json")
+    assert list_runs() == []
+    with pytest.raises(RunError, match="none is kept here"):
+        open_run(run_id)
+
+
 def endless(workspace: Path) -> subprocess.Popen[bytes]:
     """A process that records a run without end."""
     code = (
