@@ -189,8 +189,8 @@ CODES: dict[str, Code] = {
     ),
     "surplus-states": Code(
         "more states than objects",
-        "An entry makes as many objects as 'number' says, one without it. Of a longer list of states the rest is left "
-        "out. Example: state: [[1, 1, 0], [1, 3, 0], [1, 5, 0]] makes one object; add number: 3.",
+        "An entry makes as many objects as 'number' says, one without it. Of a longer list of states, names and the "
+        "like the rest is left out. Example: state: [[1, 1, 0], [1, 3, 0], [1, 5, 0]] makes one object; add number: 3.",
     ),
     "default-state": Code(
         "no state given",
@@ -303,7 +303,8 @@ CODES: dict[str, Code] = {
         "steps longer than the goal is wide",
         "'dash' drives at full speed until the goal is within 'goal_threshold'. When one step (vel_max × step_time) "
         "is longer than twice the threshold, the object can hop over its goal, turn, and hop again. Example: 3 m/s × "
-        "0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05.",
+        "0.1 s = 0.3 m with goal_threshold 0.1; write goal_threshold: 0.2, or step_time: 0.05. With a "
+        "threshold of 0 nothing ever arrives.",
     ),
     "turning-circle": Code(
         "goal inside of the turning circle",
@@ -319,8 +320,8 @@ CODES: dict[str, Code] = {
     "no-speed": Code(
         "limits that allow no motion",
         "The behavior wants to drive, but 'vel_min', 'vel_max' or 'acce' allow nothing but rest. For diff and acker "
-        "the first number is the speed forwards, for omni the first two are. Example: vel_max: [0, 1] turns on the "
-        "spot; write vel_max: [1, 1].",
+        "the first number is the speed forwards, for omni the first two are; omni never turns, so it needs the "
+        "direction of its goal. Example: vel_max: [0, 1] turns on the spot; write vel_max: [1, 1].",
     ),
     "no-turning": Code(
         "limits that allow no turning",
@@ -353,10 +354,12 @@ CODES: dict[str, Code] = {
         "'world.boundary: walls' there are walls at the edge, which keep everything in.",
     ),
     "behavior-without-kinematics": Code(
-        "behavior without kinematics", "What has no kinematics never moves by itself, so its behavior has no effect."
+        "behavior without kinematics",
+        "What has no kinematics never moves by itself, so its behavior and its goal have no effect.",
     ),
     "no-behavior": Code(
-        "robot without behavior", "It stands still unless the program passes actions to step() or uses the keyboard."
+        "robot, or obstacle with a goal, without behavior",
+        "It stands still unless the program passes actions to step() or uses the keyboard.",
     ),
     "wander-and-loop": Code("wander and loop together", "wander draws new goals, so loop never applies."),
     "wander-outside": Code(

@@ -19,7 +19,7 @@ from irsim.scenario.objects import ObjectRecord, Placement, ResolvedScenario
 from irsim.scenario.plot import ObjectPlot
 from irsim.scenario.spread import kind_of, spread
 
-__all__ = ["resolve"]
+__all__ = ["SPREAD_KEYS", "resolve"]
 
 Role = Literal["robot", "obstacle"]
 DEFAULT_STATE = [1.0, 1.0, 0.0]
@@ -139,7 +139,7 @@ class _Maker:
     def __init__(self, world: WorldModel, role: Role, path: Path, entry: Entry, group: int, first_id: int) -> None:
         self.world, self.role, self.path, self.entry, self.group = world, role, path, entry, group
         self.first_id, self.count = first_id, entry.number
-        self.columns = {key: self._column(key) for key in _SPREAD_KEYS}
+        self.columns = {key: self._column(key) for key in SPREAD_KEYS}
 
     def _column(self, key: str) -> Sequence[Any]:
         return spread(getattr(self.entry, key), self.count, kind_of(key))
@@ -265,7 +265,7 @@ class _Maker:
         return ACKER_COLOR if kinematics.name == "acker" else ROBOT_COLOR
 
 
-_SPREAD_KEYS = (
+SPREAD_KEYS = (
     "name",
     "tags",
     "state",
@@ -291,6 +291,7 @@ _SPREAD_KEYS = (
     "inertia",
     "restitution",
 )
+"""Keys of an entry that may hold a list with one value per object."""
 
 
 def _drive(options: Any) -> KinematicsOptions | None:

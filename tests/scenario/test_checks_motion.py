@@ -59,6 +59,18 @@ FOUND = [
     (one({"vel_max": [0, 1], "vel_min": [0, -1]}), "no-speed"),
     (one({"vel_max": [0, 1], "vel_min": [-1, -1]}), "no-speed"),
     (one({"vel_max": [0, 0], "vel_min": [0, 0], "kinematics": {"name": "omni"}}), "no-speed"),
+    (one({"vel_max": [0, 0], "kinematics": {"name": "omni"}}), "no-speed"),
+    (one({"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}, "goal": [9, 1]}), "no-speed"),
+    (one({"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}, "goal": None,
+        "waypoints": [[1, 5], [9, 5]]}), "no-speed"),
+    (one({"vel_max": [1, 1], "vel_min": [0, 0], "kinematics": {"name": "omni"}, "state": [9, 9, 0],
+        "goal": [1, 1]}), "no-speed"),
+    (one({"goal_threshold": 0}), "goal-overshoot"),
+    (one({"kinematics": None, "behavior": None}), "behavior-without-kinematics"),
+    ({"obstacle": [{**BASE, "behavior": None}]}, "no-behavior"),
+    (one({"number": 2, "name": ["a", "b", "c"], "state": [[1, 1, 0], [1, 3, 0]],
+        "goal": [[9, 1], [9, 3]]}), "surplus-states"),
+    (one({"color": ["r", "b"]}), "surplus-states"),
     (one({"acce": [0, 1]}), "no-speed"),
     (one({"vel_max": [1, 0], "vel_min": [-1, 0]}), "no-turning"),
     (one({"vel_max": [1, 0], "vel_min": [-1, 0], "kinematics": CAR}), "no-turning"),
@@ -97,7 +109,18 @@ SANE = [
     one({"goal": None, "behavior": {"name": "dash", "wander": True}}),
     one({"static": True, "behavior": None}),
     one({"vel_max": [1, 0.5], "vel_min": [0, -0.5]}, POST),
-    one({"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}}),
+    one({"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}, "goal": [1.05, 9]}),
+    one(
+        {"vel_max": [0, 1], "vel_min": [0, -1], "kinematics": {"name": "omni"}, "state": [1, 1, 1.5708], "goal": [9, 1]}
+    ),
+    one({"vel_max": [0, 0], "kinematics": {"name": "omni"}, "state": [9, 9, 0], "goal": [1, 1]}),
+    one({"vel_max": [0, 1, 1], "vel_min": [0, -1, -1], "kinematics": {"name": "omni_angular"}}),
+    one({"goal_threshold": 0, "behavior": None}),
+    one({"kinematics": None, "behavior": None, "goal": None}),
+    one({"kinematics": None, "behavior": None, "static": True}),
+    {"obstacle": [{**BASE, "goal": None, "behavior": None}]},
+    {"obstacle": [{**BASE, "behavior": None, "static": True}]},
+    both({"number": 2, "name": ["a", "b"], "state": [[1, 1, 0], [1, 3, 0]]}, {"state": [1, 5, 0]}),
     one({"acce": [0.5, 1]}),
     one({"acce": [0, 1], "velocity": [0.5, 0]}),
     one({"behavior": {"name": "rvo", "target_roles": "obstacle"}}, POST),
@@ -126,6 +149,18 @@ def test_finds(data: Any, code: str) -> None:
 @pytest.mark.parametrize("data", SANE, ids=range(len(SANE)))
 def test_says_nothing_of_sane_ones(data: Any) -> None:
     assert set(codes(data)) <= {"no-behavior"}
+
+
+def test_what_is_said_never_to_arrive_does_not() -> None:
+    """Omni drives without the direction of their goal, and a threshold of 0."""
+    text = (
+        "robot: {{kinematics: {{name: {}}}, shape: {{name: circle, radius: 0.2}}, behavior: {{name: dash}}, "
+        "state: [1, 1, {}], goal: [9, 1], {}}}\n"
+    )
+    limits = "vel_max: [0, 1], vel_min: [0, -1]"
+    assert irsim.run(text=text.format("omni", 0, limits), seed=0).outcome == "timeout"
+    assert irsim.run(text=text.format("omni", 1.5708, limits), seed=0).outcome == "success"
+    assert irsim.run(text=text.format("diff", 0, "goal_threshold: 0"), seed=0).outcome == "timeout"
 
 
 def test_what_is_said_to_hop_over_its_goal_does() -> None:

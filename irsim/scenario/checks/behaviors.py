@@ -52,11 +52,22 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             f"an object without kinematics never moves, whatever its {key.replace('_', ' ')}",
             fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
         )
-    if record.role == "robot" and not record.static and record.behavior is None and record.group_behavior is None:
+    if record.behavior is not None or record.group_behavior is not None:
+        return
+    goal = next((key for key in ("goal", "waypoints") if context.given(record, key)), None)
+    if record.kinematics is None and record.role == "robot" and goal and not context.entry(record.path).static:
+        yield warning(
+            "behavior-without-kinematics",
+            context.entry_path(record, goal),
+            "a robot without kinematics never moves: it cannot get to its goal",
+            fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
+        )
+    elif not record.static and (record.role == "robot" or (record.kinematics is not None and goal)):
+        unless = "the program gives it actions" if record.role == "robot" else "the program moves it"
         yield hint(
             "no-behavior",
             record.path,
-            "this robot has no behavior: it stands still unless the program gives it actions",
+            f"this {record.role} has no behavior: it stands still unless {unless}",
             fix="none needed if it is to stand or a program passes actions; otherwise add 'behavior: {name: dash}'",
             edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
         )

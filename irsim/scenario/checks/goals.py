@@ -11,10 +11,12 @@ from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit, Path
 from irsim.registry import KINEMATICS
 from irsim.scenario.checks._context import Context
-from irsim.scenario.expand import DEFAULT_GOAL, DEFAULT_STATE
+from irsim.scenario.expand import DEFAULT_GOAL, DEFAULT_STATE, SPREAD_KEYS
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.spread import is_per_object, kind_of
+from irsim.scenario.where import at
 from irsim.scenario.wording import flow
 from irsim.vectors import is_vector
 
@@ -43,6 +45,7 @@ def check(context: Context) -> Iterator[Finding]:
         elif records:
             yield from _surplus(path, entry)
             yield from _outside(context, records)
+            yield from _surplus_values(context, path, entry)
             yield from _default_goal(path, entry, records)
             yield from _degrees(context, records)
         yield from _reached(context, records)
@@ -257,6 +260,30 @@ def _surplus(path: Path, entry: Entry) -> Iterator[Finding]:
         fix=f"number: {count}",
         edit=Edit("replace" if written else "add", (*path, "number"), count, safe=False),
     )
+
+
+def _surplus_values(context: Context, path: Path, entry: Entry) -> Iterator[Finding]:
+    """Names and the like of objects that are not made; where there are as many states, those are told."""
+    written: Any = at(context.data, path)
+    counts = {
+        key: len(written[key])
+        for key in SPREAD_KEYS
+        if key not in ("state", "goal") and key in written and is_per_object(written[key], kind_of(key))
+    }
+    states = written.get("state")
+    given = len(states) if isinstance(states, (list, tuple)) and not is_vector(states) else 0
+    for key, count in counts.items():
+        if not 0 < entry.number < count or given >= count:
+            continue
+        makes = "1 object" if entry.number == 1 else f"{entry.number} objects"
+        kind = warning if key == "name" or "number" not in entry.model_fields_set else hint
+        yield kind(
+            "surplus-states",
+            (*path, key),
+            f"{count} values, but the entry makes {makes}: the rest is left out",
+            given=written[key],
+            fix=f"number: {count}, or as many values as objects",
+        )
 
 
 def _placed_outside(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:

@@ -45,6 +45,7 @@ def _all(context: Context) -> Iterator[Finding]:
         yield from _nobody(context, record, counts)
         if sum(counts.values()) > 0:
             yield from _unseen(context, record)
+        yield from _never_there(context, record)
         yield from _overshoot(context, record)
         yield from _circles(context, record)
     if context.scenario.world.collision_mode not in _PASSABLE:
@@ -85,6 +86,17 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, written),
             fix=f"vel_max: {flow([1.0] * len(ranges))}, in m/s and rad/s",
         )
+    elif drive.name == "omni" and (lacking := _lacking(record)) is not None:
+        row, sign, goal = lacking
+        key = "vel_max" if sign > 0 else "vel_min"
+        way = (("backwards", "forwards"), ("to the right", "to the left"))[row][sign > 0]
+        yield warning(
+            "no-speed",
+            context.entry_path(record, key) if context.given(record, key) else where,
+            f"'{record.name}' never turns and cannot drive {way}, as it would have to for ({goal[0]:g}, {goal[1]:g})",
+            given=getattr(record, key),
+            fix=f"a {'positive' if sign > 0 else 'negative'} {('first', 'second')[row]} number in '{key}'",
+        )
     elif moving == 1 and ranges[0][1] <= 0 and not record.wander:
         yield warning(
             "no-speed",
@@ -112,6 +124,36 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=record.acce,
             fix="leave 'acce' out for no limit, or give a rate in m/s²",
         )
+
+
+def _lacking(record: ObjectRecord) -> tuple[int, int, list[float]] | None:
+    """Component and sign of the speed that a drive of fixed heading lacks for a goal, and that goal."""
+    if record.wander or getattr(record.kinematics, "noise", False):
+        return None
+    cos, sin = math.cos(record.state[2]), math.sin(record.state[2])
+    for index, (a, b) in enumerate(itertools.pairwise([record.state, *record.goals])):
+        x, y = b[0] - a[0], b[1] - a[1]
+        slack = record.goal_threshold * (1 if index == 0 else 2)  # it may be so far off both ends
+        for row, part in enumerate((cos * x + sin * y, cos * y - sin * x)):
+            if part > slack and record.vel_max[row] <= 0:
+                return row, 1, b
+            if part < -slack and record.vel_min[row] >= 0:
+                return row, -1, b
+    return None
+
+
+def _never_there(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Arrival is to be nearer than the threshold, and nothing is nearer than 0."""
+    behavior = record.behavior or record.group_behavior
+    if record.goal_threshold > 0 or record.static or behavior is None:
+        return
+    yield warning(
+        "goal-overshoot",
+        (*record.path, "goal_threshold"),
+        f"a goal counts as reached when it is nearer than 0 m: '{record.name}' never arrives",
+        given=record.goal_threshold,
+        fix="goal_threshold: 0.1, in metres",
+    )
 
 
 def _nobody(context: Context, record: ObjectRecord, counts: dict[str, int]) -> Iterator[Finding]:
