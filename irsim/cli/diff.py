@@ -27,7 +27,8 @@ def diff(
         typer.Option(
             "--only",
             metavar="PATH",
-            help="What may differ, with all below it: robot[0].vel_max. Exit code 1 if anything else does.",
+            help="What may differ, with all below it: robot[0].vel_max. Exit code 1 if anything else does, "
+            "comments too, or if one is lost.",
         ),
     ] = None,
     json_output: Json = False,
@@ -41,12 +42,28 @@ def diff(
 
     found = api.diff(before, after, seed=seed)
     extra = [change.path for change in found.keys if only and not any(_within(change.path, path) for path in only)]
+    extra += _comments_outside(found, after, only) if only and found.comments_changed else []
     if json_output:
         print_json(found)
     else:
         _show(found, extra)
     if extra or (only and found.comments_lost):
         raise typer.Exit(FAILED)
+
+
+def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[str]:
+    """Changed comments about what may not change."""
+    from irsim.diagnostics import format_path
+    from irsim.scenario.comments import places_of_comments
+    from irsim.scenario.load import load_path
+    from irsim.scenario.locate import locate
+
+    places = places_of_comments(load_path(locate(after)))
+    return [
+        edited.after
+        for edited in found.comments_changed
+        if not any(_within(format_path(path), allowed) for path in places.get(edited.after, ()) for allowed in only)
+    ]
 
 
 def _within(path: str, allowed: str) -> bool:

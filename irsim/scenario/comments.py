@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
+from collections.abc import Iterator
 
-__all__ = ["comments", "keeps_comments"]
+from irsim.diagnostics import Path
+from irsim.scenario.load import Document
+from irsim.scenario.nodes import Node
+
+__all__ = ["comments", "keeps_comments", "places_of_comments"]
 
 _QUOTED_OR_COMMENT = re.compile(
     r"""(?:(?<=[\s\[{,])|^)(?:"(?:\\.|[^"\\\n])*"|'(?:''|[^'\n])*')|(?P<comment>(?:(?<=\s)|^)\#.*)""", re.MULTILINE
@@ -21,3 +26,55 @@ def comments(text: str) -> list[str]:
 def keeps_comments(before: str, after: str) -> bool:
     """Whether every comment of a text is there in another, too."""
     return not Counter(comments(before)) - Counter(comments(after))
+
+
+def places_of_comments(document: Document) -> dict[str, list[Path]]:
+    """What each comment may be about: all that stands on its line or, if it stands alone, on the line it goes with.
+
+    That is the next line with something on it or, for a comment that is indented more than that, the last one before
+    that is not indented more than the comment.
+
+    Args:
+        document: With its text.
+
+    Returns:
+        Comment → paths, in which a single robot or obstacle is the first of a list.
+    """
+    if document.text is None:
+        return {}
+    there: dict[int, list[Path]] = defaultdict(list)
+    for path, line in _nodes(document.tree(), ()):
+        there[line].append(_listed(path[len(document.prefix) :], document))
+    lines = document.text.splitlines()
+    found: dict[str, list[Path]] = defaultdict(list)
+    for match in _QUOTED_OR_COMMENT.finditer(document.text):
+        if match["comment"] is None:
+            continue
+        line = document.text.count("\n", 0, match.start("comment")) + 1
+        if line not in there:
+            after = min((k for k in there if k > line), default=None)
+            indent = _indent(lines[line - 1])
+            if after is None or _indent(lines[after - 1]) < indent:
+                after = max((k for k in there if k < line and _indent(lines[k - 1], " -") <= indent), default=line)
+            line = after
+        found[match["comment"].strip()] += there.get(line, [])
+    return found
+
+
+def _nodes(node: Node | None, path: Path) -> Iterator[tuple[Path, int]]:
+    """Every path with the line on which it starts."""
+    if node is None:
+        return
+    for key, child in node.children.items():
+        below = (*path, key if isinstance(key, int) else str(key))
+        yield below, node.keys.get(key, child.mark).line
+        yield from _nodes(child, below)
+
+
+def _listed(path: Path, document: Document) -> Path:
+    single = path[:1] in (("robot",), ("obstacle",)) and isinstance(document.data.get(path[0]), dict)
+    return (path[0], 0, *path[1:]) if single else path
+
+
+def _indent(line: str, blank: str = " ") -> int:
+    return len(line) - len(line.lstrip(blank))

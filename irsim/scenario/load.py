@@ -45,7 +45,7 @@ class Document:
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:
         """Where the value at ``path`` stands (its key if ``key``), or the innermost part of the path that exists."""
-        node = self._positions()
+        node = self.tree()
         if node is None:
             return None
         mark = node.mark
@@ -65,7 +65,8 @@ class Document:
         line = self.text.splitlines()[mark.line - 1]
         return line[mark.column - 1 : mark.column - 1 + mark.length]
 
-    def _positions(self) -> Node | None:
+    def tree(self) -> Node | None:
+        """Where everything stands, from the top of the text; None without a text, or one that is no YAML."""
         if self._root is None and self.text is not None:
             self._root = compose(self.text, self.limits, positions=True).root
         return self._root

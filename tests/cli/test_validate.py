@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 import irsim as package
 from tests.cli.conftest import ROOM, Run, parsed
 
@@ -108,3 +110,56 @@ def test_diff_lists_changes_and_refuses_those_not_asked_for(irsim: Run, room: Pa
     assert irsim("diff", "room.yaml", "other.yaml", "--only", "world").exit_code == 1
     found = parsed(irsim("diff", "room.yaml", "other.yaml", "--json"))
     assert found == package.diff("room.yaml", "other.yaml").model_dump(mode="json")
+
+
+COMMENTED = """\
+world: {width: 10, height: 10}
+# the one that carries things
+robot:
+  - kinematics: {name: diff}
+    state: [1, 1, 0]
+    goal: [9, 9]  # by the door
+    behavior: {name: dash}
+    # not faster than that
+  # the pillar in the hall
+obstacle:
+  - shape: {name: circle, radius: 1}
+    # not moved since May
+    state: [5, 2]  # the middle of the hall
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "code"),
+    [
+        ("# by the door", "# by the back door", 0),
+        ("# not faster than that", "# not faster than this", 0),
+        ("# the one that carries", "# The one that carries", 1),
+        ("# the pillar in", "# the pillars in", 1),
+        ("# not moved since May", "# not moved since June", 1),
+        ("# the middle of", "# the very middle of", 1),
+        ("  # by the door", "", 1),
+        ("[9, 9]", "[9, 8]", 0),
+        ("[5, 2]", "[5, 3]", 1),
+    ],
+)
+def test_changed_comments_of_what_may_not_differ_count(
+    irsim: Run, tmp_path: Path, before: str, after: str, code: int
+) -> None:
+    a, b = tmp_path / "a.yaml", tmp_path / "b.yaml"
+    a.write_text(COMMENTED, encoding="utf-8")
+    assert before in COMMENTED
+    b.write_text(COMMENTED.replace(before, after), encoding="utf-8")
+    assert irsim("diff", str(a), str(b), "--only", "robot[0]").exit_code == code
+    assert irsim("diff", str(a), str(b), "--json").exit_code == 0
+
+
+def test_comments_of_a_single_robot_are_those_of_the_first(irsim: Run, tmp_path: Path) -> None:
+    a, b = tmp_path / "a.yaml", tmp_path / "b.yaml"
+    single = COMMENTED.replace("  - kin", "    kin")
+    a.write_text(single, encoding="utf-8")
+    b.write_text(
+        single.replace("# the one that", "# The one that").replace("by the door", "by a door"), encoding="utf-8"
+    )
+    assert irsim("diff", str(a), str(b), "--only", "robot[0]").exit_code == 0
+    assert irsim("diff", str(a), str(b), "--only", "obstacle").exit_code == 1
