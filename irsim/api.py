@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from irsim.arguments import whole
 from irsim.env import Env
 from irsim.episode import (
     Progress,
@@ -20,7 +21,6 @@ from irsim.files import check_suffix
 from irsim.results import RenderResult, RunResult, SnapshotResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.rewrite import yaml_flow
 from irsim.snapshot import snapshot, snapshot_of
 from irsim.validation import diff, fix, validate
 from irsim.verdict import command, region_words, run_result
@@ -80,6 +80,7 @@ def run(
         ScenarioError: The file cannot be used; ScenarioNotFoundError: there is none.
         OverLimitError: More steps are asked for than the limits allow.
         BenchmarkError: There is no such behavior.
+        ArgumentError: The steps are no whole number.
         RunError: The folder to record into holds something already.
         ValueError: Neither or both of ``path`` and ``text``.
     """
@@ -119,9 +120,13 @@ def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
     """A behavior for all robots as a command line has it; None for their own."""
     if behavior is None:
         return None
-    from irsim.benchmarks.variant import AS_WRITTEN
+    from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, text_of
 
-    text = behavior.strip() if isinstance(behavior, str) else yaml_flow(behavior)
+    try:
+        text = text_of(behavior)
+    except BenchmarkError as error:
+        error.where = "behavior"
+        raise
     return None if text == AS_WRITTEN else text
 
 
@@ -163,6 +168,7 @@ def render(
             few or too many moments.
     """
     target = Path(out)
+    steps = None if steps is None else whole("steps", steps)
     import_modules(imports)
     as_snapshot = strip is not None or overlays is not None
     if as_snapshot:

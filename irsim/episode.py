@@ -6,14 +6,16 @@ import importlib
 import itertools
 import json
 import math
+import os
 import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.arguments import as_given, whole
 from irsim.diagnostics import Diagnostic, Edit, format_path
 from irsim.env import Env
-from irsim.errors import OverLimitError
+from irsim.errors import ArgumentError, OverLimitError
 from irsim.results import Edit as EditRecord
 from irsim.results import Finding, HorizonSource
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -56,7 +58,10 @@ def import_modules(names: Iterable[str]) -> None:
 
     Raises:
         ImportError: With the module's name.
+        ArgumentError: A name instead of a list.
     """
+    if isinstance(names, str):
+        raise ArgumentError(f"imports is {as_given(names)}", f"give a list: imports=[{as_given(names)}]")
     for name in names:
         if "" not in sys.path and str(Path.cwd()) not in sys.path:
             sys.path.insert(0, str(Path.cwd()))
@@ -125,13 +130,19 @@ def source_of(path: str | Path | None, text: str | None, limits: Limits | None) 
     Raises:
         ScenarioNotFoundError: No such file.
         ValueError: Neither or both are given.
+        ArgumentError: It is no path, or no text.
     """
     if (path is None) == (text is None):
         raise ValueError("give either a path or a text")
     if path is not None:
+        if not isinstance(path, (str, os.PathLike)):
+            raise ArgumentError(f"the path is {as_given(path)}", "give the path of a file, or its content as text")
         return locate(path)
-    assert text is not None
-    return load_text(text, limits=limits or DEFAULT_LIMITS)
+    given: Any = text
+    if not isinstance(given, str):
+        fix = "decode it: text.decode()" if isinstance(given, bytes) else "give the YAML text of a scenario"
+        raise ArgumentError(f"the text is {as_given(given)}", fix)
+    return load_text(given, limits=limits or DEFAULT_LIMITS)
 
 
 def as_finding(diagnostic: Diagnostic) -> Finding:
@@ -174,9 +185,11 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
 
     Raises:
         OverLimitError: More is asked for.
+        ArgumentError: The steps are no whole number, or negative.
     """
     most, what = _most_steps(len(scenario.objects), limits)
     if steps is not None:
+        steps = whole("steps", steps)
         if most is not None and steps > most:
             raise OverLimitError(f"{steps:,} steps are too many: at most {what}", f"ask for at most {most:,} steps")
         return steps, "argument"

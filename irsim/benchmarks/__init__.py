@@ -16,12 +16,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from irsim.arguments import as_given, whole
 from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.summary import rows_of
-from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of, check_known
+from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
 from irsim.episode import Progress, import_modules, read_scenario, source_of
-from irsim.errors import OverLimitError
+from irsim.errors import ArgumentError, OverLimitError
 from irsim.results import BenchmarkResult, EpisodeRow, Finding
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_path, load_text
@@ -38,8 +40,8 @@ _TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures
 
 def benchmark(
     files: str | Path | Sequence[str | Path],
-    behaviors: str | Sequence[str] = (AS_WRITTEN,),
-    seeds: int | Iterable[int] = DEFAULT_SEEDS,
+    behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
+    seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
     *,
     steps: int | None = None,
     strict: bool = False,
@@ -56,9 +58,9 @@ def benchmark(
 
     Args:
         files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result.
-        behaviors: Names (``orca``), names with options in YAML (``{name: orca, timeHorizon: 5}``) for all robots, or
-            ``as-written`` for what the scenario says. Differences are to the first.
-        seeds: How many (0, 1, 2, …), or which.
+        behaviors: For all robots: names (``orca``), mappings with options, in Python or as YAML text (``{name: orca,
+            timeHorizon: 5}``), or ``as-written`` for what the scenario says. Differences are to the first.
+        seeds: How many (0, 1, 2, …), or which: a list, or text such as ``5-9`` or ``1,4,7``.
         steps: Horizon in steps, over ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first, for behaviors they register.
@@ -73,11 +75,16 @@ def benchmark(
         ScenarioError: A scenario can't be used, or not with that behavior; ScenarioNotFoundError: there is none.
         OverLimitError: More is asked for than the limits allow.
         BenchmarkError: A behavior or the seeds make no sense.
+        ArgumentError: Another argument does not.
     """
-    given = [str(name) for name in ([files] if isinstance(files, (str, Path)) else files)]
+    given = _sources(files)
     names = _names(given)
-    wanted = [behaviors] if isinstance(behaviors, str) else list(behaviors)
-    chosen = _seeds(seeds)
+    wanted = _wanted(behaviors)
+    chosen = seeds_from(seeds)
+    if steps is not None:
+        steps = whole("steps", steps)
+    if workers is not None:
+        workers = whole("workers", workers, 1)
     _check(names, wanted, chosen, most_episodes)
     limits = limits or DEFAULT_LIMITS
     import_modules(imports)
@@ -161,6 +168,28 @@ def _now_and_then(tell: Callable[[Mapping[int, Any]], object]) -> Callable[[Mapp
     return look
 
 
+def _sources(files: Any) -> list[str]:
+    """Paths and texts as strings."""
+    one = isinstance(files, (str, Path))
+    if not one and (isinstance(files, (Mapping, bytes, bytearray)) or not isinstance(files, Iterable)):
+        raise ArgumentError(f"files is {as_given(files)}", "give a path, the text of a scenario, or a list of them")
+    listed = [files] if one else list(files)
+    for number, source in enumerate(listed):
+        if not isinstance(source, (str, Path)):
+            raise ArgumentError(f"files[{number}] is {as_given(source)}", "give a path or the text of a scenario")
+    return [str(source) for source in listed]
+
+
+def _wanted(behaviors: Any) -> list[str]:
+    """Behaviors as a command line has them."""
+    one = isinstance(behaviors, (str, Mapping)) or not isinstance(behaviors, Iterable)
+    found = []
+    for number, behavior in enumerate([behaviors] if one else behaviors):
+        with _about(number):
+            found.append(behavior if isinstance(behavior, str) else text_of(behavior))
+    return found
+
+
 def _names(given: list[str]) -> list[str]:
     """What to call the scenarios."""
     texts = [source for source in given if "\n" in source]
@@ -177,22 +206,14 @@ def _document(source: str, limits: Limits) -> Document:
     return found if isinstance(found, Document) else load_path(found, limits)
 
 
-def _seeds(seeds: int | Iterable[int]) -> list[int]:
-    if isinstance(seeds, int):
-        return list(range(seeds))
-    return list(dict.fromkeys(int(seed) for seed in seeds))
-
-
 def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int | None) -> None:
-    for what, given in (("scenarios", names), ("behaviors", behaviors), ("seeds", seeds)):
+    for what, given in (("scenarios", names), ("behaviors", behaviors)):
         if not given:
             raise BenchmarkError(f"there are no {what}", f"give at least one of the {what}")
     for what, listed in (("scenario", names), ("behavior", behaviors)):
         twice = next((name for name in listed if listed.count(name) > 1), None)
         if twice is not None:
             raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
-    if min(seeds) < 0 or max(seeds) >= 2**64:
-        raise BenchmarkError("a seed is outside 0 to 2^64 - 1", "give seeds from 0")
     for number, behavior in enumerate(behaviors):
         with _about(number):
             behavior_of(behavior)

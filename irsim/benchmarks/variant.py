@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from irsim.arguments import as_given
 from irsim.diagnostics import Diagnostic, format_path, nearest
 from irsim.errors import IrsimError
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
@@ -14,12 +15,22 @@ from irsim.scenario.load import Document
 from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.read import read
+from irsim.scenario.rewrite import yaml_flow
 from irsim.text import clean
 
-__all__ = ["AS_WRITTEN", "BenchmarkError", "behavior_of", "check_known", "read_with_behavior", "with_behavior"]
+__all__ = [
+    "AS_WRITTEN",
+    "BenchmarkError",
+    "behavior_of",
+    "check_known",
+    "read_with_behavior",
+    "text_of",
+    "with_behavior",
+]
 
 AS_WRITTEN = "as-written"
 """Stands for the behaviors that the scenario itself gives its robots."""
+_FIX = "give a name such as orca, or {name: orca, timeHorizon: 5}, or as-written for the scenario's own"
 _KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
 """What a robot is to do, whatever decides how: kept when its behavior is replaced."""
 
@@ -56,17 +67,29 @@ def behavior_of(text: str) -> dict[str, Any] | None:
     text = text.strip()
     if text == AS_WRITTEN:
         return None
-    fix = "give a name such as orca, or {name: orca, timeHorizon: 5}, or as-written for the scenario's own"
     if not text.startswith("{"):
         if not text or any(character in text for character in " :{}[],"):
-            raise BenchmarkError(f"{text!r} is no behavior", fix)
+            raise BenchmarkError(f"{text!r} is no behavior", _FIX)
         return {"name": text}
     from irsim.scenario.load import load_text
 
     document = load_text(text)
     if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
-        raise BenchmarkError(f"{text!r} is no behavior", fix)
+        raise BenchmarkError(f"{text!r} is no behavior", _FIX)
     return dict(document.data)
+
+
+def text_of(behavior: str | Mapping[str, Any]) -> str:
+    """A behavior as a command line has it.
+
+    Raises:
+        BenchmarkError: It is neither text nor a mapping.
+    """
+    if isinstance(behavior, str):
+        return behavior.strip()
+    if isinstance(behavior, Mapping):
+        return yaml_flow(behavior)
+    raise BenchmarkError(f"{as_given(behavior)} is no behavior", _FIX)
 
 
 def check_known(behavior: str) -> None:

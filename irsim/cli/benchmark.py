@@ -73,13 +73,12 @@ def benchmark(
 
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv are both given", "give one of them")
-    chosen = _seeds(seeds)
     import_user_modules(imports)
     with progress("simulating") as report:
         result = compare(
             files,
             _listed(behaviors),
-            chosen,
+            seeds,
             steps=steps,
             strict=strict,
             imports=imports or (),
@@ -213,22 +212,6 @@ def _listed(text: str) -> list[str]:
         else:
             parts[-1] += character
     return [part.strip() for part in parts if part.strip()]
-
-
-def _seeds(text: str) -> int | list[int]:
-    from irsim.benchmarks import BenchmarkError
-
-    text = text.replace(" ", "")
-    if text.isdecimal():
-        return int(text)
-    found: list[int] = []
-    for part in text.strip(",").split(","):
-        ends = re.fullmatch(r"(\d{1,20})(?:-(\d{1,20}))?", part)
-        low, high = (0, -1) if ends is None else (int(ends[1]), int(ends[2] or ends[1]))
-        if ends is None or not 0 <= high - low < 1_000_000:
-            raise BenchmarkError(f"{text!r} are no seeds", "write how many, such as 20, or which, such as 5-9 or 1,4,7")
-        found += range(low, high + 1)
-    return found
 
 
 def _print_csv(result: BenchmarkResult) -> None:

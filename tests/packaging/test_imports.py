@@ -17,7 +17,7 @@ LAYERS = (
     _conflict _names _options angles code_examples codes colors diagnostics errors files log registry resources
     selection units vectors version
     """,
-    "_core compatibility msg streams text",
+    "_core arguments compatibility msg streams text",
     "kinematics shapes behaviors sensors distributions maps planners",
     "scenario",
     "world simulation",
