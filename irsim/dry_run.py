@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Sequence
 from typing import Literal
 
@@ -12,19 +14,26 @@ from irsim.env import Env
 from irsim.episode import horizon_of
 from irsim.leaving import MOST_LEFT, left_told, left_world
 from irsim.observers.events import Event, collision_of, partner_of, passable_names
-from irsim.observers.trace import Trace, record
+from irsim.observers.trace import Trace, joined, next_rows, present_row
 from irsim.results import DryRun, EventRecord, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.objects import ObjectRecord, ResolvedScenario
 from irsim.scenario.randomness import random_parts
+from irsim.simulation import Simulation
 from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading
 from irsim.text import seconds
 from irsim.verdict import has_one_end, others_arrived
 
-__all__ = ["BUDGET", "dry_run"]
+__all__ = ["BUDGET", "SECONDS", "dry_run"]
 
 BUDGET = 300_000
 """Steps times objects of a look; as many rows are in memory for a moment."""
+SECONDS = 1.0
+"""For which it goes on after its first step, in which routes are planned [s]; budgets are mostly reached before."""
+_CHUNK = 0.05
+"""Time between two looks at the clock, where one step does not take longer [s]."""
+_BEAMS = 1000
+"""So many beams of range sensors cost as much as an object."""
 _MOST = 10
 
 Flags = NDArray[np.bool_]
@@ -35,6 +44,7 @@ def dry_run(
     *,
     seed: int | None = None,
     budget: int = BUDGET,
+    seconds: float = SECONDS,
     steps: int | None = None,
     limits: Limits | None = None,
 ) -> DryRun:
@@ -43,7 +53,8 @@ def dry_run(
     Args:
         scenario: What to try.
         seed: Over the scenario's own; with neither, 0: the same look every time.
-        budget: Steps times objects at most.
+        budget: Steps times objects at most; a thousand beams of range sensors count as one more object.
+        seconds: For which it goes on after its first step, so that what a budget does not foresee ends too.
         steps: Steps at most; default: those of a whole episode.
         limits: Of a run.
 
@@ -55,12 +66,34 @@ def dry_run(
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     try:
         horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
-        affordable = max(1, budget // max(1, len(scenario.objects)))
+        affordable = max(1, budget // _work(scenario))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
-        trace = record(env.simulation, wanted, until_done=True)
+        trace = _recorded(env.simulation, wanted, seconds)
         return _told(env, scenario, trace, seed, None if source == "limits" else horizon)
     finally:
         env.end(ending_time=0.0)
+
+
+def _work(scenario: ResolvedScenario) -> int:
+    """What a step costs, in objects."""
+    beams = sum(getattr(sensor, "number", 0) for record in scenario.objects for sensor in record.sensors)
+    return max(1, len(scenario.objects) + beams // _BEAMS)
+
+
+def _recorded(simulation: Simulation, steps: int, seconds: float) -> Trace:
+    """What happens until everybody is done, or the steps or seconds are over; the first step is free."""
+    parts, done, size, end = [present_row(simulation)], 0, 1, math.inf
+    while done < steps:
+        begin, size = time.monotonic(), min(size, steps - done)
+        parts.append(next_rows(simulation, size))
+        now = time.monotonic()
+        if len(parts[-1]) < size or now >= end:
+            break
+        if done == 0:
+            end = now + seconds
+        done += size
+        size = max(1, min(2 * size, int(size * _CHUNK / max(now - begin, 1e-9))))
+    return joined(parts)
 
 
 def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int | None) -> DryRun:

@@ -33,7 +33,8 @@ def validate(
         bool, typer.Option("--fix", help="Make the repairs that need no guessing, in the file; comments stay.")
     ] = False,
     simulate: Annotated[
-        bool, typer.Option("--simulate", help="Also try it for some steps and say what happens; about a second.")
+        bool,
+        typer.Option("--simulate", help="Also try it, for about a second, and say what happens."),
     ] = False,
     seed: Annotated[
         int | None,

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 import irsim
+from irsim.dry_run import dry_run
+from irsim.episode import read_scenario
 from irsim.scenario.limits import Limits
+from irsim.templates import scenario_file
+from irsim.text import seconds
 
 ROBOT = """\
   - name: rover
@@ -91,6 +97,37 @@ def test_is_the_same_every_time_and_ends_within_its_budget() -> None:
     assert crowd.dry_run is not None
     assert crowd.dry_run.ended == "budget"
     assert crowd.dry_run.steps == 1000
+
+
+SCANNER = """\
+world: {width: 10000, height: 10000}
+robot:
+  kinematics: {name: diff}
+  shape: {name: circle, radius: 0.2}
+  state: [1, 1, 0]
+  goal: [9000, 9000]
+  behavior: {name: dash}
+  sensors: [{name: lidar2d, number: 20000, range_max: 100}]
+"""
+
+
+def test_beams_cost_and_the_clock_ends_what_takes_longer() -> None:
+    scenario, _ = read_scenario(text=SCANNER, strict=True)
+    scanned = dry_run(scenario, budget=2100, seconds=60)
+    assert (scanned.ended, scanned.steps) == ("budget", 100)  # 20 for the beams, one for the robot
+    begin = time.monotonic()
+    cut = dry_run(scenario, seconds=0.1)
+    assert time.monotonic() - begin < 10
+    assert cut.ended == "budget"
+    assert 1 < cut.steps < 10_000
+    assert cut.summary.startswith(f"in the first {seconds(cut.sim_time)} only: 0 of 1 robots arrived")
+
+
+def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario, _ = read_scenario(scenario_file("circle-swap"), strict=True)
+    found = dry_run(scenario)
+    monkeypatch.setattr("irsim.dry_run._CHUNK", 0.0)  # after each step
+    assert dry_run(scenario) == found
 
 
 def test_a_seed_without_room_is_a_finding() -> None:
