@@ -185,7 +185,8 @@ CODES: dict[str, Code] = {
         "'waypoints: [[1, 1], [5, 5]]', or with three levels of brackets under 'goal'.",
     ),
     "state-truncated": Code(
-        "state has more numbers than rows", "The surplus numbers are dropped: three rows, four for acker."
+        "state has more numbers than rows",
+        "The surplus numbers are dropped: three rows, four for acker. A decimal comma makes two numbers of one.",
     ),
     "surplus-states": Code(
         "more states than objects",
@@ -211,9 +212,9 @@ CODES: dict[str, Code] = {
         "Example: vel_max: [1, 90]; write vel_max: [1, 1.5708].",
     ),
     "speed-in-centimetres": Code(
-        "speed looks like centimetres",
+        "speed looks like centimetres, or km/h",
         "Speeds are in metres per second; 45 m/s are 162 km/h. Example: vel_max: [80, 1] for 80 cm/s; write "
-        "vel_max: [0.8, 1].",
+        "vel_max: [0.8, 1], or [22.2, 1] for 80 km/h.",
     ),
     "looks-like-centimetres": Code(
         "length looks like centimetres",

@@ -11,7 +11,7 @@ from irsim.diagnostics import Edit, Path, format_path, nearest, surely
 from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
-from irsim.scenario.numerals import read_number
+from irsim.scenario.numerals import decimal_commas, read_number
 from irsim.scenario.synonyms import instead_of, vector_of
 from irsim.scenario.tolerance import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.where import at, field_at, lengths_of, literals, model_at, unit_of
@@ -130,7 +130,9 @@ class Explainer:
         written = at(self.data, parent)
         other, like = (None, None) if meant else instead_of(self.path, self.data)
         edit, fix = None, other
-        if like is not None:
+        if (meant_number := self._after_comma(key, written)) is not None:
+            fix = f"a decimal comma? write {meant_number}"
+        elif like is not None:
             edit = Edit("rename", self.path, like, safe=False)
         elif other is None and near is not None and isinstance(written, Mapping) and near in written:
             fix = f"'{near}' is what it is called, and stands there already: keep one of them"
@@ -147,6 +149,17 @@ class Explainer:
             fix=fix,
             edit=edit,
             carry_on=carry_on_unknown_key(self.path, written),
+        )
+
+    def _after_comma(self, key: Any, written: Any) -> str | None:
+        """What was meant by ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
+        keys = list(written) if isinstance(written, Mapping) else []
+        place = next((i for i, other in enumerate(keys) if str(other) == key), 0)
+        if not str(key).isdigit() or place == 0 or written[keys[place]] is not None:
+            return None
+        before = written[keys[place - 1]]
+        return (
+            f"{keys[place - 1]}: {before}.{key}" if isinstance(before, int) and not isinstance(before, bool) else None
         )
 
     def _choice(self) -> Finding:
@@ -197,12 +210,14 @@ class Explainer:
         wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
             return error("wrong-length", self.path, f"this list has {count} elements", allowed=f"{wanted} elements")
+        meant = None if most is None or not isinstance(self.value, (list, tuple)) else decimal_commas(self.value, most)
         return error(
             "wrong-length",
             self.path,
             f"{count} number{'s' if count != 1 else ''}; this key takes {wanted}",
             given=self.value,
             allowed=f"{wanted} numbers",
+            fix=None if meant is None else f"decimal commas? write {meant}",
             carry_on=carry_on_value(self.kind, self.path, self.value, most),
         )
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
-__all__ = ["Reading", "read_number"]
+__all__ = ["Reading", "decimal_commas", "read_number"]
 
 
 class Reading(NamedTuple):
@@ -21,6 +22,21 @@ class Reading(NamedTuple):
     value: float | None
     note: str = ""
     is_number: bool = False
+
+
+def decimal_commas(values: Sequence[Any], most: int) -> str | None:
+    """The list that was meant if ``[1,5, 2,5, 0]`` has decimal commas; None if it can't be, or is not too long.
+
+    Args:
+        values: As written.
+        most: So many numbers there should be at most.
+    """
+    count = (len(values) + 1) // 2
+    whole = all(isinstance(value, int) and not isinstance(value, bool) for value in values)
+    if not whole or not count <= most < len(values) or any(value < 0 for value in values[1::2]):
+        return None
+    pairs = [values[i : i + 2] for i in range(0, len(values), 2)]
+    return "[" + ", ".join(".".join(str(part) for part in pair) for pair in pairs) + "]"
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"

@@ -253,7 +253,8 @@ def _diagnostics(
         strict: As for reading.
         renamed: Place of each key that was renamed → where it was written.
     """
-    shown = []
+    shown, told = [], set[tuple[Any, ...]]()
+    shared = document.text is not None and "*" in document.text  # one mistake may be reached by several aliases
     for finding in findings:
         item = finding.diagnostic
         changes: dict[str, Any] = {"file": document.name}
@@ -261,6 +262,11 @@ def _diagnostics(
         if item.line is None:
             written = _written(path, renamed or {})
             mark = document.mark((*document.prefix, *written), key=item.code in KEY_CODES)
+            if mark is not None and shared and item.severity == "error":
+                once = (item.code, mark, path[-1:], repr(item.given))
+                if once in told:
+                    continue
+                told.add(once)
             if mark is not None:
                 changes.update(line=mark.line, column=mark.column, length=mark.length)
             changes["path"] = (*document.prefix, *path)

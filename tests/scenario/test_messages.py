@@ -294,3 +294,55 @@ def test_diagnostics_are_data() -> None:
 )
 def test_words_that_say_it_in_another_way(text: str, fix: str) -> None:
     assert fix in [item.fix for item in read(text, strict=True).errors]
+
+
+ROOM = "world: {width: 10, height: 10}\n"
+DIFF = "kinematics: {name: diff}, behavior: {name: dash}"
+
+
+@pytest.mark.parametrize(
+    ("keys", "code", "fix"),
+    [
+        ("state: [1,5, 2,5, 0], goal: [9, 5]", "state-truncated", "decimal commas? write [1.5, 2.5, 0]"),
+        ("state: [1,5, 2,5], goal: [9, 5]", "state-truncated", "decimal commas? write [1.5, 2.5]"),
+        ("state: [1, 5, 0, 0], goal: [9, 5]", "state-truncated", None),
+        ("state: [1, 5, 0], goal: [9,5, 9,25]", "wrong-length", "decimal commas? write [9.5, 9.25]"),
+        ("state: [1, 5, 0], goal: [9.5, 9, 2, 1]", "wrong-length", None),
+        ("shape: {name: circle, radius: 0,3}", "unknown-key", "a decimal comma? write radius: 0.3"),
+        ("shape: {name: rectangle, length: 1, width: 0,25}", "unknown-key", "a decimal comma? write width: 0.25"),
+        ("shape: {name: circle, 3}", "unknown-key", "remove it"),
+    ],
+)
+def test_decimal_commas_are_recognised(keys: str, code: str, fix: str | None) -> None:
+    found = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
+    (item,) = [item for item in found if item.code == code]
+    assert item.fix == fix
+    assert item.severity == ("hint" if code == "state-truncated" and fix is None else item.severity)
+
+
+def test_a_mistake_behind_an_anchor_is_told_once() -> None:
+    text = ROOM + (
+        "robot:\n"
+        f"  - {{{DIFF}, shape: &s {{name: circle, raduis: 0.2}}, state: [1, 1, 0], goal: [9, 5]}}\n"
+        f"  - {{{DIFF}, shape: *s, state: [1, 3, 0], goal: [9, 7]}}\n"
+        f"  - {{{DIFF}, shape: {{name: circle, raduis: 0.2}}, state: [1, 8, 0], goal: [9, 9]}}\n"
+    )
+    errors = read(text, strict=True).errors
+    assert [(item.code, item.path, item.line) for item in errors] == [
+        ("unknown-key", ("robot", 0, "shape", "raduis"), 3),
+        ("unknown-key", ("robot", 2, "shape", "raduis"), 5),
+    ]
+
+
+def test_speeds_may_be_meant_in_kilometres_an_hour() -> None:
+    keys = "vel_max: [50, 1], vel_min: [-50, -1], state: [1, 1, 0], goal: [9, 9]"
+    found = read(f"{ROOM}robot: {{{DIFF}, {keys}}}\n", strict=True).diagnostics
+    (item,) = [item for item in found if item.code == "speed-in-centimetres"]
+    assert item.fix == "speeds are in m/s: 50 km/h are 13.89, 50 cm/s are 0.5"
+
+
+@pytest.mark.parametrize(("step", "severity"), [(100, "warning"), (12, "warning"), (2, "hint")])
+def test_steps_as_long_as_the_way_through_the_world_are_warned_of(step: int, severity: str) -> None:
+    text = f"world: {{width: 10, height: 10, step_time: {step}}}\nrobot: {{{DIFF}, state: [1, 1, 0], goal: [9, 9]}}\n"
+    (item,) = [item for item in read(text, strict=True).diagnostics if item.code == "step-time-long"]
+    assert item.severity == severity

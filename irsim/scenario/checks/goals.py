@@ -14,6 +14,7 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.expand import DEFAULT_GOAL, DEFAULT_STATE, SPREAD_KEYS
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
+from irsim.scenario.numerals import decimal_commas
 from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.spread import is_per_object, kind_of
 from irsim.scenario.where import at
@@ -205,11 +206,14 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
     elif records[0].role == "robot":
         states: Any = [entry.state] if is_vector(entry.state) else entry.state
         longest = max((len(state) for state in states[: entry.number] if state is not None), default=0)
-        if longest > records[0].state_dim:
-            yield hint(
+        if longest > (rows := records[0].state_dim):
+            written = at(context.data, (*path, "state"))
+            meant = decimal_commas(written, rows) if is_vector(written) and any(written[rows:]) else None
+            yield (hint if meant is None else warning)(
                 "state-truncated",
                 (*path, "state"),
-                f"{longest} numbers; the state has {records[0].state_dim}, the rest is dropped",
+                f"{longest} numbers; the state has {rows}, the rest is dropped",
+                fix=None if meant is None else f"decimal commas? write {meant}",
             )
 
 

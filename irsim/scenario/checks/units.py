@@ -9,7 +9,7 @@ from typing import Any
 from irsim.diagnostics import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of
+from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of, top_speed
 from irsim.scenario.findings import Finding, hint, warning
 from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.wording import flow
@@ -51,7 +51,8 @@ def _times(context: Context) -> Iterator[Finding]:
     if world.step_time >= _LONGEST_STEP:
         likely = world.step_time / 1000
         meant = f"; {world.step_time:g} ms are {likely:g}" if world.step_time >= 5 else ""
-        yield hint(
+        far = max((top_speed(r) for r in context.written if r.kinematics is not None), default=0.0) * world.step_time
+        yield (warning if max(world.width, world.height) <= far < math.inf else hint)(
             "step-time-long",
             ("world", "step_time"),
             f"one step lasts {world.step_time:g} s, in which everything drives blindly{meant}",
@@ -191,7 +192,7 @@ def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
                 where,
                 f"{value:g} m/s are {value * 3.6:g} km/h",
                 given=record.vel_max,
-                fix=f"speeds are in m/s: {value:g} cm/s are {value / 100:g}",
+                fix=f"speeds are in m/s: {value:g} km/h are {value / 3.6:.4g}, {value:g} cm/s are {value / 100:g}",
             )
 
 
