@@ -1,4 +1,4 @@
-"""Small safe expressions over template parameters: arithmetic, comparisons, lists, mappings, a few functions.
+"""Small safe expressions over template parameters: arithmetic, comparisons, lists and their items, mappings, functions.
 
 Never ``eval``.
 """
@@ -62,6 +62,8 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
                 return [value(item) for item in items]
             case ast.Dict(keys=keys, values=items) if all(keys):
                 return {value(key): value(item) for key, item in zip(keys, items, strict=True) if key is not None}
+            case ast.Subscript(value=ast.List() as items, slice=index):
+                return value(items)[_index(value(index))]
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return -value(operand)
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
@@ -82,6 +84,12 @@ def names_in(expression: str) -> set[str]:
     known = {"pi", *_FUNCTIONS}
     tree = ast.parse(expression, mode="eval")
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - known
+
+
+def _index(value: Any) -> int:
+    if isinstance(value, int) and value >= 0:
+        return value
+    raise ValueError(f"not a place in a list in a template expression: {value!r}")
 
 
 def _number(value: Any) -> float:

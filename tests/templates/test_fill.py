@@ -99,6 +99,7 @@ def test_what_is_not_a_setting_is_refused(setting: str) -> None:
         ("1 if kind == 'x' else 5", 5),
         ("max(a, 10) // 4", 2),
         ("round(pi * a)", 9),
+        ("[7, 5, 2][a - 1]", 2),
     ],
 )
 def test_expressions(expression: str, expected: object) -> None:
@@ -107,7 +108,19 @@ def test_expressions(expression: str, expected: object) -> None:
 
 @pytest.mark.parametrize(
     "expression",
-    ["b", "a.real", "a ** 9 ** 9", "__import__('os')", "[x for x in 'ab']", "'a' * 3", "(lambda: 1)()", "f'{a}'"],
+    [
+        "b",
+        "a.real",
+        "a ** 9 ** 9",
+        "__import__('os')",
+        "[x for x in 'ab']",
+        "'a' * 3",
+        "(lambda: 1)()",
+        "f'{a}'",
+        "[1][-1]",
+        "[1][0.5]",
+        "'a'[0]",
+    ],
 )
 def test_expressions_can_do_no_more_than_arithmetic(expression: str) -> None:
     with pytest.raises(ValueError, match="template expression"):

@@ -108,7 +108,9 @@ def test_valid_and_possible_at_the_ends_of_every_parameter(template: Template, v
         path = tmp_path / "end.yaml"
         path.write_text(text, encoding="utf-8")
         assert irsim.run(path, steps=1, seed=0).steps == 1, given
-        assert irsim.validate(text=text).valid, given
+        report = irsim.validate(text=text)
+        assert report.valid, given
+        assert [finding.message for finding in report.findings if finding.severity == "warning"] == [], given
         assert validator.is_valid(yaml.safe_load(text)), given
 
 
@@ -142,6 +144,36 @@ def test_robots_pass_in_corridors_of_any_width(given: dict[str, float], tmp_path
     path = tmp_path / "corridor.yaml"
     path.write_text(templates.fill(templates.load("corridor-passing"), given), encoding="utf-8")
     assert irsim.run(path).outcome == "success"
+
+
+def test_every_map_of_the_forest_has_a_way_through(tmp_path: Path) -> None:
+    seeds = set()
+    for number in range(1, 7):
+        path = tmp_path / f"forest{number}.yaml"
+        path.write_text(
+            templates.fill(templates.load("perlin-forest"), {"map": number, "fill": 0.27}), encoding="utf-8"
+        )
+        seeds.add(yaml.safe_load(path.read_text(encoding="utf-8"))["world"]["obstacle_map"]["seed"])
+        assert irsim.run(path).outcome == "success", number
+    assert len(seeds) == 6
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("corridor-passing", {"length": 60, "speed": 0.5}),
+        ("circle-swap", {"robots": 2, "speed": 0.1}),
+        ("circle-swap", {"robots": 3, "circle": 30}),
+        ("car-park", {"speed": 0.2}),
+        ("crossing", {"courier_speed": 0.2}),
+        ("lidar-explorer", {"speed": 0.1}),
+        ("obstacle-field", {"speed": 0.1}),
+        ("overtaking", {"slow": 0.1}),
+        ("random-polygons", {"size": 60}),
+    ],
+)
+def test_the_time_limit_grows_with_the_way(name: str, given: dict[str, object], tmp_path: Path) -> None:
+    assert irsim.run(filled(name, tmp_path, **given), seed=0).outcome != "timeout"
 
 
 def filled(name: str, folder: Path, **given: object) -> Path:
