@@ -73,9 +73,9 @@ def _validate(value: Any) -> str | tuple[float, ...]:
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, (list, tuple)) and len(value) in (3, 4):
-        numbers = [float(v) for v in value if isinstance(v, (int, float)) and not isinstance(v, bool)]
-        if len(numbers) == len(value) and all(0 <= v <= 1 for v in numbers):
-            return tuple(numbers)
+        numbers = [v for v in value if isinstance(v, (int, float)) and not isinstance(v, bool) and 0 <= v <= 1]
+        if len(numbers) == len(value):
+            return tuple(float(v) for v in numbers)
     raise problem("unknown-color", "this is not a color", allowed=_EXPECTED)
 
 

@@ -136,7 +136,7 @@ def gets_nowhere_since(places: NDArray[np.float64], step_time: float, max_speed:
     if not len(places):
         return None
     little = min(_LITTLE, _WINDOW / 2 * max_speed or _LITTLE)
-    far = np.flatnonzero(np.linalg.norm(places - places[-1], axis=1) >= little)
+    far = np.flatnonzero(np.hypot(*(places - places[-1]).T) >= little)
     since = int(far[-1]) + 1 if far.size else 0
     return None if len(places) - 1 - since < max(1, round(_WINDOW / step_time)) else since
 
@@ -195,11 +195,11 @@ def circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | 
         return None
     start = len(poses) - 2 - int(full[0])
     lap = poses[start:, :2]
-    length = float(np.linalg.norm(np.diff(lap, axis=0), axis=1).sum())
+    length = float(np.hypot(*np.diff(lap, axis=0).T).sum())
     radius = length / (2 * math.pi)
-    away = np.linalg.norm(poses[:, :2] - goal, axis=1)
+    away = np.hypot(*(poses[:, :2] - goal).T)
     nearest, farthest = float(away[start:].min()), float(away[start:].max())
-    closed = float(np.linalg.norm(lap[-1] - lap[0])) < radius
+    closed = math.dist(lap[-1], lap[0]) < radius
     if radius < _LEAST_RADIUS or not closed or farthest > 2 * radius:
         return None
     outside = np.flatnonzero(away > 1.1 * farthest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections import Counter
 from collections.abc import Sequence
@@ -171,7 +172,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 collision_count=counts[view.name],
                 infeasible_steps=int(env.simulation.infeasible[view.row]) or None,
                 path_length=_path_length(env, view.row),
-                distance_to_goal=None if goal is None else float(np.linalg.norm(goal[:2] - view.position)),
+                distance_to_goal=None if goal is None else math.dist(goal[:2, 0], view.position[:, 0]),
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
@@ -219,7 +220,8 @@ def _collisions(env: Env, events: list[Event]) -> tuple[list[Event], Counter[str
 def _path_length(env: Env, row: int) -> float:
     track = env.simulation.state.trajectory(row)[:, :2]
     points = np.vstack([env.simulation.state.initial_state(row)[None, :2], track])
-    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    with np.errstate(over="ignore", invalid="ignore"):  # steps may be as long as a number can say
+        return float(np.hypot(*np.diff(points, axis=0).T).sum())
 
 
 def _left(env: Env) -> list[Left]:

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 __all__ = ["MapCells", "MapGrid", "Walls", "map_grid"]
 
+_MOST_CELLS = 2**31 - 1
+"""Along one side of a map."""
+
 
 @dataclass(frozen=True)
 class MapCells:
@@ -109,6 +112,7 @@ def map_grid(
         origin: Its lower left corner, world frame [m].
         downsample: Keep every so many rows and columns.
     """
+    downsample = min(downsample, _MOST_CELLS)  # that leaves one cell of any map
     if isinstance(source, Noise):
         nx, ny = (-(-n // downsample) for n in source.size)
         cell = (width / nx, height / ny)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from irsim import _core as core
@@ -52,7 +53,7 @@ def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:
         if isinstance(part, core.Circle):
             found = (part.center[0], part.center[1], part.radius)
         elif isinstance(part, core.Polygon):
-            found = _inside([(x, y) for x, y in part.vertices])
+            found = _inside(tuple((x, y) for x, y in part.vertices))
         else:
             continue
         if found[2] > best[2]:
@@ -124,7 +125,8 @@ def _own_limit(options: Any) -> float:
     return math.inf if name != "orca" or options.maxSpeed is None else float(options.maxSpeed)
 
 
-def _inside(corners: list[tuple[float, float]]) -> tuple[float, float, float]:
+@lru_cache(maxsize=256)  # thousands of objects may have one shape
+def _inside(corners: tuple[tuple[float, float], ...]) -> tuple[float, float, float]:
     """Centre and radius of nearly the largest disc inside of an outline."""
     import numpy as np
 
@@ -142,7 +144,7 @@ def _inside(corners: list[tuple[float, float]]) -> tuple[float, float, float]:
     return best
 
 
-def _room(corners: list[tuple[float, float]], points: Floats) -> Floats:
+def _room(corners: Sequence[tuple[float, float]], points: Floats) -> Floats:
     """(P,) distances from (P, 2) points to the outline, negative outside."""
     import numpy as np
 

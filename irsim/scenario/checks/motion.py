@@ -288,13 +288,14 @@ def _jumps(context: Context) -> Iterator[Finding]:
     if not fast or len(there) < 2:
         return
     bodies = [*moving, *(body(record) for record in there if record.kinematics is None)]
+    thin_first = sorted(bodies, key=lambda b: (b.width, b.record.id))
     told: set[Path] = set()
     for one in fast:
         own = 2 * inner_disc(parts_of(one.record.shape))[2]
         if one.record.path in told or own == 0:  # a line moves along itself as well as across
             continue
         found = None
-        for other in sorted(bodies, key=lambda b: (b.width, b.record.id)):
+        for other in thin_first:
             step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
             if step <= own + other.width and other.speed == 0:
                 break  # and all that follow are thicker, or slower

@@ -21,6 +21,8 @@ _MOST_PAIRS = 300_000
 """Pairs that are looked at; thousands of objects in one place have more, and are told of as stacked."""
 
 
+_MOST_COUNTED = 10_000
+"""Pairs of two entries that are counted."""
 _DIRECTIONS, _HALVINGS, _RINGS = 16, 12, 30
 _TOUCHING = 1e-4
 """Depth that nobody would see [m]."""
@@ -37,7 +39,7 @@ def check(context: Context) -> Iterator[Finding]:
         if other.unobstructed or (mover.path == other.path and mover.path in told):
             continue
         key = (mover.path, other.path)
-        if len(found) >= _MOST_REPORTED and key not in found:
+        if (len(found) >= _MOST_REPORTED and key not in found) or (key in found and found[key][2] >= _MOST_COUNTED):
             continue
         if core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
             first = found.setdefault(key, (mover, other, 0))
@@ -52,11 +54,15 @@ def check(context: Context) -> Iterator[Finding]:
             "initial-overlap",
             where,
             f"'{mover.name}' starts {'in one place' if harmless else 'in collision'} with {_named(other)}{deep}"
-            + (f", and {count - 1} more such pairs of these entries" if count > 1 else ""),
+            + (f", and {_more(count)} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
             else "start in free space" + instead,
         )
+
+
+def _more(count: int) -> str:
+    return f"at least {count - 1}" if count >= _MOST_COUNTED else str(count - 1)
 
 
 def _depth(a: _Body, b: _Body) -> str:
