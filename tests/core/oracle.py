@@ -120,18 +120,21 @@ def distances(state: core.State, row: int, origin: np.ndarray, beam: np.ndarray,
     if kind == "circle":
         x, y, radius = state.circle(row, 0, True)
         return ray_circle(origin, beam, np.array([x, y]), radius, slack)
+    return min(ray_segment(origin, beam, a, b, slack) for a, b in itertools.pairwise(outline(state, row)))
+
+
+def outline(state: core.State, row: int) -> np.ndarray:
+    """Corners of a polygon or line, those of a polygon with the first once more."""
     v = state.vertices(row, 0, True)
-    ring = np.vstack([v, v[:1]]) if kind == "polygon" else v
-    return min(ray_segment(origin, beam, a, b, slack) for a, b in itertools.pairwise(ring))
+    return np.vstack([v, v[:1]]) if state.parts(row)[0] == "polygon" else v
 
 
 def runs_along(state: core.State, row: int, origin: np.ndarray, beam: np.ndarray, distance: float) -> bool:
     """Whether a beam runs along an edge of a single-part object, at that distance too."""
     if row < 0 or state.parts(row)[0] == "circle":
         return False
-    v = state.vertices(row, 0, True)
-    ring = np.vstack([v, v[:1]]) if state.parts(row)[0] == "polygon" else v
-    across, along = np.array([-beam[1], beam[0]]), (ring - origin) @ beam
+    ring, across = outline(state, row), np.array([-beam[1], beam[0]])
+    along = (ring - origin) @ beam
     on_line = np.abs((ring - origin) @ across) < 1e-9
     return any(
         on_line[k] and on_line[k + 1] and min(along[k : k + 2]) - 1e-9 <= distance <= max(along[k : k + 2]) + 1e-9

@@ -19,8 +19,6 @@ from irsim.vectors import is_vector
 _MOST_REPORTED = 20
 _MOST_PAIRS = 300_000
 """Pairs that are looked at; thousands of objects in one place have more, and are told of as stacked."""
-
-
 _MOST_COUNTED = 10_000
 """Pairs of two entries that are counted."""
 _DIRECTIONS, _HALVINGS, _RINGS = 16, 12, 30
