@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.options import Json
-from irsim.runs.store import RunError
+from irsim.runs.files import RunError
 
 if TYPE_CHECKING:
     from irsim.results import RunTable

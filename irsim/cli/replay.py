@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.options import Json
-from irsim.runs.store import RunError
+from irsim.runs.files import RunError
 
 __all__ = ["replay"]
 

@@ -17,9 +17,9 @@ from irsim.observers.events import Event
 from irsim.observers.trace import Trace
 from irsim.replay.columns import Columns, changes, folded, quantised
 from irsim.replay.drawing import drawn_grid, drawn_objects
+from irsim.runs.files import RunError
 from irsim.runs.reading import Run
 from irsim.runs.replaying import scenario_of
-from irsim.runs.store import RunError
 from irsim.scenario.limits import Limits
 from irsim.text import clean
 

@@ -8,8 +8,8 @@ from irsim.files import check_suffix, write_atomically
 from irsim.replay.data import pack_run
 from irsim.replay.page import page
 from irsim.results import ReplayResult
+from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
-from irsim.runs.store import RunError
 from irsim.scenario.limits import Limits
 from irsim.text import clean
 

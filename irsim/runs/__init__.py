@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from irsim.runs.files import RunError
     from irsim.runs.reading import Run, list_runs, open_run
-    from irsim.runs.store import RunError
 
 __all__ = ["Run", "RunError", "list_runs", "open_run"]
 
@@ -14,7 +14,7 @@ __all__ = ["Run", "RunError", "list_runs", "open_run"]
 def __getattr__(name: str) -> Any:
     """The names above, without NumPy for those who only look after the folders."""
     if name == "RunError":
-        from irsim.runs.store import RunError
+        from irsim.runs.files import RunError
 
         return RunError
     if name in __all__:

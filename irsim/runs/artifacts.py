@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from irsim.runs.files import RunError, text_of
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
-from irsim.runs.store import ARTIFACTS, FILES, RunError, text_of
+from irsim.runs.store import ARTIFACTS, FILES
 from irsim.scenario.limits import Limits
 from irsim.text import clean
 

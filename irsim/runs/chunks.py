@@ -18,7 +18,7 @@ from pydantic_core import to_json
 
 from irsim import _core as core
 from irsim.observers.trace import Trace
-from irsim.runs.store import Buffer, unreadable
+from irsim.runs.files import Buffer, unreadable
 
 __all__ = ["Layout", "chunk_of", "load_chunk", "load_events"]
 

@@ -15,9 +15,9 @@ from irsim.diagnostics import nearest
 from irsim.metrics import approaches
 from irsim.observers.trace import Trace
 from irsim.results import RunTable
+from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.replaying import scenario_of
-from irsim.runs.store import RunError
 from irsim.scenario.limits import Limits
 from irsim.text import clean
 

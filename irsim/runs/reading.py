@@ -15,21 +15,9 @@ from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
+from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.notes import lacking
-from irsim.runs.store import (
-    META,
-    RESULT,
-    RunError,
-    Status,
-    find_run,
-    json_of,
-    plain_file,
-    run_folders,
-    runs_folder,
-    status_of,
-    text_of,
-    unreadable,
-)
+from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
 
 __all__ = ["Run", "list_runs", "open_run"]
 

@@ -17,26 +17,11 @@ from pydantic_core import to_json
 from irsim import _core as core
 from irsim.observers.trace import sensors
 from irsim.runs.chunks import chunk_of
+from irsim.runs.files import Buffer, Claim, RunError, begun, claim, written
 from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
-from irsim.runs.store import (
-    BEGUN,
-    FILES,
-    META,
-    RESULT,
-    Buffer,
-    Claim,
-    RunError,
-    begun,
-    claim,
-    made_folder,
-    prune,
-    remove,
-    runs_folder,
-    tidy,
-    used,
-    written,
-)
+from irsim.runs.pruning import prune, remove, tidy
+from irsim.runs.store import BEGUN, FILES, META, RESULT, made_folder, runs_folder, used
 
 if TYPE_CHECKING:
     from irsim.env import Env

@@ -8,8 +8,8 @@ import numpy as np
 
 from irsim.env import Env
 from irsim.episode import Progress, advance, import_modules
+from irsim.runs.files import RunError
 from irsim.runs.reading import Run
-from irsim.runs.store import RunError
 from irsim.scenario.confine import why_outside
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import load_text

@@ -208,7 +208,7 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
 def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
     from irsim.results import BenchmarkResult
-    from irsim.runs.store import RunError, written
+    from irsim.runs.files import RunError, written
 
     def keep(result: BenchmarkResult) -> None:
         with suppress(RunError):  # the folder may have been removed by somebody

@@ -22,25 +22,18 @@ from typing import Any
 
 import anyio
 
+from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, written
+from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
-    DAY,
     LOCK,
     META,
     RESULT,
-    Claim,
-    RunError,
-    claim,
-    json_of,
     made_folder,
     mark_cancelled,
-    plain_file,
-    prune,
     recent_ids,
-    remove,
     run_folders,
     runs_folder,
     status_of,
-    written,
 )
 from irsim.text import clean
 from irsim_mcp.errors import failure

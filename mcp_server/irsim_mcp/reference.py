@@ -9,7 +9,7 @@ from irsim import templates
 from irsim.lookup import TopicError, as_text, schema_part
 from irsim.lookup import lookup as look_up
 from irsim.modeline import without_modeline
-from irsim.runs.store import RunError
+from irsim.runs.files import RunError
 
 __all__ = ["explained", "schema_text"]
 

@@ -6,7 +6,8 @@ import difflib
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
-from irsim.runs.store import RunError, find_run, mark_cancelled, run_folders, runs_folder
+from irsim.runs.files import RunError
+from irsim.runs.store import find_run, mark_cancelled, run_folders, runs_folder
 from irsim.scenario.confine import why_outside
 from irsim.text import clean
 from irsim_mcp.errors import failure

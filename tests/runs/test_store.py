@@ -19,18 +19,9 @@ import pytest
 
 import irsim
 from irsim.runs import RunError, list_runs, open_run
-from irsim.runs.store import (
-    META,
-    claim,
-    find_run,
-    made_folder,
-    mark_cancelled,
-    prune,
-    runs_folder,
-    status_of,
-    tidy,
-    written,
-)
+from irsim.runs.files import claim, written
+from irsim.runs.pruning import prune, tidy
+from irsim.runs.store import META, find_run, made_folder, mark_cancelled, runs_folder, status_of
 
 ENDLESS = """\
 world: {width: 100, height: 100, collision_mode: unobstructed}
@@ -107,14 +98,14 @@ def test_leftovers_are_swept(workspace: Path) -> None:
 
 
 def test_names_are_slugs() -> None:
-    from irsim.runs.store import _ID
+    from irsim.runs.store import ID
 
     for stem in ("Crossing of 8 robots, é & more than that!", "...", "", "a" * 200, "../../x"):
         folder = Path(os.environ.get("TMPDIR", "/tmp"))
         made_one = made_folder(folder, stem)
         made_one.rmdir()
         assert made_one.parent == folder
-        assert _ID.fullmatch(made_one.name)
+        assert ID.fullmatch(made_one.name)
         assert len(made_one.name) <= 31
 
 
