@@ -93,7 +93,7 @@ def run(
     options = {"strict": strict, "imports": list(imports), **({} if told is None else {"behavior": told})}
     with recording(env, path, record, horizon=horizon, options=options) as recorder:
         if recorder is not None and recorded is not None:
-            recorded(recorder.folder.name)
+            recorded(recorder.run_id)
         if save is None and not show:
             advance(env, horizon, progress, recorder=recorder)
             files: list[str] = []

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 from typing import Any
-from zlib import crc32
 
 import numpy as np
+from isal.isal_zlib import crc32
 from numpy.typing import NDArray
 from pydantic_core import to_json
 

@@ -112,7 +112,8 @@ def written(target: str | Path, *parts: Buffer) -> None:
     Raises:
         RunError: The system refuses.
     """
-    temporary = os.path.join(os.path.dirname(target), f"{TEMPORARY}{os.urandom(4).hex()}")
+    head, separator, _ = os.fspath(target).rpartition(os.sep)
+    temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
     try:
         descriptor = os.open(temporary, _NEW, 0o600)
         try:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import fields
-from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -16,40 +14,55 @@ from irsim.scenario.objects import ObjectRecord
 if TYPE_CHECKING:
     from irsim.simulation import Simulation
 
-__all__ = ["plain_scenario"]
+__all__ = ["plain_scenario", "with_options"]
 
-_MODELS = ("kinematics", "shape", "behavior", "group_behavior", "plot")
-"""Options models: the objects of an entry have them in common, so each is put into words once."""
-_EACH = ("id", "name", "group", "group_name", "path", "index")
-_LIKE = tuple(field.name for field in fields(ObjectRecord) if field.name not in (*_MODELS, *_EACH, "state", "goals"))
-_OBJECT = b"%%b,%%b%b}" % b"".join(b',"%b":%%b' % key.encode() for key in _MODELS)
-_each, _like, _models = attrgetter(*_EACH), attrgetter(*_LIKE), attrgetter(*_MODELS)
-_json: Callable[[Any], bytes] = partial(to_json, inf_nan_mode="strings", serialize_unknown=True)
+_MODELS = ("kinematics", "behavior", "group_behavior", "plot")
+_EACH = ("id", "name", "group", "group_name", "path", "index", "shape")
+_LIKE = tuple(field.name for field in fields(ObjectRecord) if field.name not in (*_EACH, "state", "goals"))
+_each, _like = attrgetter(*_EACH), attrgetter(*_LIKE)
 
 
 def plain_scenario(simulation: Simulation) -> bytes:
     """World and objects with all defaults, and where each object starts in the scene at hand, as JSON.
 
-    Numbers that JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. Outlines of random shapes and cells
-    of maps are left out: the scenario and the seed give them again.
+    What objects have in common stands once, in ``options``, and each object says which of these it has. Numbers that
+    JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. Outlines of random shapes and cells of maps are
+    left out: the scenario and the seed give them again.
     """
     scenario, goals = simulation.scenario, simulation.state.goals
-    told: dict[int, bytes] = {}  # by identity of the model
-    objects = []
-    last, rest = None, b""
+    objects, options = list[dict[str, Any]](), list[dict[str, Any]]()
+    last: tuple[Any, ...] = ()
     for row, (record, pose) in enumerate(zip(scenario.objects, simulation.pose.tolist(), strict=True)):
-        own = dict(zip(_EACH, _each(record), strict=True))
-        own["state"], own["goals"] = [*pose, *record.state[3:]], goals(row)
         like = _like(record)
         if like != last:
-            last, rest = like, _json(dict(zip(_LIKE, like, strict=True)))[1:-1]
-        models = _models(record)
-        for model in models:
-            if id(model) not in told:
-                told[id(model)] = _json(_values(model))
-        objects.append(_OBJECT % (_json(own)[:-1], rest, *[told[id(model)] for model in models]))
-    whole = {"name": scenario.name, "world": _values(scenario.world), "radius": simulation.radius.tolist()}
-    return b'%b,"objects":[%b]}' % (_json(whole)[:-1], b",".join(objects))
+            last = like
+            models = {key: _values(getattr(record, key)) for key in _MODELS}
+            options.append(dict(zip(_LIKE, like, strict=True)) | models)
+        own = dict(zip(_EACH, _each(record), strict=True))
+        own["shape"] = _values(record.shape)
+        objects.append({**own, "state": [*pose, *record.state[3:]], "goals": goals(row), "options": len(options) - 1})
+    whole = {
+        "name": scenario.name,
+        "world": _values(scenario.world),
+        "radius": simulation.radius.tolist(),
+        "objects": objects,
+        "options": options,
+    }
+    return to_json(whole, inf_nan_mode="strings", serialize_unknown=True)
+
+
+def with_options(data: Any) -> dict[str, Any]:
+    """What :func:`plain_scenario` tells, read and with its options in each object.
+
+    Raises:
+        TypeError: It is something else.
+        LookupError: It lacks a part.
+    """
+    options = data["options"]
+    objects = [{**options[item["options"]], **item} for item in data["objects"]]
+    for item in objects:
+        del item["options"]
+    return {**{key: value for key, value in data.items() if key != "options"}, "objects": objects}
 
 
 def _values(model: Any) -> Any:

@@ -24,7 +24,7 @@ _BETWEEN_TIDYING = 5.0
 """Seconds: looking at every run before each short one would cost more than the run."""
 
 
-def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None = None) -> list[str]:
+def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None = None) -> list[str]:
     """Let go of runs that nobody has used for ``age`` seconds, and of the least recently used ones beyond the quota.
 
     Runs that are being written stay, and so does ``keep``. Leftovers of processes that were killed are swept up.
@@ -33,7 +33,7 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
         runs: Folder of all runs.
         quota: Bytes they may take together.
         age: Seconds after its last use.
-        keep: A run that stays.
+        keep: Id of a run that stays.
 
     Returns:
         Ids of what was let go.
@@ -45,7 +45,7 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
     for used, folder in runs_used:
         size, leftovers = sizes[folder]
         unwanted = used < oldest or total > quota
-        if not (unwanted or leftovers) or (keep is not None and folder.name == keep.name) or being_written(folder):
+        if not (unwanted or leftovers) or folder.name == keep or being_written(folder):
             continue
         if unwanted:
             remove(folder)
@@ -56,15 +56,15 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: Path | None
     return gone
 
 
-def tidy(runs: Path) -> None:
+def tidy(runs: str | Path) -> None:
     """:func:`prune`, unless somebody did so a moment ago."""
-    mark = os.path.join(runs, _TIDIED)
+    mark = f"{runs}{os.sep}{_TIDIED}"
     with suppress(OSError):
         if 0 <= time.time() - os.stat(mark).st_mtime < _BETWEEN_TIDYING:
             return
     with suppress(OSError):
         Path(mark).touch()
-    prune(runs)
+    prune(Path(runs))
 
 
 def _size_of(folder: Path) -> tuple[int, list[str]]:

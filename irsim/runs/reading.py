@@ -17,6 +17,7 @@ from irsim.results import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.notes import lacking
+from irsim.runs.plain import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
 
 __all__ = ["Run", "list_runs", "open_run"]
@@ -90,11 +91,10 @@ class Run:
     @cached_property
     def resolved(self) -> dict[str, Any]:
         """World and objects with all defaults, at their start, as plain data."""
-        data: Any = json_of(self.folder, "resolved.json")
-        objects = data.get("objects") if isinstance(data, dict) else None
-        if not isinstance(objects, list) or not all(isinstance(item, dict) for item in objects):
-            raise unreadable(f"resolved.json of run {self.id} is missing or has been changed")
-        return dict(data)
+        try:
+            return with_options(json_of(self.folder, "resolved.json"))
+        except (TypeError, LookupError):
+            raise unreadable(f"resolved.json of run {self.id} is missing or has been changed") from None
 
     @property
     def notes(self) -> list[str]:

@@ -21,7 +21,7 @@ from irsim.runs.files import Buffer, Claim, RunError, begun, claim, written
 from irsim.runs.notes import lacking
 from irsim.runs.plain import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
-from irsim.runs.store import BEGUN, FILES, META, RESULT, made_folder, runs_folder, used
+from irsim.runs.store import BEGUN, FILES, META, RESULT, made_folder, runs_place, used
 
 if TYPE_CHECKING:
     from irsim.env import Env
@@ -56,6 +56,7 @@ class Recorder:
 
     Attributes:
         folder: Where it is written.
+        run_id: Name of that folder.
 
     Raises:
         RunError: The folder holds something already, or leads elsewhere.
@@ -71,13 +72,14 @@ class Recorder:
         folder: Path | None = None,
     ) -> None:
         self._simulation = simulation
-        self._runs = None if folder is not None else runs_folder(make=True)
+        self._runs = None if folder is not None else runs_place(make=True)
         if self._runs is not None:
             tidy(self._runs)
-            self.folder = made_folder(self._runs, "scenario" if scenario is None else Path(scenario).stem)
+            self.folder = made_folder(self._runs, "scenario" if scenario is None else _stem(scenario))
         else:
             assert folder is not None
-            self.folder = _new(folder)
+            self.folder = str(_new(folder))
+        self.run_id = os.path.basename(self.folder)
         self._claim: Claim | None = None
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
         self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
@@ -92,7 +94,7 @@ class Recorder:
         self._due = time.monotonic() + _PERIOD
         kept, source = sensors(simulation) if scans else [], simulation.scenario.source
         self._meta: dict[str, Any] = {
-            "id": self.folder.name,
+            "id": self.run_id,
             "cancelled": False,
             "created": time.strftime("%Y-%m-%dT%H:%M:%S+00:00", time.gmtime()),
             "scenario": scenario,
@@ -109,13 +111,13 @@ class Recorder:
             **_versions(),
         }
         try:
-            self._claim = claim(os.path.join(self.folder, BEGUN), _text_of(simulation).encode())
-            begun(os.path.join(self.folder, "resolved.json"), plain_scenario(simulation))
+            self._claim = claim(self._path(BEGUN), _text_of(simulation).encode())
+            begun(self._path("resolved.json"), plain_scenario(simulation))
             self._write_meta()
         except BaseException:
             self._stop()
             if self._runs is not None:
-                remove(self.folder)
+                remove(Path(self.folder))
             raise
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
@@ -149,9 +151,9 @@ class Recorder:
         """Write what is left and the result, which is told where its record is; the run is complete."""
         self._flush()
         result.notes = lacking(self._meta, result.steps)
-        result.run_id = self.folder.name
-        result.artifacts = {name: os.path.join(self.folder, name) for name in FILES}
-        self._write(RESULT, result.model_dump_json(indent=1).encode())
+        result.run_id = self.run_id
+        result.artifacts = {name: self._path(name) for name in FILES}
+        self._write(RESULT, to_json(result, indent=1))
         used(self.folder)
         self._stop()
 
@@ -216,14 +218,17 @@ class Recorder:
         self._due = time.monotonic() + _PERIOD
         if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
             self._pruned_at = self._bytes
-            prune(self._runs, keep=self.folder)
+            prune(Path(self._runs), keep=self.run_id)
 
     def _write_meta(self, **changes: Any) -> None:
         self._meta.update(changes)
         self._write(META, to_json(self._meta, indent=1))
 
     def _write(self, name: str, *parts: Buffer) -> None:
-        written(os.path.join(self.folder, name), *parts)
+        written(self._path(name), *parts)
+
+    def _path(self, name: str) -> str:
+        return f"{self.folder}{os.sep}{name}"
 
 
 @contextmanager
@@ -260,8 +265,8 @@ def recording(
 
 def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
     """A log of what can move: everybody where Python takes part."""
-    records = simulation.scenario.objects
-    movers = [row for row, record in enumerate(records) if simulation.in_python or not record.static]
+    records, everybody = simulation.scenario.objects, simulation.in_python
+    movers = [row for row, record in enumerate(records) if everybody or not record.static]
     columns = max((records[row].vel_dim for row in movers), default=0)
     return core.Log(simulation.world, movers, min(3, columns), scans), movers
 
@@ -272,6 +277,10 @@ def _told(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) ->
     partner = names[second] if second >= 0 else None
     time = step * step_time
     return {"kind": kind, "time": time, "step": step, "object": names[first], "partner": partner, "x": x, "y": y}
+
+
+def _stem(scenario: str) -> str:
+    return os.path.splitext(os.path.basename(scenario))[0]
 
 
 def _new(folder: Path) -> Path:

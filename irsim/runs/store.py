@@ -34,6 +34,7 @@ __all__ = [
     "recent_ids",
     "run_folders",
     "runs_folder",
+    "runs_place",
     "status_of",
     "used",
 ]
@@ -66,14 +67,19 @@ def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> P
     Raises:
         RunError: ``.irsim`` or ``runs`` is a link or no folder: nothing is read or written through links.
     """
+    return Path(runs_place(workspace, make=make))
+
+
+def runs_place(workspace: str | Path | None = None, *, make: bool = False) -> str:
+    """:func:`runs_folder` as text: a path object would take longer than a few steps of a small world."""
     top = os.path.join(os.getcwd() if workspace is None else workspace, _KEPT_IN)
-    folder = os.path.join(top, "runs")
+    folder = f"{top}{os.sep}runs"
     for part in (top, folder):
         mode = _mode(part)
         if mode is not None and not stat.S_ISDIR(mode):
             raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
     if make:
-        ignore = os.path.join(top, ".gitignore")
+        ignore = f"{top}{os.sep}.gitignore"
         try:
             if mode is None:
                 os.makedirs(folder, exist_ok=True)
@@ -81,7 +87,7 @@ def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> P
             raise refusal(folder, error) from None
         if _mode(ignore) is None:
             written(ignore, b"*\n")
-    return Path(folder)
+    return folder
 
 
 def _mode(path: str) -> int | None:
@@ -92,18 +98,18 @@ def _mode(path: str) -> int | None:
         return None
 
 
-def made_folder(runs: Path, stem: str) -> Path:
+def made_folder(runs: str | Path, stem: str) -> str:
     """A new folder for a run: ``<stem as a slug>-<six hexadecimal digits>``."""
     slug = _NO_SLUG.sub("-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
     while True:
-        folder = os.path.join(runs, f"{slug}-{os.urandom(3).hex()}")
+        folder = f"{runs}{os.sep}{slug}-{os.urandom(3).hex()}"
         try:
             os.mkdir(folder)
         except FileExistsError:
             continue
         except OSError as error:
             raise refusal(folder, error) from None
-        return Path(folder)
+        return folder
 
 
 def run_folders(runs: Path) -> list[Path]:
@@ -165,10 +171,10 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
     raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_AGAIN}")
 
 
-def used(folder: Path) -> None:
+def used(folder: str | Path) -> None:
     """Note that a run is used at this moment."""
     with suppress(OSError):
-        os.utime(os.path.join(folder, META))
+        os.utime(f"{folder}{os.sep}{META}")
 
 
 def status_of(folder: Path) -> Status:

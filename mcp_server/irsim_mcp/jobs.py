@@ -88,7 +88,7 @@ class Jobs:
                 f"{len(running)} jobs are running, which is as many as there may be: {', '.join(running)}",
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
-        job = made_folder(folder, _STEM)
+        job = Path(made_folder(folder, _STEM))
         held = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)

@@ -68,6 +68,17 @@ def test_what_a_run_says_of_its_objects_is_everything(room: Path) -> None:
         assert told == whole
 
 
+def test_what_many_objects_have_in_common_is_kept_once(workspace: Path) -> None:
+    sizes = []
+    for number in (1, 100):
+        robots = {"number": number, "distribution": {"name": "circle", "radius": 20, "center": [25, 25]}}
+        scenario = {"world": {"width": 50, "height": 50}, "robot": {**robots, "kinematics": {"name": "diff"}}}
+        run = open_run(str(irsim.run(text=json.dumps(scenario), seed=0, steps=1, record=True).run_id))
+        assert [item["kinematics"]["name"] for item in run.resolved["objects"]] == ["diff"] * number
+        sizes.append((run.folder / "resolved.json").stat().st_size)
+    assert sizes[1] < 100 * sizes[0] / 4
+
+
 def test_a_piece_of_the_trace_is_an_archive_for_everybody(room: Path) -> None:
     result = irsim.run(room, seed=4, record=True)
     path = open_run(str(result.run_id)).folder / "trace-0000.npz"

@@ -37,7 +37,7 @@ robot:
 
 def made(workspace: Path, name: str, size: int = 10, age: float = 0.0) -> Path:
     """A run as the store sees it: so large, last used so many seconds ago."""
-    folder = made_folder(runs_folder(workspace, make=True), name)
+    folder = Path(made_folder(runs_folder(workspace, make=True), name))
     (folder / "trace-0000.npz").write_bytes(b"x" * size)
     (folder / META).write_text(json.dumps({"id": folder.name, "status": "finished"}))
     used = time.time() - age
@@ -78,7 +78,7 @@ def test_looking_after_the_folder_takes_a_rest(workspace: Path) -> None:
 
 def test_a_run_alone_may_exceed_the_quota_while_it_is_kept(workspace: Path) -> None:
     folder = made(workspace, "big", 1000)
-    assert prune(runs_folder(workspace), quota=10, keep=folder) == []
+    assert prune(runs_folder(workspace), quota=10, keep=folder.name) == []
     assert prune(runs_folder(workspace), quota=10) == [folder.name]
     assert list(runs_folder(workspace).iterdir()) == []
 
@@ -102,7 +102,7 @@ def test_names_are_slugs() -> None:
 
     for stem in ("Crossing of 8 robots, é & more than that!", "...", "", "a" * 200, "../../x"):
         folder = Path(os.environ.get("TMPDIR", "/tmp"))
-        made_one = made_folder(folder, stem)
+        made_one = Path(made_folder(folder, stem))
         made_one.rmdir()
         assert made_one.parent == folder
         assert ID.fullmatch(made_one.name)
