@@ -51,6 +51,8 @@ PARTIAL = "partial.json"
 """The result of the episodes that were done a moment ago, for when the job is stopped."""
 _PERIOD = 0.5
 """Seconds between looks at what others want and notes of how far it is."""
+_AFTER = 10
+"""Seconds of computing beyond those of a job: it is ended by the clock, unless nobody looks any more."""
 _POLL = 0.1
 
 
@@ -101,7 +103,7 @@ class Jobs:
             "resources": {
                 "memory": self._limits.memory,
                 "written": self._limits.written,
-                "cpu": self._limits.job_seconds,
+                "cpu": self._limits.job_seconds * (os.cpu_count() or 1) + _AFTER,
             },
         }
         _Keeper(job, held, about, work, self._limits.job_seconds).start()
@@ -117,7 +119,8 @@ class Jobs:
 
         Returns:
             ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
-            (of a job that was stopped: of the episodes that were kept) or ``error`` where there is one.
+            (of a job that was stopped: of the episodes that were kept; ``why``, unless somebody wanted it) or ``error``
+            where there is one.
 
         Raises:
             ToolError: There is no such job.
@@ -191,7 +194,8 @@ def _state(job: Path) -> dict[str, Any]:
             return state | {"status": "failed", "error": answer["error"]}
         return state | {"result": answer, "done": state["total"]}
     if status != "running" and isinstance(partial := json_of(job, PARTIAL), dict):
-        return state | {"result": partial, "done": len(partial["episodes"])}
+        why = about.get("why") if isinstance(about, dict) else None
+        return state | {"result": partial, "done": len(partial["episodes"])} | ({"why": str(why)} if why else {})
     return state
 
 
@@ -214,6 +218,9 @@ class _Keeper(threading.Thread):
             answer = self._answer()
             if answer is None:
                 mark_cancelled(self._job)
+                return
+            if "error" in answer and plain_file(self._job, PARTIAL) is not None:
+                _note(self._job, {**self._about, "why": answer["error"]["what"]})
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError):

@@ -49,7 +49,7 @@ class ServerLimits:
         map_bytes: Size of a map file.
         written: Size of a file that a worker writes, which only caches of libraries are [bytes].
         jobs: Jobs that run at the same time in a workspace.
-        job_seconds: Wall-clock time of a job, and processor time of each of its processes.
+        job_seconds: Wall-clock time of a job; each of its processes may compute as long on every core.
         text: Characters of text in one result, about four to a token.
     """
 

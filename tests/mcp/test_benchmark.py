@@ -148,6 +148,18 @@ async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspa
         assert (workspace / ended["artifact"]).is_file()
 
 
+@pytest.mark.slow
+async def test_a_job_whose_time_is_over_keeps_the_episodes_that_were_done(workspace: Path) -> None:
+    async with connected(workspace, job_seconds=12) as client:
+        asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 50}
+        result = await client.call_tool("benchmark", asked)
+        ended = data_of(result)
+        assert ended["status"] == "interrupted"
+        assert 0 < ended["done"] < ended["total"]
+        assert ended["next"].startswith("12 s of computing were over. This is of the ")
+        assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+
+
 async def test_two_jobs_at_a_time(workspace: Path) -> None:
     async with connected(workspace) as client:
         jobs = [

@@ -138,7 +138,10 @@ def answer(state: dict[str, Any]) -> CallToolResult:
         _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL)
         found.done, found.total = state["done"], state["total"]
         if state["status"] != "finished":
-            found.next = f"This is of the {found.done} episodes that were done; call benchmark again for all."
+            why, more = "", "call benchmark again for all"
+            if "why" in state:
+                why, more = f"{clean(state['why'])}. ", "ask for fewer seeds, scenarios or steps at a time"
+            found.next = f"{why}This is of the {found.done} episodes that were done; {more}."
     text = TextContent(type="text", text=_text(found))
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
 
