@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import irsim
 from irsim import registry
 from irsim.scenario.read import read
 
@@ -235,6 +237,19 @@ def test_a_single_obstacle_mapping_joins_the_first_robots() -> None:
 def test_only_the_first_members_group_behavior_counts() -> None:
     data = {"robot": [{**DIFF, "group": 1}, {**DIFF, "group": 1, "state": [3, 3], "group_behavior": {"name": "sfm"}}]}
     assert ("hint", "group-behavior-unused", ("robot", 1, "group_behavior")) in findings(data)
+
+
+def test_who_is_driven_by_a_group_does_not_stand_still() -> None:
+    """The behavior of the first member drives the others, obstacles too; without one in the group they stand."""
+    still = {key: value for key, value in DIFF.items() if key != "behavior"}
+    leader = {**still, "group": 0, "group_behavior": {"name": "orca"}, "state": [1, 5, 0], "goal": [9, 5]}
+    member = {**still, "state": [1, 7, 0], "goal": [9, 7]}
+    for others in ({"robot": [leader, {**member, "group": 0}]}, {"robot": [leader], "obstacle": member}):
+        assert "no-behavior" not in [code for _, code, _ in findings(others)]
+    scenario = "world: {}\nrobot: " + json.dumps([leader, {**member, "group": 0}])
+    assert irsim.run(text=scenario, seed=0).outcome == "success"
+    alone = findings({"robot": [leader, {**member, "group": 1}]})
+    assert ("hint", "no-behavior", ("robot", 1)) in alone
 
 
 def test_rvo_acce_that_limits_nothing() -> None:

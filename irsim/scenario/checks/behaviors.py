@@ -25,15 +25,18 @@ _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
 def check(context: Context) -> Iterator[Finding]:
     """One finding per entry and key, whatever the number of its objects."""
     seen: set[tuple[Any, ...]] = set()
+    leaders: dict[int, ObjectRecord] = {}
     for record in context.written:
-        for finding in _of_object(context, record):
+        leader = leaders.setdefault(record.group, record)
+        for finding in _of_object(context, record, driven=leader.group_behavior is not None):
             key = (finding.diagnostic.code, finding.diagnostic.path)
             if key not in seen:
                 seen.add(key)
                 yield finding
 
 
-def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+def _of_object(context: Context, record: ObjectRecord, *, driven: bool) -> Iterator[Finding]:
+    """``driven``: the first member of its group has a group behavior, which decides for all members."""
     for key, table in (("behavior", CUSTOM_BEHAVIORS), ("group_behavior", CUSTOM_GROUP_BEHAVIORS)):
         options = getattr(record, key)
         if options is None:
@@ -62,7 +65,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "a robot without kinematics never moves: it cannot get to its goal",
             fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
         )
-    elif not record.static and (record.role == "robot" or (record.kinematics is not None and goal)):
+    elif not driven and not record.static and (record.role == "robot" or (record.kinematics is not None and goal)):
         unless = "the program gives it actions" if record.role == "robot" else "the program moves it"
         yield hint(
             "no-behavior",
