@@ -12,6 +12,7 @@ from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.load import Document
 from irsim.scenario.model import Scenario
 from irsim.scenario.numerals import decimal_commas, read_number
+from irsim.scenario.places import places_in, waypoints_meant
 from irsim.scenario.synonyms import instead_of, vector_of
 from irsim.scenario.tolerance import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.where import at, field_at, lengths_of, literals, model_at, unit_of
@@ -210,16 +211,35 @@ class Explainer:
         wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
             return error("wrong-length", self.path, f"this list has {count} elements", allowed=f"{wanted} elements")
-        meant = None if most is None or not isinstance(self.value, (list, tuple)) else decimal_commas(self.value, most)
+        fix, edit = self._shorter(most)
         return error(
             "wrong-length",
             self.path,
             f"{count} number{'s' if count != 1 else ''}; this key takes {wanted}",
             given=self.value,
             allowed=f"{wanted} numbers",
-            fix=None if meant is None else f"decimal commas? write {meant}",
+            fix=fix,
+            edit=edit,
             carry_on=carry_on_value(self.kind, self.path, self.value, most),
         )
+
+    def _shorter(self, most: int | None) -> tuple[str | None, Edit | None]:
+        """What a vector that is too long was meant to be."""
+        value, several = self.value, place(self.path) == "entry.waypoints"
+        if most is None or not isinstance(value, (list, tuple)) or len(value) <= most:
+            return None, None
+        text = self.document.source_text((*self.document.prefix, *self.path))
+        meant = decimal_commas(value, most, text, apart=several)
+        if meant is not None:
+            return f"decimal commas? write {meant}", None
+        if not several:
+            return None, None
+        places = waypoints_meant(self.path, self.data)
+        if places is None:
+            return "a place is [x, y] or [x, y, theta]", None
+        edit = Edit("replace", self.path[:-1], places.value, safe=places.sure)
+        own = places_in(value)
+        return f"one list per place: {shown(own.value if own else None)[1:-1]}", edit
 
     def _type(self) -> Finding:
         expected = _EXPECTED[self.kind]
@@ -256,8 +276,11 @@ class Explainer:
         if expected == "a list" and isinstance(value, Mapping) and value and is_vector(list(value.values())):
             return f"numbers alone, in a list: {flow(list(value.values()))}", None
         if expected == "a list" and place(path) == "entry.waypoints" and is_vector(points := at(self.data, path[:-1])):
-            edit = Edit("replace", path[:-1], [points])
-            return f"a list of places: waypoints: {flow([points])}", edit
+            places = places_in(points)
+            if places is None:
+                return "a list of places: waypoints: [[x, y], [x, y]]", None
+            edit = Edit("replace", path[:-1], places.value, safe=places.sure)
+            return f"a list of places: waypoints: {shown(places.value, 200)}", edit
         if expected == "a list" and isinstance(value, Mapping):
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
         if value is None:

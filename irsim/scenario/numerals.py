@@ -24,16 +24,21 @@ class Reading(NamedTuple):
     is_number: bool = False
 
 
-def decimal_commas(values: Sequence[Any], most: int) -> str | None:
+def decimal_commas(values: Sequence[Any], most: int, written: str | None, *, apart: bool = False) -> str | None:
     """The list that was meant if ``[1,5, 2,5, 0]`` has decimal commas; None if it can't be, or is not too long.
 
     Args:
-        values: As written.
+        values: As read.
         most: So many numbers there should be at most.
+        written: Their text: a comma with a space behind it is none of a number.
+        apart: Only where spaces part one number from the next.
     """
     count = (len(values) + 1) // 2
     whole = all(isinstance(value, int) and not isinstance(value, bool) for value in values)
     if not whole or not count <= most < len(values) or any(value < 0 for value in values[1::2]):
+        return None
+    spaces = [bool(space) for space in re.findall(r",(\s*)(?=[-+.\d])", written or "")]
+    if len(spaces) != len(values) - 1 or any(spaces[::2]) or (apart and not all(spaces[1::2])):
         return None
     pairs = [values[i : i + 2] for i in range(0, len(values), 2)]
     return "[" + ", ".join(".".join(str(part) for part in pair) for pair in pairs) + "]"

@@ -13,6 +13,7 @@ from irsim.codes import CODES
 from irsim.diagnostics import Diagnostic, format_path
 from irsim.scenario.compose import compose
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.mend import mend
 from irsim.scenario.numerals import read_number
 from irsim.scenario.read import read
 from irsim.scenario.repair import applied
@@ -306,6 +307,10 @@ DIFF = "kinematics: {name: diff}, behavior: {name: dash}"
         ("state: [1,5, 2,5, 0], goal: [9, 5]", "state-truncated", "decimal commas? write [1.5, 2.5, 0]"),
         ("state: [1,5, 2,5], goal: [9, 5]", "state-truncated", "decimal commas? write [1.5, 2.5]"),
         ("state: [1, 5, 0, 0], goal: [9, 5]", "state-truncated", None),
+        ("state: [1, 5, 2, 5, 0], goal: [9, 5]", "state-truncated", None),
+        ("state: [1, 5, 0], goal: [9,5,9,25]", "wrong-length", "decimal commas? write [9.5, 9.25]"),
+        ("state: [1, 5, 0], goal: [9, 5, 0, 0]", "wrong-length", None),
+        ("state: [1, 5, 0], waypoints: [[3,5, 9,5]]", "wrong-length", "decimal commas? write [3.5, 9.5]"),
         ("state: [1, 5, 0], goal: [9,5, 9,25]", "wrong-length", "decimal commas? write [9.5, 9.25]"),
         ("state: [1, 5, 0], goal: [9.5, 9, 2, 1]", "wrong-length", None),
         ("shape: {name: circle, radius: 0,3}", "unknown-key", "a decimal comma? write radius: 0.3"),
@@ -318,6 +323,47 @@ def test_decimal_commas_are_recognised(keys: str, code: str, fix: str | None) ->
     (item,) = [item for item in found if item.code == code]
     assert item.fix == fix
     assert item.severity == ("hint" if code == "state-truncated" and fix is None else item.severity)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("[3, 5, 9, 5]", [[3, 5], [9, 5]]),
+        ("[3,5,9,5]", [[3, 5], [9, 5]]),
+        ("[9, 5]", [[9, 5]]),
+        ("[3, 5, 0]", [[3, 5, 0]]),
+        ("[3, 5, 0, 9, 5, 0]", [[3, 5, 0], [9, 5, 0]]),
+        ("[3, 5, 1.57, 9, 5, -0.785]", [[3, 5, 1.57], [9, 5, -0.785]]),
+        ("[3, 5, 9, 5, 9, 2]", [[3, 5], [9, 5], [9, 2]]),
+        ("[3, 5, 1, 9, 5, 2]", None),
+        ("[3, 5, 9]", None),
+        ("[3, 5, 9, 5, 9]", None),
+        ("[[3, 5, 9, 5]]", [[3, 5], [9, 5]]),
+        ("[[3,5,0,9,5,0]]", [[3, 5, 0], [9, 5, 0]]),
+        ("[[1, 1], [3, 5, 9, 5], [9, 9]]", [[1, 1], [3, 5], [9, 5], [9, 9]]),
+        ("[[3, 5, 0, 0], [9, 5, 0, 0]]", None),
+        ("[[[3, 5, 9, 5]]]", [[[3, 5], [9, 5]]]),
+    ],
+)
+def test_waypoints_that_run_into_each_other(written: str, meant: Any) -> None:
+    """What the fix says is what the edit writes, and it is right; without it the author decides."""
+    text = f"{ROOM}robot: {{{DIFF}, state: [1, 5, 0], waypoints: {written}}}\n"
+    (item,) = {str(item.edit): item for item in read(text, strict=True).errors}.values()
+    if meant is None:
+        assert item.edit is None or not item.edit.safe
+        assert mend(text).text == text
+        return
+    assert "[3, 5" in str(item.fix) or flow(meant) in str(item.fix)
+    mended = mend(text).text
+    assert f"waypoints: {flow(meant)}" in mended
+    assert not read(mended, strict=True).errors
+
+
+def test_waypoints_of_several_objects_that_run_into_each_other() -> None:
+    text = (
+        f"{ROOM}robot: {{{DIFF}, number: 2, state: [[1, 5, 0], [1, 8, 0]], waypoints: [[3, 5, 9, 5], [3, 8, 9, 8]]}}\n"
+    )
+    assert "waypoints: [[[3, 5], [9, 5]], [[3, 8], [9, 8]]]" in mend(text).text
 
 
 def test_a_mistake_behind_an_anchor_is_told_once() -> None:

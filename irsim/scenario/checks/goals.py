@@ -208,7 +208,8 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
         longest = max((len(state) for state in states[: entry.number] if state is not None), default=0)
         if longest > (rows := records[0].state_dim):
             written = at(context.data, (*path, "state"))
-            meant = decimal_commas(written, rows) if is_vector(written) and any(written[rows:]) else None
+            text = context.document.source_text((*context.document.prefix, *path, "state"))
+            meant = decimal_commas(written, rows, text) if is_vector(written) and any(written[rows:]) else None
             yield (hint if meant is None else warning)(
                 "state-truncated",
                 (*path, "state"),
