@@ -23,7 +23,7 @@ __all__ = ["compare"]
 _LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
 """Keys whose lists hold things that are recognised again when others come or go before them."""
 _ALIKE = 0.34
-_SHIFTING = ("name", "entry", "index", "group")
+_SHIFTING = ("name", "entry", "index", "group", "group_members")
 """Of an object's description: numbers and names that shift when others come or go."""
 _NUMBERED = re.compile(r"(robot|obstacle)_\d+\Z")
 _NAMED = 6
@@ -255,13 +255,29 @@ def _worlds(
     ]
     for i, j in twins:
         name, entry = new["objects"][j]["name"], _listed(new["objects"][j]["entry"])
+        facts = list(_object_facts(old["objects"][i], new["objects"][j]))
+        if not any(key == "group_behavior" for key, _, _ in facts):
+            facts += _company(old["objects"], new["objects"], i, j, dict(twins))
         changes += [
             WorldChange(
                 object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, keys)
             )
-            for k, was, now in _object_facts(old["objects"][i], new["objects"][j])
+            for k, was, now in facts
         ]
     return changes
+
+
+def _company(
+    old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]], i: int, j: int, twins: Mapping[int, int]
+) -> Iterator[tuple[str, Any, Any]]:
+    """That an object is led by a group behavior with others than before: most of those in both worlds."""
+    before = old[i].get("group_members") or []
+    after = new[j].get("group_members") or []
+    there = set(twins.values())
+    was = {twins[k] for k in before if k in twins} - {j}
+    now = {k for k in after if k in there} - {j}
+    if 2 * len(was & now) < len(was | now):
+        yield "group_members", [old[k]["name"] for k in before], [new[k]["name"] for k in after]
 
 
 def _direct(entry: str, fact: str, now: Any, keys: Sequence[KeyChange]) -> bool:

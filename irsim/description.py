@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from irsim.python_behaviors import PythonBehaviors
+from irsim.world.build import group_behaviors
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -18,12 +23,13 @@ __all__ = ["describe_world"]
 _DIGITS = 9
 _WORLD = (
     "width", "height", "offset", "step_time", "sample_time", "time_limit", "control_mode", "collision_mode",
-    "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map",
+    "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map", "fog_map_resolution",
 )  # fmt: skip
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
-    "tags", "fov", "fov_radius", "wheelbase", "color", "description",
+    "tags", "fov", "fov_radius", "fov_occlusion", "wheelbase", "color", "description",
 )  # fmt: skip
+_CONTACT_WORLD = ("gravity",)
 _CONTACT = ("mass", "friction", "inertia", "restitution", "drive_tau")
 
 
@@ -32,26 +38,53 @@ def describe_world(env: Env) -> dict[str, Any]:
 
     Returns:
         ``world``: extent, times and modes; ``objects``: one mapping per object (the map and the walls round the world
-        included) with ``name``, ``entry`` (where it is written), ``role``, ``kinematics``, ``behavior`` and
-        ``group_behavior`` with all their options, ``shape``, ``footprint`` (``{circle: [x, y, radius]}``,
-        ``{polygons: [[[x, y], …], …]}`` or ``{lines: …}``; None for maps), ``pose``, ``goals``, effective limits
-        ``vel_min``, ``vel_max``, ``acce``, and ``sensors`` as they measure.
+        included) with ``name``, ``entry`` (where it is written), ``role``, ``kinematics``, its own ``behavior`` and the
+        ``group_behavior`` that it follows (that of its group, wherever it is written), with all their options,
+        ``group_members`` (of a group with such a behavior: places in ``objects``), ``shape``, ``footprint``
+        (``{circle: [x, y, radius]}``, ``{polygons: [[[x, y], …], …]}`` or ``{lines: …}``; None for maps), ``pose``,
+        ``extra_state`` (what a drive needs beyond that), ``goals``, effective limits ``vel_min``, ``vel_max``,
+        ``acce``, and ``sensors`` as they measure.
     """
     world = env.scenario.world
     contact = world.collision_mode == "contact"
-    views = [*env.robot_list, *env.obstacle_list]
+    views = sorted([*env.robot_list, *env.obstacle_list], key=lambda view: view.index)
+    led = _led(env)
     return {
-        "world": {key: _plain(getattr(world, key)) for key in _WORLD if hasattr(world, key)},
-        "objects": [_object(view, contact) for view in sorted(views, key=lambda view: view.index)],
+        "world": {key: _plain(getattr(world, key)) for key in (*_WORLD, *(_CONTACT_WORLD if contact else ()))},
+        "objects": [_object(view, led, contact) for view in views],
     }
 
 
-def _object(view: ObjectView, contact: bool) -> dict[str, Any]:
+def _led(env: Env) -> dict[int, tuple[Any, list[int]]]:
+    """Objects that follow the behavior of their group: place → its options, places of the group's members."""
+    records = env.simulation.scenario.objects
+    members: dict[int, list[int]] = defaultdict(list)
+    for place, record in enumerate(records):
+        if record.joined:
+            members[record.group].append(place)
+    own = PythonBehaviors(env.simulation)
+    own.find()
+    led: list[tuple[Any, list[int]]] = [
+        (options, members[group]) for group, options in group_behaviors(records).items()
+    ]
+    led += [(records[group[0]].group_behavior, group) for group in own.groups]
+    return {
+        place: (options, group)
+        for options, group in led
+        for place in group
+        if records[place].kinematics is not None and not records[place].static
+    }
+
+
+def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact: bool) -> dict[str, Any]:
     from irsim.diagnostics import format_path
 
     record = view.record
+    group_behavior, members = led.get(view.index, (None, []))
     found: dict[str, Any] = {"name": view.name, "entry": format_path(record.path), "index": record.index}
     found |= {key: _plain(getattr(record, key)) for key in _RECORD}
+    if record.group_name != f"{record.role}_{record.group}":
+        found["group_name"] = record.group_name
     if contact:
         found |= {key: _plain(getattr(record, key)) for key in _CONTACT}
     found |= {
@@ -59,12 +92,15 @@ def _object(view: ObjectView, contact: bool) -> dict[str, Any]:
         "shape": _shape(record),
         "footprint": _footprint(view),
         "pose": _plain(view.state[:3, 0]),
+        "extra_state": _plain([value for value in record.state[3:] if any(record.state[3:])]),
         "velocity": _plain(record.velocity),
         "goals": [] if record.static else [_plain(goal[:, 0]) for goal in view.goals],
     }
     if not record.static:
         found |= {key: _plain(getattr(view, key)[:, 0]) for key in ("vel_min", "vel_max", "acce")}
-        found |= {"behavior": _options(record.behavior), "group_behavior": _options(record.group_behavior)}
+        found["angle_range"] = _plain(list(record.angle_range))
+        found |= {"behavior": _options(record.behavior), "group_behavior": _options(group_behavior)}
+        found["group_members"] = members
         if record.wander:
             found |= {"range_low": _plain(record.range_low), "range_high": _plain(record.range_high)}
     found["sensors"] = [_options(sensor) for sensor in record.sensors]

@@ -164,3 +164,86 @@ def test_a_change_of_order_is_told() -> None:
     assert sorted(key.change for key in told.keys) == ["changed", "moved"]
     assert told.summary.startswith("1 key differs: robot[1].goal")
     assert "; the order differs: robot[1] is now robot[0]" in told.summary
+
+
+def robot(y: int, more: str = "", drive: str = "diff") -> str:
+    return (
+        f"  - {{kinematics: {{name: {drive}}}, shape: {{name: circle, radius: 0.3}}, state: [1, {y}, 0], "
+        f"goal: [9, {y}]{more}}}\n"
+    )
+
+
+LED = (
+    "robot:\n" + robot(2, ", group: 0, group_behavior: {name: orca}") + robot(4, ", group: 0") + robot(6, ", group: 0")
+)
+
+
+def told(found: irsim.results.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
+    """What changed in the world, by object and fact; of options their name."""
+    facts = found.world or []
+    return {(fact.object, fact.key): (_name(fact.before), _name(fact.after)) for fact in facts}
+
+
+def _name(value: object) -> object:
+    return value.get("name") if isinstance(value, dict) else value
+
+
+def test_who_leaves_a_group_is_no_longer_led_by_its_behavior() -> None:
+    found = diff(LED, LED.replace("[9, 6], group: 0", "[9, 6], group: 1"))
+    assert told(found) == {("robot_2", "group_behavior"): ("orca", None)}
+    assert found.summary == "1 key differs: robot[2].group; which also changes robot_2"
+    back = diff(LED.replace("[9, 6], group: 0", "[9, 6], group: 1"), LED)
+    assert told(back) == {("robot_2", "group_behavior"): (None, "orca")}
+
+
+def test_a_group_behavior_is_told_of_all_that_follow_it() -> None:
+    gone = diff(LED, LED.replace(", group_behavior: {name: orca}", ""))
+    assert told(gone) == {(f"robot_{i}", "group_behavior"): ("orca", None) for i in range(3)}
+    other = diff(LED, LED.replace("orca", "sfm"))
+    assert told(other) == {(f"robot_{i}", "group_behavior"): ("orca", "sfm") for i in range(3)}
+    option = diff(LED, LED.replace("{name: orca}", "{name: orca, safe_radius: 0.3}"))
+    assert {fact.key for fact in option.world or []} == {"group_behavior.safe_radius"}
+    assert [(fact.object, fact.direct) for fact in option.world or []] == [
+        ("robot_0", True),
+        ("robot_1", False),
+        ("robot_2", False),
+    ]
+
+
+def test_a_group_behavior_that_nobody_follows_changes_no_world() -> None:
+    unused = LED.replace("[9, 4], group: 0", "[9, 4], group: 0, group_behavior: {name: sfm}")
+    assert keys(diff(LED, unused)) == [("added", "robot[1].group_behavior")]
+    assert world(diff(LED, unused)) == []
+    assert world(diff(LED, LED.replace("group: 0", "group: 7"))) == []
+
+
+def test_an_obstacle_taken_out_of_the_group_of_the_robots_is_told() -> None:
+    obstacle = "obstacle: {kinematics: {name: omni}, state: [5, 1, 0], goal: [5, 9], shape: {name: circle, radius: 0.2}"
+    found = diff(f"{LED}{obstacle}, group: 0}}\n", f"{LED}{obstacle}, group: 1}}\n")
+    assert told(found) == {("obstacle_3", "group_behavior"): ("orca", None)}
+
+
+def test_another_group_of_the_same_behavior_is_other_company() -> None:
+    leader = robot(7, ", group: 1, group_behavior: {name: orca}") + robot(8, ", group: 1")
+    two = LED.replace("robot:\n", f"robot:\n{leader}")
+    found = diff(two, two.replace("[9, 6], group: 0", "[9, 6], group: 1"))
+    assert told(found) == {
+        ("robot_4", "group_members"): (["robot_2", "robot_3", "robot_4"], ["robot_0", "robot_1", "robot_4"])
+    }
+    first = diff(LED + leader, (LED + leader).replace("[9, 6], group: 0", "[9, 6], group: 1"))  # it leads now
+    assert told(first) == {(f"robot_{i}", "group_behavior"): ("orca", None) for i in (2, 3, 4)}
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "fact"),
+    [
+        ("goal: [9, 2]", "goal: [9, 2], angle_range: [0, 6.283185307]", "angle_range"),
+        ("state: [1, 2, 0]", "state: [1, 2, 0, 0.2]", "extra_state"),
+        ("goal: [9, 2]", "goal: [9, 2], group_name: walkers", "group_name"),
+        ("goal: [9, 2]", "goal: [9, 2], fov_occlusion: true", "fov_occlusion"),
+    ],
+)
+def test_small_facts_are_facts(before: str, after: str, fact: str) -> None:
+    text = "robot:\n" + robot(2, ", behavior: {name: dash}").replace("diff", "acker, wheelbase: 1")
+    found = diff(text, text.replace(before, after))
+    assert [(item.object, item.key) for item in found.world or []] == [("robot_0", fact)]
