@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -103,6 +104,8 @@ class MapSite:
         most_cells: Cells of a map.
         most_bytes: Size of a file.
         notes: (code, sentence) of what the user should know.
+        kept: File by name where it is not looked for; these were found before.
+        found: File by name of what was found, without the maps that come along.
     """
 
     width: float | None = None
@@ -115,6 +118,8 @@ class MapSite:
     most_cells: int = 64_000_000
     most_bytes: int = 256 * 1024**2
     notes: list[tuple[str, str]] = field(default_factory=list)
+    kept: Mapping[str, str] = field(default_factory=dict)
+    found: dict[str, str] = field(default_factory=dict)
 
     def find(self, name: str, beside: Path | None = None) -> Path:
         """The file of that name.
@@ -126,6 +131,8 @@ class MapSite:
         Raises:
             MapProblem: There is none, it may not be read, or it is too large.
         """
+        if name in self.kept:
+            return self._checked(Path(self.kept[name]), name)
         folders = [*([beside] if beside is not None else []), *self.folders]
         wrong = self.refuse(name, folders)
         if wrong is not None:
@@ -135,6 +142,7 @@ class MapSite:
         for path in (folder / Path(name).expanduser() for folder in folders):
             try:
                 if path.is_file():
+                    self.found[name] = os.path.abspath(path)
                     return self._checked(path, name)
             except (OSError, ValueError):
                 continue

@@ -40,6 +40,8 @@ _MOST_SCANS = 80_000_000
 """Bytes of the scans of one run when they are read; later ones are not kept."""
 _LARGEST_SCAN = 800_000
 """Bytes of all ranges of one step; of larger ones none are kept, as there would be room for a few steps only."""
+_LARGEST_MAP = 64_000_000
+"""Bytes of a map file; of a larger one no copy is kept."""
 _BETWEEN_PRUNING = 16_000_000
 
 
@@ -113,12 +115,29 @@ class Recorder:
         try:
             self._claim = claim(self._path(BEGUN), _text_of(simulation).encode())
             begun(self._path("resolved.json"), plain_scenario(simulation))
+            self._meta["maps"] = self._kept_maps()
             self._write_meta()
         except BaseException:
             self._stop()
             if self._runs is not None:
                 remove(Path(self.folder))
             raise
+
+    def _kept_maps(self) -> list[list[str]]:
+        """Copies of the files that the map was read from: somebody may draw another before the run is looked at."""
+        kept = list[list[str]]()
+        for name, path in self._simulation.scenario.map_files.items():
+            ending = os.path.splitext(path)[1]
+            file = f"map-{len(kept)}{ending if ending[1:].isalnum() and len(ending) < 11 else ''}"
+            try:
+                if os.path.getsize(path) > _LARGEST_MAP:
+                    continue
+                content = Path(path).read_bytes()
+            except OSError as error:
+                raise RunError("file-access", f"'{path}' cannot be read: {error.strerror or error}") from None
+            begun(self._path(file), content)
+            kept.append([name, file])
+        return kept
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""

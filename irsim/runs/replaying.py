@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from irsim.env import Env
-from irsim.episode import Progress, advance, import_modules
-from irsim.runs.files import RunError
+from irsim.episode import Progress, advance
+from irsim.runs.files import RunError, plain_file, unreadable
 from irsim.runs.reading import Run
 from irsim.scenario.confine import why_outside
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
@@ -17,27 +19,30 @@ from irsim.scenario.objects import ResolvedScenario
 from irsim.scenario.opening import or_raise
 from irsim.scenario.read import read
 
-__all__ = ["check_same", "replayed", "scenario_of", "step_of"]
+__all__ = ["check_same", "has_modules", "replayed", "scenario_of", "step_of"]
+
+_MAP = re.compile(r"map-\d{1,3}(\.\w{1,10})?")
 
 
 def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
-    """The scenario of a run, with maps looked for where it was.
+    """The scenario of a run to look at, with the maps that it had.
+
+    Modules that the run had imported are not: they could be anything by now, and it is only looked at. Behaviors of
+    theirs are unknown here.
 
     Args:
         run: Recorded.
-        limits: Of the reader; with a ``root``, modules that the run had imported are not, and files outside are not
-            looked for.
+        limits: Of the reader; with a ``root``, files outside are not looked for.
 
     Raises:
+        RunError: A map that was kept is missing.
         ScenarioError: It can't be used any more.
     """
-    limits = limits or DEFAULT_LIMITS
+    limits = replace(limits or DEFAULT_LIMITS, maps=_maps(run))
     options = run.meta.get("options")
     options = options if isinstance(options, dict) else {}
-    if limits.root is None:
-        import_modules(str(name) for name in options.get("imports", []))
     document = load_text(run.scenario_text, path=_place(run, limits), limits=limits)
-    strict, behavior = bool(options.get("strict")), options.get("behavior")
+    strict, behavior = bool(options.get("strict")) and not options.get("imports"), options.get("behavior")
     if isinstance(behavior, str):
         from irsim.benchmarks.variant import behavior_of, with_behavior
 
@@ -49,6 +54,8 @@ def replayed(
     run: Run, step: int | None = None, *, limits: Limits | None = None, progress: Progress | None = None
 ) -> Env:
     """An environment at a step of a run; to be ended by the caller.
+
+    It is simulated once more, with all that a world remembers, unless modules of a user took part.
 
     Args:
         run: Recorded.
@@ -62,9 +69,31 @@ def replayed(
     """
     wanted = step_of(run, step)
     env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
+    if has_modules(run):
+        _put(run, env, wanted)
+        return env
     advance(env, wanted, progress, until_done=False)
     check_same(run, env)
     return env
+
+
+def has_modules(run: Run) -> bool:
+    """Whether modules of a user took part, which nobody imports to look at it: it can't be simulated again."""
+    options = run.meta.get("options")
+    return isinstance(options, dict) and bool(options.get("imports"))
+
+
+def _put(run: Run, env: Env, step: int) -> None:
+    """Put everybody where the record says that they were; what only a simulation knows (trails, fog) is not there."""
+    trace, simulation = run.trace(), env.simulation
+    row = step - int(trace.step[0])
+    if trace.pose[row].shape != simulation.pose.shape:
+        raise RunError("unreadable-run", f"the scenario of run {run.id} has other objects now", "run it again")
+    simulation.pose[:], simulation.goal[:] = trace.pose[row], trace.goal[row]
+    simulation.control[:], simulation.count[0] = trace.control[row], step
+    simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]
+    simulation.stopped[:] = trace.stopped[row]
+    simulation.refresh()
 
 
 def step_of(run: Run, step: int | None) -> int:
@@ -93,6 +122,18 @@ def check_same(run: Run, env: Env) -> None:
     ):
         what = f"simulating run {run.id} again gives other poses at step {step}"
         raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
+
+
+def _maps(run: Run) -> tuple[tuple[str, str], ...]:
+    """Maps by their names in the scenario, as the run has kept them."""
+    kept = run.meta.get("maps", [])
+    try:
+        files = [(str(name), plain_file(run.folder, file)) for name, file in kept if _MAP.fullmatch(file)]
+    except (TypeError, ValueError):
+        raise unreadable(f"run.json of run {run.id} has been changed") from None
+    if len(files) < len(kept) or any(file is None for _, file in files):
+        raise unreadable(f"the map of run {run.id} is missing")
+    return tuple((name, str(file)) for name, file in files)
 
 
 def _place(run: Run, limits: Limits) -> str | None:

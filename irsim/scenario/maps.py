@@ -31,11 +31,13 @@ class LoadedMap:
         grid: The map; None without one.
         world: The world, with the extent of a map that prescribes one.
         findings: What was wrong, and what is worth knowing.
+        files: By the name in the scenario, the files that it was read from.
     """
 
     grid: MapGrid | None
     world: WorldModel
     findings: list[Finding] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
 
 
 def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits) -> LoadedMap:
@@ -64,7 +66,7 @@ def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits
             problem.code, path, problem.message, given=problem.given, allowed=problem.allowed, fix=problem.fix
         )
         return LoadedMap(None, world, [found])
-    return LoadedMap(grid, world, [*_notes(site, written), *_share(grid, world)])
+    return LoadedMap(grid, world, [*_notes(site, written), *_share(grid, world)], site.found)
 
 
 def _simulated(name: str) -> bool:
@@ -85,6 +87,7 @@ def _site(world: WorldModel, source: str | None, limits: Limits) -> MapSite:
         refuse=_guard(limits.root),
         most_cells=limits.cells,
         most_bytes=limits.map_bytes,
+        kept=dict(limits.maps),
     )
 
 

@@ -100,6 +100,7 @@ class ResolvedScenario:
     source: str | None = None  # path of the file
     text: str | None = None
     grid: MapGrid | None = None  # the map, whether or not any cell is occupied
+    map_files: dict[str, str] = field(default_factory=dict)  # by the name in the scenario, what the map was read from
 
     def robots(self) -> Sequence[ObjectRecord]:
         """The robots, in id order."""

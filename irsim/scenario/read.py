@@ -166,7 +166,11 @@ class _Reader:
         loaded = self._loaded_map(scenario.world)
         if loaded.world is not scenario.world:
             scenario = scenario.model_copy(update={"world": loaded.world})
-        return resolve(scenario, name=stem, document=data, source=document.path, text=document.text, grid=loaded.grid)
+        resolved = resolve(
+            scenario, name=stem, document=data, source=document.path, text=document.text, grid=loaded.grid
+        )
+        resolved.map_files = loaded.files
+        return resolved
 
     def _loaded_map(self, world: WorldModel) -> LoadedMap:
         """The map, loaded again only where its options or the extent of the world changed."""
