@@ -23,17 +23,17 @@ from irsim.simulation import Simulation
 from irsim.standing import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading
 from irsim.text import seconds
 from irsim.verdict import has_one_end, others_arrived
+from irsim.workload import step_work
 
 __all__ = ["BUDGET", "SECONDS", "dry_run"]
 
 BUDGET = 300_000
-"""Steps times objects of a look; as many rows are in memory for a moment."""
-SECONDS = 1.0
-"""For which it goes on after its first step, in which routes are planned [s]; budgets are mostly reached before."""
-_CHUNK = 0.05
+"""Work of a look: steps times objects, or more where they look at much (:mod:`irsim.workload`); about a second. As many
+rows are in memory for a moment."""
+SECONDS = 5.0
+"""After which it ends whatever was estimated, told as such: several times what its work takes [s]."""
+_CHUNK = 0.1
 """Time between two looks at the clock, where one step does not take longer [s]."""
-_BEAMS = 1000
-"""So many beams of range sensors cost as much as an object."""
 _MOST = 10
 
 Flags = NDArray[np.bool_]
@@ -53,8 +53,9 @@ def dry_run(
     Args:
         scenario: What to try.
         seed: Over the scenario's own; with neither, 0: the same look every time.
-        budget: Steps times objects at most; a thousand beams of range sensors count as one more object.
-        seconds: For which it goes on after its first step, so that what a budget does not foresee ends too.
+        budget: Work at most, estimated from the scenario: who gives the same gets the same steps on every machine.
+        seconds: For which it goes on after its first step, in which routes are planned, so that what a budget does not
+            foresee ends too.
         steps: Steps at most; default: those of a whole episode.
         limits: Of a run.
 
@@ -66,37 +67,39 @@ def dry_run(
     env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
     try:
         horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
-        affordable = max(1, budget // _work(scenario))
+        affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
-        trace = _recorded(env.simulation, wanted, seconds)
-        return _told(env, scenario, trace, seed, None if source == "limits" else horizon)
+        trace, late = _recorded(env.simulation, wanted, seconds)
+        return _told(env, scenario, trace, seed, None if source == "limits" else horizon, seconds if late else None)
     finally:
         env.end(ending_time=0.0)
 
 
-def _work(scenario: ResolvedScenario) -> int:
-    """What a step costs, in objects."""
-    beams = sum(getattr(sensor, "number", 0) for record in scenario.objects for sensor in record.sensors)
-    return max(1, len(scenario.objects) + beams // _BEAMS)
+def _recorded(simulation: Simulation, steps: int, seconds: float) -> tuple[Trace, bool]:
+    """What happens until everybody is done, or the steps or seconds are over; and whether it was the seconds.
 
-
-def _recorded(simulation: Simulation, steps: int, seconds: float) -> Trace:
-    """What happens until everybody is done, or the steps or seconds are over; the first step is free."""
-    parts, done, size, end = [present_row(simulation)], 0, 1, math.inf
+    The first step is free.
+    """
+    parts, done, size, end, late = [present_row(simulation)], 0, 1, math.inf, False
     while done < steps:
         begin, size = time.monotonic(), min(size, steps - done)
         parts.append(next_rows(simulation, size))
         now = time.monotonic()
-        if len(parts[-1]) < size or now >= end:
-            break
-        if done == 0:
-            end = now + seconds
         done += size
+        if len(parts[-1]) < size:
+            break
+        if now >= end:
+            late = done < steps and not bool(simulation.done()[0])
+            break
+        if end == math.inf:
+            end = now + seconds
         size = max(1, min(2 * size, int(size * _CHUNK / max(now - begin, 1e-9))))
-    return joined(parts)
+    return joined(parts), late
 
 
-def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int | None) -> DryRun:
+def _told(
+    env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int | None, cut: float | None
+) -> DryRun:
     steps = len(trace) - 1
     events, passable = env.events, passable_names(env.simulation)
     robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
@@ -120,7 +123,7 @@ def _told(env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon
         ended=ended,
         summary="; ".join(
             [
-                _begin(trace, len(robots), arrived, parked, ended),
+                _begin(trace, len(robots), arrived, parked, ended, cut),
                 *_troubles(hits, stuck, count),
                 *filter(
                     None,
@@ -195,10 +198,17 @@ def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
     return near.told if near.held else f"{near.told}, in the way of its behavior"
 
 
-def _begin(trace: Trace, robots: int, arrived: Sequence[str], parked: Sequence[str], ended: str) -> str:
-    """How far it went and who arrived."""
+def _begin(
+    trace: Trace, robots: int, arrived: Sequence[str], parked: Sequence[str], ended: str, cut: float | None
+) -> str:
+    """How far it went and who arrived; why no farther, where a clock said so."""
     time = seconds(trace.time[-1])
     begin = f"in the first {time} only: " if ended == "budget" else f"in {time}: "
+    if cut is not None:
+        begin = (
+            f"in the first {time} only, after which {cut:g} s of computing were over (steps are slower than estimated; "
+            "the next look may get farther or less far): "
+        )
     still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked (cannot move, no goal written)"
     return begin + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots") + (still if parked else "")
 

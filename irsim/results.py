@@ -240,7 +240,9 @@ class DryRun(Result):
     sim_time: float
     """Simulated time [s]."""
     ended: Literal["done", "horizon", "budget"]
-    """``done``: every robot arrived or stopped; ``horizon``: the episode was over; ``budget``: the look was."""
+    """``done``: every robot arrived or stopped; ``horizon``: the episode was over; ``budget``: the work of a look was
+    done, which is estimated from the scenario, so the same steps are tried on every machine (``summary`` says so if it
+    was the clock after all)."""
     summary: str
     arrived: list[str]
     """Robots that reached their last goal."""

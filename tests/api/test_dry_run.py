@@ -10,6 +10,7 @@ import irsim
 from irsim.dry_run import dry_run
 from irsim.episode import read_scenario
 from irsim.scenario.limits import Limits
+from irsim.scenario.objects import ResolvedScenario
 from irsim.templates import scenario_file
 from irsim.text import seconds
 
@@ -111,16 +112,71 @@ robot:
 """
 
 
-def test_beams_cost_and_the_clock_ends_what_takes_longer() -> None:
-    scenario, _ = read_scenario(text=SCANNER, strict=True)
-    scanned = dry_run(scenario, budget=2100, seconds=60)
-    assert (scanned.ended, scanned.steps) == ("budget", 100)  # 20 for the beams, one for the robot
+def steps_of(scenario: ResolvedScenario) -> int:
+    return dry_run(scenario, seed=1, budget=30_000, seconds=60).steps
+
+
+CROWD = """\
+world: {{width: 60, height: 60, time_limit: 100000, collision_mode: unobstructed}}
+robot:
+  - number: 100
+    distribution: {{name: random, range_low: [1, 1, -3], range_high: [59, 59, 3]}}
+    kinematics: {{name: omni}}
+    shape: {{name: circle, radius: 0.2}}
+    behavior: {{name: {behavior}, wander: true}}
+    sensors: [{sensor}]
+"""
+
+
+def test_what_is_tried_does_not_depend_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario, _ = read_scenario(text=CROWD.format(behavior="sfm", sensor="{name: lidar2d, number: 360}"), strict=True)
     begin = time.monotonic()
-    cut = dry_run(scenario, seconds=0.1)
-    assert time.monotonic() - begin < 10
-    assert cut.ended == "budget"
-    assert 1 < cut.steps < 10_000
-    assert cut.summary.startswith(f"in the first {seconds(cut.sim_time)} only: 0 of 1 robots arrived")
+    found = dry_run(scenario, seed=1, budget=30_000)
+    assert time.monotonic() - begin < 5
+    assert found.ended == "budget"
+    monkeypatch.setattr("irsim.dry_run._CHUNK", 1e-6)  # as on a machine that is far slower
+    assert dry_run(scenario, seed=1, budget=30_000) == found
+
+
+@pytest.mark.parametrize(
+    ("behavior", "sensor"),
+    [
+        ("dash", "{name: lidar2d, number: 100}"),
+        ("dash", "{name: lidar2d, number: 1000, range_max: 20, noise: true}"),
+        ("sfm", ""),
+        ("rvo", ""),
+        ("follow", ""),
+    ],
+)
+def test_what_costs_more_gets_fewer_steps(behavior: str, sensor: str) -> None:
+    plain, _ = read_scenario(text=CROWD.format(behavior="dash", sensor=""), strict=True)
+    costly, _ = read_scenario(text=CROWD.format(behavior=behavior, sensor=sensor), strict=True)
+    assert steps_of(plain) == 300  # one unit each
+    assert 1 <= steps_of(costly) < 290
+
+
+def test_plans_that_come_again_cost() -> None:
+    pillar = "obstacle: {shape: {name: circle, radius: 2}, state: [30, 30, 0]}\n"
+    once, _ = read_scenario(text=CROWD.format(behavior="follow", sensor="") + pillar, strict=True)
+    often, _ = read_scenario(text=CROWD.format(behavior="follow, replan: 0.1", sensor="") + pillar, strict=True)
+    assert steps_of(often) < 0.2 * steps_of(once)
+
+
+def test_a_robot_alone_with_many_beams_goes_all_the_way() -> None:
+    scenario, _ = read_scenario(text=SCANNER, strict=True)
+    assert dry_run(scenario, steps=500).steps == 500
+    assert dry_run(scenario, budget=2100, seconds=60).steps < 100  # 20 for the beams at least
+
+
+def test_the_clock_is_the_last_resort_and_told() -> None:
+    scenario, _ = read_scenario(text=SCANNER, strict=True)
+    cut = dry_run(scenario, budget=10**9, seconds=0.1)
+    assert (cut.ended, cut.arrived) == ("budget", [])
+    assert 1 < cut.steps < 100_000
+    assert cut.summary.startswith(
+        f"in the first {seconds(cut.sim_time)} only, after which 0.1 s of computing were over"
+    )
+    assert "computing" not in dry_run(scenario, budget=1000).summary
 
 
 def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -93,6 +93,7 @@ LAYERS = (
     util
     validation
     verdict
+    workload
     """,
     "cli __main__",
     "irsim_mcp",
