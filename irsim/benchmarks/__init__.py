@@ -9,18 +9,17 @@ from __future__ import annotations
 import itertools
 import math
 import shlex
-import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from irsim.arguments import as_given, whole
 from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
-from irsim.benchmarks.summary import rows_of
 from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
 from irsim.episode import Progress, import_modules, read_scenario, source_of
 from irsim.errors import ArgumentError, OverLimitError
@@ -29,12 +28,9 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.load import Document, load_path, load_text
 from irsim.scenario.randomness import random_parts
 
-__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark"]
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
 
 DEFAULT_SEEDS = 10
-_NAMED = 3
-_BETWEEN, _SELDOM = 1.0, 20.0
-"""Seconds between partial results, and how much of the time they may take: one part in so many."""
 _TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
 
 
@@ -50,7 +46,7 @@ def benchmark(
     limits: Limits | None = None,
     most_episodes: int | None = None,
     progress: Progress | None = None,
-    partial: Callable[[BenchmarkResult], object] | None = None,
+    log: str | Path | None = None,
 ) -> BenchmarkResult:
     """Run every scenario under every behavior with every seed, and compare.
 
@@ -68,14 +64,15 @@ def benchmark(
         limits: Limits of reading and of each run.
         most_episodes: Refuse to run more.
         progress: Told (episodes done, episodes).
-        partial: Given the result of the episodes that are done, every few seconds, for whoever wants to keep something
-            of a benchmark that is stopped.
+        log: File to write every episode to as soon as it is done; ``irsim.benchmarks.logged(log)`` is the result of
+            them, whatever stopped the benchmark.
 
     Raises:
         ScenarioError: A scenario can't be used, or not with that behavior; ScenarioNotFoundError: there is none.
         OverLimitError: More is asked for than the limits allow.
         BenchmarkError: A behavior or the seeds make no sense.
         ArgumentError: Another argument does not.
+        RunError: The log cannot be written.
     """
     given = _sources(files)
     names = _names(given)
@@ -122,50 +119,36 @@ def benchmark(
         for seed in (every if chances[name] else every[:1])
     ]
 
-    def result_of(found: Mapping[int, dict[str, Any]]) -> BenchmarkResult:
-        from irsim import __version__
+    from irsim import __version__
 
-        episodes = [
-            EpisodeRow(
-                scenario=name,
-                behavior=behavior,
-                seed=task.seed,
-                metrics={key: None if math.isnan(value) else value for key, value in result["metrics"].items()},
-                **{key: result[key] for key in _TAKEN},
-            )
-            for (name, behavior, task), result in ((plan[number], found[number]) for number in sorted(found))
-        ]
-        return BenchmarkResult(
-            scenarios=names,
-            behaviors=wanted,
-            seeds=chosen,
-            step_time=periods,
-            random=chances,
-            rows=rows_of(episodes, names, wanted, chances),
-            episodes=episodes,
-            notes=_notes(episodes, chances, chosen),
-            warnings=warnings,
-            version=__version__,
-            reproduce=_command(names, wanted, chosen, steps, strict, imports),
-        )
+    head = BenchmarkResult(
+        scenarios=names,
+        behaviors=wanted,
+        seeds=chosen,
+        step_time=periods,
+        random=chances,
+        rows=[],
+        episodes=[],
+        notes=[],
+        warnings=warnings,
+        version=__version__,
+        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+    )
 
-    look = None if partial is None else _now_and_then(lambda found: partial(result_of(found)))
-    found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress, look=look)
-    return result_of(dict(enumerate(found)))
+    def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
+        name, behavior, task = plan[number]
+        metrics = {key: None if math.isnan(value) else value for key, value in result["metrics"].items()}
+        told = {key: result[key] for key in _TAKEN}
+        return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **told)
 
+    with nullcontext() if log is None else Log(log, head) as book:
 
-def _now_and_then(tell: Callable[[Mapping[int, Any]], object]) -> Callable[[Mapping[int, Any]], None]:
-    """Tell of results every few seconds where there are new ones, and so seldom that it takes little of the time."""
-    due, last = 0.0, 0
+        def keep(number: int, result: Mapping[str, Any]) -> None:
+            if book is not None:
+                book.add(number, row(number, result))
 
-    def look(found: Mapping[int, Any]) -> None:
-        nonlocal due, last
-        if len(found) > last and (begin := time.monotonic()) >= due:
-            last = len(found)
-            tell({**found})
-            due = time.monotonic() + max(_BETWEEN, _SELDOM * (time.monotonic() - begin))
-
-    return look
+        found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress, kept=keep)
+    return with_episodes(head, [row(number, result) for number, result in enumerate(found)])
 
 
 def _sources(files: Any) -> list[str]:
@@ -231,29 +214,6 @@ def _about(number: int) -> Iterator[None]:
     except BenchmarkError as error:
         error.where = f"behaviors[{number}]"
         raise
-
-
-def _notes(episodes: list[EpisodeRow], chances: dict[str, list[str]], seeds: list[int]) -> list[str]:
-    notes = []
-    fixed = [name for name, chance in chances.items() if not chance]
-    if fixed and len(seeds) > 1:
-        notes.append(
-            f"{_some(fixed)}: nothing is random, so every seed gives the same run and one was made; random placement "
-            "or motion noise would make seeds differ"
-        )
-    lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
-    if lost:
-        count = sum(bool(episode.unreachable) for episode in episodes)
-        notes.append(f"{_some(lost)}: in {count} episodes no way to a goal was found; spl is left out there")
-    cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
-    if cut:
-        notes.append(f"{_some(cut)}: episodes ended early with robots that stopped without arriving")
-    return notes
-
-
-def _some(names: list[str]) -> str:
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(names[:_NAMED]) + more
 
 
 def _command(

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -33,7 +33,7 @@ def run_tasks(
     *,
     workers: int,
     progress: Callable[[int, int], None] | None = None,
-    look: Callable[[Mapping[int, dict[str, Any]]], None] | None = None,
+    kept: Callable[[int, dict[str, Any]], None] | None = None,
 ) -> list[dict[str, Any]]:
     """Run episodes, here and, if it takes longer than a moment, in further processes.
 
@@ -43,12 +43,12 @@ def run_tasks(
         tasks: In the order of the results.
         workers: Processes at most, this one included.
         progress: Told (episodes done, episodes) in this thread.
-        look: Shown the results that there are, by the number of their task, now and then, in this thread.
+        kept: Given the number of a task and its result as soon as there is one, in any thread.
 
     Raises:
         IrsimError: What an episode raised; the first in the order of the tasks.
     """
-    shared = _Shared(tasks)
+    shared = _Shared(tasks, kept)
     helpers: list[_Helper] = []
     begin = time.monotonic()
     try:
@@ -57,7 +57,7 @@ def run_tasks(
                 shared.wait()
             else:
                 try:
-                    shared.results[index] = run_task(tasks[index])
+                    shared.put(index, run_task(tasks[index]))
                 except Exception:
                     shared.stop(index)
                     if shared.is_first(index):
@@ -70,8 +70,6 @@ def run_tasks(
                 helpers = [_Helper(shared) for _ in range(min(workers - 1, shared.left()))]
             if progress is not None:
                 progress(shared.done(), len(tasks))
-            if look is not None:
-                look(shared.results)
     finally:
         for helper in helpers:
             helper.end()
@@ -81,8 +79,8 @@ def run_tasks(
 class _Shared:
     """What is left to do, and the results."""
 
-    def __init__(self, tasks: Sequence[Task]) -> None:
-        self.tasks = tasks
+    def __init__(self, tasks: Sequence[Task], kept: Callable[[int, dict[str, Any]], None] | None) -> None:
+        self.tasks, self._kept = tasks, kept
         self.results: dict[int, dict[str, Any]] = {}
         self._open = deque(range(len(tasks)))
         self._mine: deque[int] = deque()  # what others could not do
@@ -97,6 +95,12 @@ class _Shared:
                 return None
             self._out += 1
             return queue.popleft()
+
+    def put(self, index: int, result: dict[str, Any]) -> None:
+        """One has a result; it is kept before it counts as done."""
+        if self._kept is not None:
+            self._kept(index, result)
+        self.results[index] = result
 
     def leave(self, *, back: int | None = None) -> None:
         """One is done; ``back``: it has to be done by the main thread."""
@@ -159,7 +163,7 @@ class _Helper:
             if answer is None or "result" not in answer:
                 shared.leave(back=index)
                 return
-            shared.results[index] = answer["result"]
+            shared.put(index, answer["result"])
             shared.leave()
 
     def _answer(self, task: Task) -> dict[str, Any] | None:

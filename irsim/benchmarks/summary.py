@@ -11,7 +11,7 @@ from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 from irsim.results import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
-__all__ = ["ALL", "KEYS", "estimate", "proportion", "rows_of"]
+__all__ = ["ALL", "KEYS", "estimate", "notes_of", "proportion", "rows_of"]
 
 ALL = "(all)"
 KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
@@ -20,6 +20,7 @@ _SHARES = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if met
 _MOST = 10
 _FEWEST = 10
 """Scenarios of one episode each from which on something can be said of all together."""
+_NAMED = 3
 _TABLE = ((True, True), (True, False), (False, True), (False, False))
 
 
@@ -66,6 +67,36 @@ def rows_of(
                 continue
             rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
     return rows
+
+
+def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]], seeds: Sequence[int]) -> list[str]:
+    """What to know before reading the rows.
+
+    Args:
+        episodes: Those that are done.
+        random: What the seed decides in each scenario.
+        seeds: All that were asked for.
+    """
+    notes = []
+    fixed = [name for name, chance in random.items() if not chance]
+    if fixed and len(seeds) > 1:
+        notes.append(
+            f"{_some(fixed)}: nothing is random, so every seed gives the same run and one was made; random placement "
+            "or motion noise would make seeds differ"
+        )
+    lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
+    if lost:
+        count = sum(bool(episode.unreachable) for episode in episodes)
+        notes.append(f"{_some(lost)}: in {count} episodes no way to a goal was found; spl is left out there")
+    cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
+    if cut:
+        notes.append(f"{_some(cut)}: episodes ended early with robots that stopped without arriving")
+    return notes
+
+
+def _some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return ", ".join(names[:_NAMED]) + more
 
 
 def _row(

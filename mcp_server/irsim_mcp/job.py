@@ -212,15 +212,18 @@ def _artifact(job: dict[str, Any], progress: _Progress) -> str:
 
 def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
-    from irsim.results import BenchmarkResult
-    from irsim.runs.files import RunError, written
 
-    def keep(result: BenchmarkResult) -> None:
-        with suppress(RunError):  # the folder may have been removed by somebody
-            written(job["partial"], result.model_dump_json().encode())
+    arguments = job["arguments"]
+    return benchmark(**arguments, strict=True, limits=_limits(job), progress=progress).model_dump_json()
 
-    result = benchmark(**job["arguments"], strict=True, limits=_limits(job), progress=progress, partial=keep)
-    return result.model_dump_json()
+
+def _logged(job: dict[str, Any], progress: _Progress) -> str:
+    """The result of the episodes that a benchmark had when it was stopped, written beside its log."""
+    from irsim.benchmarks import logged
+    from irsim.runs.files import written
+
+    written(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
+    return "null"
 
 
 def _lookup(job: dict[str, Any], progress: _Progress) -> str:
@@ -237,6 +240,7 @@ def _schema(job: dict[str, Any], progress: _Progress) -> str:
 
 _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
     "benchmark": _benchmark,
+    "logged": _logged,
     "validate": _validate,
     "validate_new": _validate_new,
     "run": _run,

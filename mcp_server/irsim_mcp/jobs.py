@@ -2,7 +2,7 @@
 
 A job is a folder ``<workspace>/.irsim/jobs/<id>`` in the form of those of runs: ``run.json`` says how far it is, a lock
 says that somebody looks after it, ``result.json`` comes last. One without a result that nobody
-looks after any more was interrupted. Processes end with the server, whatever ends that.
+looks after any more was interrupted. Processes end with the server, whatever ends that; what they had done is kept.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace
-from irsim_mcp.worker import HEAD, Progress, process_options
+from irsim_mcp.worker import HEAD, Progress, Workers, process_options
 
 __all__ = ["Jobs"]
 
@@ -48,7 +48,9 @@ _STEM = "benchmark"
 _CANCEL = "cancel"
 _QUOTA = 200 * 1000 * 1000
 PARTIAL = "partial.json"
-"""The result of the episodes that were done a moment ago, for when the job is stopped."""
+"""The result of the episodes that were done when the job was stopped; made of its log when somebody asks first."""
+_LOG = "episodes.jsonl"
+"""Every episode, from the moment that it is done."""
 _PERIOD = 0.5
 """Seconds between looks at what others want and notes of how far it is."""
 _AFTER = 10
@@ -66,6 +68,7 @@ class Jobs:
 
     def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
         self._workspace, self._limits = workspace, limits
+        self._workers = Workers(workspace, limits)
 
     def start(self, task: str, arguments: Mapping[str, Any], total: int) -> str:
         """Begin a job.
@@ -96,9 +99,8 @@ class Jobs:
         _note(job, about)
         work = {
             "task": task,
-            "arguments": dict(arguments),
+            "arguments": {**arguments, "log": str(job / _LOG)},
             "workspace": str(self._workspace.root),
-            "partial": str(job / PARTIAL),
             "limits": asdict(scenario_limits(self._limits, self._workspace.root)),
             "resources": {
                 "memory": self._limits.memory,
@@ -129,7 +131,9 @@ class Jobs:
         until = time.monotonic() + seconds
         while True:
             state = _state(job)
-            if state["status"] != "running" or time.monotonic() >= until:
+            if state["status"] != "running":
+                return await self._told(job)
+            if time.monotonic() >= until:
                 return state
             if progress is not None:
                 await progress(state["done"], state["total"])
@@ -142,20 +146,34 @@ class Jobs:
             with suppress(OSError):
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
 
-    def state(self, job_id: str) -> dict[str, Any] | None:
-        """What is known of a job, as :meth:`wait` says it; None if there is none of that id."""
+    def known(self, job_id: str) -> bool:
+        """Whether there is a job of that id."""
         try:
             folder = runs_folder(self._workspace.root).with_name(_KEPT)
         except RunError:
-            return None
-        found = next((job for job in run_folders(folder) if job.name == job_id), None)
-        return None if found is None else _state(found)
+            return False
+        return any(job.name == job_id for job in run_folders(folder))
+
+    async def state(self, job_id: str) -> dict[str, Any] | None:
+        """What is known of a job, as :meth:`wait` says it; None if there is none of that id."""
+        return await self._told(self._find(job_id)) if self.known(job_id) else None
 
     def forget(self, job_id: str) -> None:
         """Let go of a job that has ended and was told of."""
         job = self._find(job_id)
         if status_of(job) != "running":
             remove(job)
+
+    async def _told(self, job: Path) -> dict[str, Any]:
+        """What is known of a job; of one that was stopped with the result of the episodes that it had."""
+        state = _state(job)
+        if state["status"] in ("cancelled", "interrupted") and state["done"] and "result" not in state:
+            files = {"log": str(job / _LOG), "to": str(job / PARTIAL)}
+            answer = await self._workers.read("logged", files, seconds=self._limits.check_seconds)
+            if "error" in answer:
+                raise failure(answer["error"]["code"], answer["error"]["what"], fix="call benchmark again")
+            state = _state(job)
+        return state
 
     def _folder(self) -> Path:
         try:
@@ -193,15 +211,26 @@ def _state(job: Path) -> dict[str, Any]:
         if isinstance(answer, dict) and "error" in answer:
             return state | {"status": "failed", "error": answer["error"]}
         return state | {"result": answer, "done": state["total"]}
-    if status != "running" and isinstance(partial := json_of(job, PARTIAL), dict):
-        why = about.get("why") if isinstance(about, dict) else None
-        return state | {"result": partial, "done": len(partial["episodes"])} | ({"why": str(why)} if why else {})
-    return state
+    if status == "running":
+        return state
+    if isinstance(about, dict) and "why" in about:
+        state["why"] = str(about["why"])
+    if isinstance(partial := json_of(job, PARTIAL), dict):
+        return state | {"result": partial, "done": len(partial["episodes"])}
+    return state | {"done": _logged(job)}
+
+
+def _logged(job: Path) -> int:
+    """How many episodes are in the log of a job."""
+    with suppress(OSError):
+        if (log := plain_file(job, _LOG)) is not None:
+            return max(0, log.read_bytes().count(b"\n") - 1)
+    return 0
 
 
 def _note(job: Path, about: Mapping[str, Any]) -> None:
     text = json.dumps(about)
-    with suppress(OSError):  # the folder may have been removed by somebody
+    with suppress(RunError):  # the folder may have been removed by somebody
         written(job / META, text.encode())
 
 
@@ -219,12 +248,13 @@ class _Keeper(threading.Thread):
             if answer is None:
                 mark_cancelled(self._job)
                 return
-            if "error" in answer and plain_file(self._job, PARTIAL) is not None:
+            if "what" in answer.get("error", ()) and _logged(self._job):
                 _note(self._job, {**self._about, "why": answer["error"]["what"]})
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
-            with suppress(OSError):
+            with suppress(OSError, RunError):
                 written(self._job / RESULT, text.encode())
+                (self._job / _LOG).unlink()
         finally:
             self._held.release()
 

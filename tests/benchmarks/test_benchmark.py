@@ -65,18 +65,44 @@ def test_results_do_not_depend_on_the_number_of_processes(files, monkeypatch) ->
     assert told[-1][1] == 14
 
 
-def test_partial_results_are_of_the_episodes_that_are_done(files, monkeypatch) -> None:
-    monkeypatch.setattr("irsim.benchmarks._BETWEEN", 0.0)
-    monkeypatch.setattr("irsim.benchmarks._SELDOM", 0.0)
-    parts = []
-    whole = irsim.benchmark(files, ["dash", "rvo"], 2, workers=1, partial=parts.append)
+def test_a_log_has_every_episode_from_the_moment_it_is_done(files, tmp_path) -> None:
+    log, parts = tmp_path / "episodes.jsonl", []
+    whole = irsim.benchmark(
+        files,
+        ["dash", "rvo"],
+        2,
+        workers=1,
+        log=log,
+        progress=lambda *now: parts.append(irsim.benchmarks.logged(log)),
+    )
     assert [len(part.episodes) for part in parts] == [1, 2, 3, 4, 5, 6]
     for part in parts:
         assert part.episodes == whole.episodes[: len(part.episodes)]
         assert sum(row.episodes for row in part.rows if row.scenario != "(all)") == len(part.episodes)
         assert (part.seeds, part.reproduce) == (whole.seeds, whole.reproduce)
-    assert parts[-1] == whole
+    assert parts[-1].model_dump_json() == whole.model_dump_json()
     assert parts[2].rows[1].paired["path_length"].n == 1  # of the second behavior one seed is done
+
+
+def test_a_log_is_in_order_whoever_computed_and_may_end_in_the_middle_of_a_line(files, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    log = tmp_path / "episodes.jsonl"
+    whole = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, log=log)
+    assert irsim.benchmarks.logged(log).model_dump_json() == whole.model_dump_json()
+    log.write_bytes(log.read_bytes()[:-7])
+    part = irsim.benchmarks.logged(log)
+    assert len(part.episodes) == len(whole.episodes) - 1
+    order = [(episode.scenario, episode.behavior, episode.seed) for episode in part.episodes]
+    assert order == [one for one in ((e.scenario, e.behavior, e.seed) for e in whole.episodes) if one in order]
+
+
+def test_what_is_no_log_is_told(files, tmp_path) -> None:
+    for text in ("", "{}\n", "what\n", '{"number": 1}\n'):
+        (tmp_path / "log").write_text(text)
+        with pytest.raises(irsim.runs.RunError, match="is no log of a benchmark"):
+            irsim.benchmarks.logged(tmp_path / "log")
+    with pytest.raises(irsim.runs.RunError, match="cannot be written: No such file"):
+        irsim.benchmark(files, log=tmp_path / "no" / "log")
 
 
 def test_behaviors_meet_the_same_scenes_and_are_compared_pair_by_pair(files) -> None:

@@ -30,6 +30,14 @@ robot:
     goal: [4, 4, 0]
 """
 
+MANY = {
+    "scenarios": [RANDOM.replace("12}", f"12, step_time: 0.01{digit}}}") for digit in range(6)],
+    "behaviors": ["dash", "rvo", "orca"],
+    "seeds": 100,
+    "wait_s": 0,
+}
+"""Short episodes for several seconds."""
+
 
 @pytest.mark.parametrize("era", ERAS)
 async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,7 +141,7 @@ async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspa
         asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 0}
         job = data_of(await client.call_tool("benchmark", asked))["job_id"]
         with anyio.fail_after(30):
-            while not (workspace / ".irsim" / "jobs" / job / "partial.json").exists():
+            while not kept_of(workspace, job):
                 await anyio.sleep(0.1)
         result = await client.call_tool("get_job", {"job_id": job, "cancel": True})
         ended = data_of(result)
@@ -146,6 +154,38 @@ async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspa
         table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
         assert (table["status"], table["total"]) == ("cancelled", ended["done"])
         assert (workspace / ended["artifact"]).is_file()
+
+
+async def test_cancelling_throws_no_episode_away(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
+        told = [await done_of(client, job, 30)]
+        ended = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        told.append(ended["done"])
+        told.append(await done_of(client, job))
+    assert ended["status"] == "cancelled"
+    assert told == sorted(told)
+    assert told[1] == told[2]
+    assert sum(row["episodes"] for row in ended["rows"]) == ended["done"] < ended["total"] == 1800
+    kept = json.loads((workspace / ended["artifact"]).read_text())["episodes"]
+    whole = irsim.benchmark(MANY["scenarios"][0], "dash", 3)
+    assert [one["metrics"] for one in kept[:3]] == [one.metrics for one in whole.episodes]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
+        told = await done_of(client, job, 30)
+        for pid in descendants(os.getpid()):
+            os.kill(pid, signal.SIGKILL)
+        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
+        assert ended["status"] == "interrupted"
+        assert told <= ended["done"] < 1800
+        assert ended["next"].startswith("the process that did the work ended without a result. This is of the ")
+        table = data_of(await client.call_tool("inspect_run", {"run_id": job, "limit": 5}))
+        assert table["total"] == ended["done"]
+        await gone(os.getpid())
 
 
 @pytest.mark.slow
@@ -308,11 +348,15 @@ async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize("how", ["end of input", "kill -9"])
-async def test_a_server_that_ends_leaves_no_process_and_an_interrupted_job(workspace: Path, how: str) -> None:
+@pytest.mark.parametrize("world", ["long", "short"])
+async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
+    workspace: Path, how: str, world: str
+) -> None:
     command = as_process(workspace)
     server = subprocess.Popen([command.command, *command.args], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     try:
-        call = {"name": "benchmark", "arguments": {"scenarios": [LONG], "seeds": 4, "wait_s": 0}}
+        asked = {"scenarios": [LONG], "seeds": 4, "wait_s": 0} if world == "long" else MANY
+        call = {"name": "benchmark", "arguments": asked}
         hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "t", "version": "0"}}
         for message in (
             {"id": 1, "method": "initialize", "params": hello},
@@ -326,9 +370,10 @@ async def test_a_server_that_ends_leaves_no_process_and_an_interrupted_job(works
         until = time.monotonic() + 10
         while not descendants(server.pid) and time.monotonic() < until:
             await anyio.sleep(0.1)
-        await anyio.sleep(2.0)
+        await anyio.sleep(2.0 if world == "long" else 1.5)
         children = descendants(server.pid)
         assert children
+        told = kept_of(workspace, job)
         if how == "kill -9":
             server.send_signal(signal.SIGKILL)
         else:
@@ -345,7 +390,26 @@ async def test_a_server_that_ends_leaves_no_process_and_an_interrupted_job(works
         if not server.stdin.closed:
             server.stdin.close()
     async with Client(as_process(workspace)) as client:
-        assert data_of(await client.call_tool("get_job", {"job_id": job}))["status"] == "interrupted"
+        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
+    assert ended["status"] == "interrupted"
+    assert (world == "short") == (told > 0)
+    assert told <= ended["done"] < ended["total"]
+    assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+
+
+def kept_of(workspace: Path, job: str) -> int:
+    """Episodes that a job has done so far, as its files say it."""
+    return int(json.loads((workspace / ".irsim" / "jobs" / job / "run.json").read_text())["done"])
+
+
+async def done_of(client: Client, job: str, least: int = 0) -> int:
+    """Episodes that a job has done, as the server says it, once there are some."""
+    with anyio.fail_after(30):
+        while True:
+            done = int(data_of(await client.call_tool("get_job", {"job_id": job, "wait_s": 0}))["done"])
+            if done >= least:
+                return done
+            await anyio.sleep(0.05)
 
 
 def descendants(pid: int) -> list[int]:

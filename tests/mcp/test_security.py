@@ -78,7 +78,7 @@ RULES = {
         "mcp/test_lifetime.py::test_a_server_that_is_killed_takes_its_workers_along",
         "mcp/test_lifetime.py::test_cancelling_a_call_ends_its_worker",
         "mcp/test_benchmark.py::test_a_job_that_is_cancelled_leaves_no_process",
-        "mcp/test_benchmark.py::test_a_server_that_ends_leaves_no_process_and_an_interrupted_job",
+        "mcp/test_benchmark.py::test_a_server_that_ends_leaves_no_process_and_all_that_was_done",
         "mcp/test_http.py::test_it_ends_soon_with_a_run_under_way_and_leaves_nobody",
     ),
     "process: the server itself loads no engine": (

@@ -63,7 +63,7 @@ def tool(services: Services) -> StrictTool:
         cursor: str | None = None,
     ) -> Annotated[CallToolResult, Table]:  # fmt: skip
         asked: dict[str, Any] = {"robot": robot, "to_step": to_step, "every": every, "fields": fields}
-        job = None if run_id in services.workspace.runs() else services.jobs.state(run_id)
+        job = None if run_id in services.workspace.runs() else await services.jobs.state(run_id)
         found: dict[str, Any]
         if job is not None:
             used = [name for name, value in {**asked, "from_step": from_step or None}.items() if value is not None]
