@@ -6,10 +6,12 @@ import base64
 import csv
 import io
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from irsim.diagnostics import nearest
 from irsim.runs.files import RunError, text_of
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
@@ -38,7 +40,8 @@ def artifact(
     """A part of what was recorded.
 
     Files are given from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. What does not
-    fit ends with whole rows; ``next_step`` of ``events.json`` and ``trace.json`` says where to go on, null at the end.
+    fit ends with whole steps; ``next_step`` of ``events.json`` and ``trace.json`` says where to go on, null at the end,
+    and so does a last line ``# next_step: N`` of ``trace.csv``, which is not there at the end.
     ``replay.json`` is what the page of :mod:`irsim.replay` reads: ``data`` holds the characters from ``offset`` on, of
     ``total``, which together are a packed run in base64.
 
@@ -81,7 +84,10 @@ def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
 
 
 def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, most: int) -> str:
-    room, parts, next_step = most - 200, list[str](), None
+    _check_object(run, run.names, robot)
+    if from_step > max([run.last_step, 0, *(event.step for event in run.events)]):
+        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent, where="from_step")
+    room, parts, next_step = most - 200, list[tuple[int, str]](), None
     for event in run.events:
         if event.step < from_step or (to_step is not None and event.step > to_step):
             continue
@@ -92,18 +98,18 @@ def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, mo
         if room < 0:
             next_step = event.step
             break
-        parts.append(part)
+        parts.append((event.step, part))
+    told = [part for step, part in parts if step != next_step]  # whole steps
     head = json.dumps({"run_id": run.id, "status": run.status, "next_step": next_step})
-    return f'{head[:-1]}, "events": [{", ".join(parts)}]}}'
+    return f'{head[:-1]}, "events": [{", ".join(told)}]}}'
 
 
 def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str | None, most: int) -> str:
     trace = run.trace()
     begin, end = int(trace.step[0]), int(trace.step[-1])
     if not begin <= from_step <= end:
-        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent)
-    if robot is not None and robot not in trace.names:
-        raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}")
+        raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent, where="from_step")
+    _check_object(run, trace.names, robot)
     objects = slice(None) if robot is None else [trace.names.index(robot)]
     last = end if to_step is None else min(to_step, end)
     rows = range(from_step - begin, last - begin + 1, max(1, every))
@@ -144,16 +150,24 @@ def _csv(run: Run, from_step: int, to_step: int | None, every: int, robot: str |
     table = inspect_run(
         run, robot=robot, from_step=from_step, to_step=to_step, every=max(1, every), fields=_COLUMNS, limit=None
     )
-    out = io.StringIO()
+    out, at = io.StringIO(), table.columns.index("step")
     writer = csv.writer(out, lineterminator="\n")
-    lines: list[list[Any]] = [list(table.columns), *table.rows]
-    lines = [[clean(cell, 200) if isinstance(cell, str) else cell for cell in line] for line in lines]
-    for row in lines:
-        before = out.tell()
-        writer.writerow(row)
-        if out.tell() > most:
-            return out.getvalue()[:before]
+    writer.writerow(table.columns)
+    whole, step = out.tell(), None  # characters up to the last whole step
+    for row in table.rows:
+        if row[at] != step:
+            whole, step = out.tell(), row[at]
+        writer.writerow([clean(cell, 200) if isinstance(cell, str) else cell for cell in row])
+        if out.tell() > most - 100:
+            return f"{out.getvalue()[:whole]}# next_step: {step}\n"
     return out.getvalue()
+
+
+def _check_object(run: Run, names: Sequence[str], robot: str | None) -> None:
+    if robot is not None and robot not in names:
+        near = nearest(robot, names)
+        fix = f"did you mean '{clean(near)}'?" if near is not None else "irsim://runs/<id>/run.json has the names"
+        raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix, where="robot")
 
 
 def _finite(ranges: Any) -> list[float | None]:

@@ -164,20 +164,23 @@ def claim(file: str | Path, text: bytes = b"") -> Claim:
     """Say that this process writes a run or a job.
 
     Args:
-        file: The file to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
+        file: The file to make and to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
         text: What it holds.
 
     Raises:
-        RunError: The system refuses.
+        RunError: It is there already, or the system refuses.
     """
     try:
-        descriptor = os.open(file, os.O_CREAT | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
+        descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
         try:
             locked(descriptor, wait=True)
             _write(descriptor, text)
         except BaseException:
             os.close(descriptor)
             raise
+    except FileExistsError:
+        what = f"'{os.path.dirname(file)}' holds a run already"
+        raise RunError("file-exists", what, "name another folder for the run") from None
     except OSError as error:
         raise refusal(file, error) from None
     return Claim(descriptor)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -38,10 +37,11 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
         RunError: A map that was kept is missing.
         ScenarioError: It can't be used any more.
     """
-    limits = replace(limits or DEFAULT_LIMITS, maps=_maps(run))
+    limits = limits or DEFAULT_LIMITS
     options = run.meta.get("options")
     options = options if isinstance(options, dict) else {}
     document = load_text(run.scenario_text, path=_place(run, limits), limits=limits)
+    document.maps = _maps(run)
     strict, behavior = bool(options.get("strict")) and not options.get("imports"), options.get("behavior")
     if isinstance(behavior, str):
         from irsim.benchmarks.variant import behavior_of, with_behavior
@@ -124,7 +124,7 @@ def check_same(run: Run, env: Env) -> None:
         raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
 
 
-def _maps(run: Run) -> tuple[tuple[str, str], ...]:
+def _maps(run: Run) -> dict[str, str]:
     """Maps by their names in the scenario, as the run has kept them."""
     kept = run.meta.get("maps", [])
     try:
@@ -133,7 +133,7 @@ def _maps(run: Run) -> tuple[tuple[str, str], ...]:
         raise unreadable(f"run.json of run {run.id} has been changed") from None
     if len(files) < len(kept) or any(file is None for _, file in files):
         raise unreadable(f"the map of run {run.id} is missing")
-    return tuple((name, str(file)) for name, file in files)
+    return {name: str(file) for name, file in files}
 
 
 def _place(run: Run, limits: Limits) -> str | None:

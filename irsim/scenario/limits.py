@@ -25,7 +25,6 @@ class Limits:
         work: Steps times objects of one run; None: any number.
         cells: Cells of a map.
         map_bytes: Size of a map file.
-        maps: Name and file of maps that stand in for those of these names: what a record has kept of them.
     """
 
     bytes: int = 16 * 1024 * 1024
@@ -41,7 +40,6 @@ class Limits:
     work: int | None = None
     cells: int = 64_000_000
     map_bytes: int = 256 * 1024 * 1024
-    maps: tuple[tuple[str, str], ...] = ()
 
 
 DEFAULT_LIMITS = Limits()

@@ -31,6 +31,7 @@ class Document:
         path: Path of the file, None without one.
         prefix: Keys that lead to the scenario in the text: ``("irsim",)`` in a file shared with another simulator.
         limits: The limits it was read under.
+        maps: Files that stand in for maps, by their names: what a record has kept of them.
     """
 
     data: Any
@@ -41,6 +42,7 @@ class Document:
     path: str | None = None
     prefix: Path = ()
     limits: Limits = DEFAULT_LIMITS
+    maps: Mapping[str, str] = field(default_factory=dict)
     _root: Node | None = field(default=None, repr=False)
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:

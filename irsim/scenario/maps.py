@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
@@ -40,7 +40,9 @@ class LoadedMap:
     files: dict[str, str] = field(default_factory=dict)
 
 
-def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits) -> LoadedMap:
+def load_map(
+    world: WorldModel, written: Any, source: str | None, limits: Limits, kept: Mapping[str, str] | None = None
+) -> LoadedMap:
     """Make the occupancy grid of a world. Whatever is wrong ends up in ``findings``, never in an exception.
 
     Args:
@@ -48,12 +50,13 @@ def load_map(world: WorldModel, written: Any, source: str | None, limits: Limits
         written: ``obstacle_map`` as the scenario has it.
         source: Path of the scenario file.
         limits: Size of maps, and the folder to stay in.
+        kept: Files that stand in for those of these names.
     """
     options: Any = world.obstacle_map
     name = getattr(options, "name", None)
     if options is None or (name is not None and not _simulated(name)):
         return LoadedMap(None, world)
-    site = _site(world, source, limits)
+    site = _site(world, source, limits, kept or {})
     try:
         made = _make(options, site)
         world = _fitted(world, made)
@@ -74,7 +77,7 @@ def _simulated(name: str) -> bool:
     return feature is not None and feature.function is not None
 
 
-def _site(world: WorldModel, source: str | None, limits: Limits) -> MapSite:
+def _site(world: WorldModel, source: str | None, limits: Limits, kept: Mapping[str, str]) -> MapSite:
     given = world.model_fields_set
     scenario = [FilePath(source).resolve().parent] if source is not None else []
     return MapSite(
@@ -87,7 +90,7 @@ def _site(world: WorldModel, source: str | None, limits: Limits) -> MapSite:
         refuse=_guard(limits.root),
         most_cells=limits.cells,
         most_bytes=limits.map_bytes,
-        kept=dict(limits.maps),
+        kept=kept,
     )
 
 

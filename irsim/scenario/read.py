@@ -178,7 +178,7 @@ class _Reader:
         if self._map is None or not _same(self._map[0], key):
             section = self.data.get("world") if isinstance(self.data, Mapping) else None
             written = section.get("obstacle_map") if isinstance(section, Mapping) else None
-            self._map = key, load_map(world, written, self.document.path, self.limits)
+            self._map = key, load_map(world, written, self.document.path, self.limits, self.document.maps)
         return self._map[1]
 
     def _under_repair(self, path: Path) -> bool:

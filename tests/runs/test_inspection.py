@@ -7,6 +7,7 @@ import io
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -240,9 +241,32 @@ def test_artifacts_fit_and_go_on(pair: Run) -> None:
     table = artifact(pair, "trace.csv", every=10)
     rows = list(csv.reader(io.StringIO(table)))
     assert rows[0][:4] == ["step", "time", "robot", "x"]
-    assert len(artifact(pair, "trace.csv", most=500)) <= 500
+    step, lines = 0, list[str]()
+    while True:
+        part = artifact(pair, "trace.csv", from_step=step, most=600)
+        assert len(part) <= 600
+        lines += [line for line in part.splitlines()[1:] if not line.startswith("#")]
+        if "# next_step: " not in part:
+            break
+        step = int(part.rsplit(" ", 1)[1])
+    assert lines == artifact(pair, "trace.csv").splitlines()[1:]
+    whole = json.loads(artifact(pair, "events.json"))["events"]
+    step, events = 0, list[Any]()
+    while step is not None:
+        some = json.loads(artifact(pair, "events.json", from_step=step, most=500))
+        events += some["events"]
+        step = some["next_step"]
+    assert events == whole
     with pytest.raises(RunError, match="there are scenario"):
         artifact(pair, "trace.exe")
+
+
+@pytest.mark.parametrize("name", ["events.json", "trace.json", "trace.csv"])
+def test_who_is_not_there_is_told_of(pair: Run, name: str) -> None:
+    with pytest.raises(RunError, match=r"lef'.*did you mean 'left'"):
+        artifact(pair, name, robot="lef")
+    with pytest.raises(RunError, match="step-out-of-range"):
+        artifact(pair, name, from_step=99_999)
 
 
 def test_a_run_can_be_replayed(crashed: Run) -> None:

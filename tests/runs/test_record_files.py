@@ -120,3 +120,15 @@ def test_modules_of_a_run_are_not_imported_to_look_at_it(workspace: Path, monkey
     np.testing.assert_allclose(env.simulation.ranges, np.minimum(trace.ranges["robot_0/0"][20], 5), rtol=1e-6)
     assert (env.time, result.steps) == (2.0, 30)
     env.end(ending_time=0.0)
+
+
+def test_two_that_record_into_one_folder_do_not_mix(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first, second = (
+        SCENARIO.replace("obstacle_map: pictures/rooms.png, ", "").replace("9, 5", f"9, {y}") for y in "46"
+    )
+    monkeypatch.setattr("irsim.runs.recorder._new", lambda folder: folder.mkdir(exist_ok=True) or folder.resolve())
+    irsim.run(text=first, seed=0, record="kept")
+    before = {path.name: path.read_bytes() for path in (workspace / "kept").iterdir()}
+    with pytest.raises(RunError, match=r"file-exists: .*kept' holds a run already. Fix: name another folder"):
+        irsim.run(text=second, seed=0, record="kept")
+    assert {path.name: path.read_bytes() for path in (workspace / "kept").iterdir()} == before
