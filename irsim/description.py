@@ -29,6 +29,7 @@ _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
     "tags", "fov", "fov_radius", "fov_occlusion", "wheelbase", "color", "description",
 )  # fmt: skip
+_POSE = ("x", "y", "theta")
 _CONTACT_WORLD = ("gravity",)
 _CONTACT = ("mass", "friction", "inertia", "restitution", "drive_tau")
 
@@ -83,6 +84,8 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
     group_behavior, members = led.get(view.index, (None, []))
     found: dict[str, Any] = {"name": view.name, "entry": format_path(record.path), "index": record.index}
     found |= {key: _plain(getattr(record, key)) for key in _RECORD}
+    if record.state_dim != len(getattr(record.kinematics, "state_rows", _POSE)):
+        found["state_dim"] = record.state_dim
     if record.group_name != f"{record.role}_{record.group}":
         found["group_name"] = record.group_name
     if contact:

@@ -76,6 +76,38 @@ def test_a_default_written_out_changes_the_file_but_not_the_world() -> None:
     assert not found.same
 
 
+PAIR = (
+    "robot:\n  - {number: 2, kinematics: {name: omni}, state: [[1, 3, 0], [1, 5, 0]], goal: [[9, 3], [9, 5]], "
+    "shape: {name: circle, radius: 0.2}, behavior: {name: dash}}\n"
+)
+SINGLES = "robot:\n" + "".join(
+    f"  - {{kinematics: {{name: omni}}, state: [1, {y}, 0], goal: [9, {y}], shape: {{name: circle, radius: 0.2}}, "
+    "behavior: {name: dash}}\n"
+    for y in (3, 5)
+)
+
+
+def test_an_entry_for_two_robots_is_two_entries() -> None:
+    for found in (diff(PAIR, SINGLES), diff(SINGLES, PAIR)):
+        assert found.keys
+        assert found.world == []
+        assert found.summary.endswith("; the worlds are the same")
+
+
+def test_what_changes_while_an_entry_is_split_is_told() -> None:
+    moved = diff(PAIR, SINGLES.replace("[1, 5, 0]", "[1, 6, 0]"))
+    assert world(moved) == [("changed", "robot_1", "pose")]
+    assert [fact.direct for fact in moved.world or []] == [False]
+    assert moved.summary.endswith("which also changes robot_1")
+    more = diff(PAIR, SINGLES + "  - {kinematics: {name: omni}, state: [1, 8, 0], goal: [9, 8]}\n")
+    assert world(more) == [("added", "robot_2", None)]
+
+
+def test_one_of_several_is_the_one_that_is_gone() -> None:
+    less = diff(PAIR, PAIR.replace("number: 2", "number: 1").replace("[1, 3, 0], ", "").replace("[9, 3], ", ""))
+    assert [(fact.change, fact.before["pose"]) for fact in less.world or []] == [("removed", [1, 3, 0])]
+
+
 def test_lost_comments_are_told() -> None:
     found = diff(BASE, BASE.replace("   # by the door", ""))
     assert (found.same, found.comments_lost) == (True, ["# by the door"])

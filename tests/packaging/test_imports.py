@@ -66,6 +66,7 @@ LAYERS = (
     api
     benchmarks
     bridges
+    changes
     comparison
     config
     contents

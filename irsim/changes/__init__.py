@@ -1,0 +1,1 @@
+"""What differs between two scenarios: their data, their worlds, their texts."""
