@@ -70,7 +70,7 @@ def thickness(shape: Any) -> float:
             least = min(least, 2 * part.radius)
         elif isinstance(part, core.Polygon):
             least = min(least, _width([(x, y) for x, y in part.vertices]))
-        elif isinstance(part, core.Linestring):
+        elif isinstance(part, (core.Linestring, core.Room)):
             return 0.0
         elif isinstance(part, core.GridCells):
             least = min(least, cell)

@@ -24,6 +24,10 @@ BASE = {
 POST = {"shape": {"name": "circle", "radius": 0.3}, "state": [5, 5, 0]}
 WALL = {"shape": {"name": "rectangle", "length": 0.1, "width": 6}, "state": [5, 5, 0]}
 
+FAST = {"vel_max": [5, 1], "vel_min": [0, -1], "goal_threshold": 0.3}
+LINE = {"shape": {"name": "linestring", "vertices": [[0, 5], [10, 5]]}, "state": [0, 0, 0]}
+LONG_WALL = {"shape": {"name": "rectangle", "length": 0.05, "width": 8}, "state": [7, 5, 0]}
+
 
 def codes(data: Any) -> list[str]:
     return [d.code for d in read(data, strict=True).diagnostics]
@@ -82,6 +86,14 @@ FOUND = [
     (one({"vel_max": [8, 1], "vel_min": [-8, -1]}, WALL), "jumps-through"),
     (one({"vel_max": [1, 1]}, WALL, step_time=0.6), "jumps-through"),
     (both({"vel_max": [9, 1], "vel_min": [-9, -1]}, {"state": [9, 9, 0], "goal": [1, 1]}), "jumps-through"),
+    (one({**FAST, "goal": [9, 1]}, LONG_WALL), "jumps-through"),
+    (one({**FAST, "goal": None, "waypoints": [[5, 1], [5, 8]]}, LONG_WALL), "jumps-through"),
+    (one({**FAST, "behavior": {"name": "dash", "wander": True}, "goal": None}, LINE), "jumps-through"),
+    (one({**FAST, "goal": [9, 1], "behavior": {"name": "orca"}}, LINE), "jumps-through"),
+    (one({**FAST, "goal": [1, 9], "state": [1, 1, -2]}, LINE), "jumps-through"),
+    (one({**FAST, "goal": [9, 1], "kinematics": {"name": "diff", "noise": True}}, LINE), "jumps-through"),
+    (one({**FAST, "state": [2, 5, 0], "goal": [9.5, 5]}, boundary="walls"), "jumps-through"),
+    (one({**FAST, "behavior": {"name": "orca"}}, boundary="walls"), "jumps-through"),
     (one({"vel_max": [3, 1], "vel_min": [-3, -1]}), "goal-overshoot"),
     (one({"vel_max": [1, 90], "vel_min": [-1, -90]}), "rate-in-degrees"),
     (one({"vel_max": [80, 1], "vel_min": [-80, -1]}), "speed-in-centimetres"),
@@ -129,6 +141,11 @@ SANE = [
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, WALL, collision_mode="unobstructed"),
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, {**WALL, "unobstructed": True}),
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5, "goal": [9, 1]}, {**WALL, "state": [2, 6, 0]}),
+    one({**FAST, "goal": [9, 1]}, LINE),
+    one({**FAST, "goal": [9, 1], "kinematics": {"name": "omni"}, "vel_max": [5, 5], "vel_min": [-5, -5]}, LINE),
+    one({**FAST, "goal": [9, 1]}, {**LONG_WALL, "state": [5, 4, 1.5708]}),
+    one({**FAST, "state": [3, 5, 0], "goal": [7, 5]}, boundary="walls"),
+    one({**FAST, "state": [0.6, 0.7, 0], "goal": [7, 0.7]}, boundary="walls"),
     one({"vel_max": [2, 3], "vel_min": [-2, -3]}),
     one({"shape": {"name": "circle", "radius": 2}, "state": [3, 3, 0], "goal": [7, 7]}),
     one({"sensors": [{"name": "lidar2d", "range_max": 0.5}]}),
@@ -187,6 +204,23 @@ def test_what_is_said_to_jump_through_a_wall_does() -> None:
     step = float(str(found.fix).split()[1])
     assert step == pytest.approx(0.06)
     assert irsim.run(text=text.format(step), seed=0).outcome == "collision"
+
+
+def test_what_is_said_to_jump_through_the_walls_round_the_world_leaves_it() -> None:
+    """And what is said nothing of, because it drives past a line far to its side, does not touch it."""
+    text = (
+        "world: {{width: 20, height: 20, step_time: 1, boundary: walls}}\n"
+        "robot: {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.3}}, behavior: {{name: dash}}, "
+        "state: [1, 5, 0], goal: [{}, 5], vel_max: [4, 1], vel_min: [0, -1], goal_threshold: {}}}\n"
+    )
+    (found,) = [d for d in read(text.format(18, 0.1)).diagnostics if d.code == "jumps-through"]
+    assert "the walls round the world" in found.message
+    assert irsim.run(text=text.format(18, 0.1), seed=0).left
+    beside = text.format(13, 2.1).replace("boundary: walls", "").replace("[1, 5, 0]", "[6, 5, 0]") + (
+        "obstacle: [{shape: {name: linestring, vertices: [[0, 15], [20, 15]]}, state: [0, 0, 0]}]\n"
+    )
+    assert "jumps-through" not in codes(beside)
+    assert irsim.run(text=beside, seed=0).outcome == "success"
 
 
 def test_the_disc_inside() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from irsim.diagnostics import Path
@@ -48,6 +49,14 @@ class Context:
     def written(self) -> list[ObjectRecord]:
         """The objects of the entries, without those that the world brings along: its map, its walls."""
         return [record for record in self.resolved.objects if record.path[0] != "world"]
+
+    @cached_property
+    def driven_groups(self) -> frozenset[int]:
+        """Groups whose first member has a group behavior: it decides for all members."""
+        leaders: dict[int, ObjectRecord] = {}
+        for record in self.written:
+            leaders.setdefault(record.group, record)
+        return frozenset(group for group, leader in leaders.items() if leader.group_behavior is not None)
 
     def entry(self, path: Path) -> Entry:
         """The entry at a path: ("robot", 0) or ("robot",)."""

@@ -25,18 +25,15 @@ _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
 def check(context: Context) -> Iterator[Finding]:
     """One finding per entry and key, whatever the number of its objects."""
     seen: set[tuple[Any, ...]] = set()
-    leaders: dict[int, ObjectRecord] = {}
     for record in context.written:
-        leader = leaders.setdefault(record.group, record)
-        for finding in _of_object(context, record, driven=leader.group_behavior is not None):
+        for finding in _of_object(context, record):
             key = (finding.diagnostic.code, finding.diagnostic.path)
             if key not in seen:
                 seen.add(key)
                 yield finding
 
 
-def _of_object(context: Context, record: ObjectRecord, *, driven: bool) -> Iterator[Finding]:
-    """``driven``: the first member of its group has a group behavior, which decides for all members."""
+def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     for key, table in (("behavior", CUSTOM_BEHAVIORS), ("group_behavior", CUSTOM_GROUP_BEHAVIORS)):
         options = getattr(record, key)
         if options is None:
@@ -57,6 +54,7 @@ def _of_object(context: Context, record: ObjectRecord, *, driven: bool) -> Itera
         )
     if record.behavior is not None or record.group_behavior is not None:
         return
+    driven = record.group in context.driven_groups
     goal = next((key for key in ("goal", "waypoints") if context.given(record, key)), None)
     if record.kinematics is None and record.role == "robot" and goal and not context.entry(record.path).static:
         yield warning(

@@ -1,24 +1,21 @@
-"""Motion: behaviors that cannot move their object, steps that jump over walls, and nobody to look at."""
+"""Motion: behaviors that cannot move their object, goals that are hopped over, and nobody to look at."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from irsim.behaviors._options import CustomOptions
 from irsim.diagnostics import Edit, Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.magnitude import LARGEST
-from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of, segment_gap, thickness, top_speed
+from irsim.scenario.extent import top_speed
 from irsim.scenario.findings import Finding, hint, warning
 from irsim.scenario.objects import ObjectRecord
 from irsim.scenario.wording import flow
 
-Point = tuple[float, float]
 _PASSABLE = ("unobstructed", "reactive")
 _ROUNDS, _MOST_STEPS = 3, 5000
 """Of a car on its turning circle."""
@@ -48,8 +45,6 @@ def _all(context: Context) -> Iterator[Finding]:
         yield from _never_there(context, record)
         yield from _overshoot(context, record)
         yield from _circles(context, record)
-    if context.scenario.world.collision_mode not in _PASSABLE:
-        yield from _jumps(context)
 
 
 def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
@@ -258,83 +253,3 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         fix=f"start towards the goal, with heading {towards:.4g}, or goal_threshold: "
         f"{math.ceil(least * 100 + 1) / 100:g}, or more steering in 'vel_max' and 'vel_min'",
     )
-
-
-@dataclass(frozen=True)
-class _Body:
-    record: ObjectRecord
-    width: float  # least extent
-    speed: float
-
-
-def _jumps(context: Context) -> Iterator[Finding]:
-    """Collisions are looked for after each step: what is thinner than a step can be jumped over."""
-    dt = context.scenario.world.step_time
-    known: dict[int, float] = {}
-
-    def body(record: ObjectRecord) -> _Body:
-        key = id(record.shape)
-        if key not in known:
-            known[key] = thickness(record.shape)
-        return _Body(record, known[key], top_speed(record))
-
-    there = [
-        record
-        for record in context.resolved.objects
-        if not record.unobstructed and record.shape.name != "walls" and has_fixed_shape(record.shape)
-    ]
-    moving = [body(record) for record in there if record.kinematics is not None]
-    fast = [b for b in moving if 0 < b.speed < math.inf and math.isfinite(b.width) and b.speed * dt > b.width]
-    if not fast or len(there) < 2:
-        return
-    bodies = [*moving, *(body(record) for record in there if record.kinematics is None)]
-    thin_first = sorted(bodies, key=lambda b: (b.width, b.record.id))
-    told: set[Path] = set()
-    for one in fast:
-        own = 2 * inner_disc(parts_of(one.record.shape))[2]
-        if one.record.path in told or own == 0:  # a line moves along itself as well as across
-            continue
-        found = None
-        for other in thin_first:
-            step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
-            if step <= own + other.width and other.speed == 0:
-                break  # and all that follow are thicker, or slower
-            if other.record is not one.record and step > own + other.width and _may_meet(one, other, dt):
-                found = other, own + other.width, step / dt
-                break
-        if found is None:
-            continue
-        told.add(one.record.path)
-        other, least, speed = found
-        thing = "the map" if other.record.path[0] == "world" else f"'{other.record.name}'"
-        together = "" if other.speed == 0 else f", and {thing} {other.speed * dt:.3g} m towards it"
-        longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
-        yield warning(
-            "jumps-through",
-            context.entry_path(one.record, "vel_max") if context.given(one.record, "vel_max") else one.record.path,
-            f"'{one.record.name}' moves {one.speed * dt:.3g} m per step{together}: it can pass through {thing} "
-            f"({other.width:.3g} m thick) without ever touching it",
-            given=one.record.vel_max,
-            fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s)",
-        )
-
-
-def _may_meet(one: _Body, other: _Body, dt: float) -> bool:
-    """Whether the straight ways from goal to goal come near each other; anything may happen to who has no such way."""
-    if other.speed > 0 and (one.record.behavior is None or other.record.behavior is None):
-        return False  # a program drives them: it knows
-    if other.record.path[0] == "world" or not (
-        _is_straight(one.record) and (_is_straight(other.record) or not other.speed)
-    ):
-        return True
-    near = reach_of(one.record.shape) + reach_of(other.record.shape) + (one.speed + other.speed) * dt
-    return min(segment_gap(a, b) for a in _way(one.record) for b in _way(other.record)) <= near
-
-
-def _is_straight(record: ObjectRecord) -> bool:
-    return getattr(record.behavior, "name", "") == "dash" and not record.wander and bool(record.goals)
-
-
-def _way(record: ObjectRecord) -> list[tuple[Point, Point]]:
-    points = [(p[0], p[1]) for p in (record.state, *([] if record.kinematics is None else record.goals))]
-    return list(itertools.pairwise(points)) or [(points[0], points[0])]
