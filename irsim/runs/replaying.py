@@ -84,16 +84,15 @@ def has_modules(run: Run) -> bool:
 
 
 def _put(run: Run, env: Env, step: int) -> None:
-    """Put everybody where the record says that they were; what only a simulation knows (trails, fog) is not there."""
+    """Move everybody as the record says that they moved; sensors measure, and trails grow, as they did."""
     trace, simulation = run.trace(), env.simulation
-    row = step - int(trace.step[0])
-    if trace.pose[row].shape != simulation.pose.shape:
+    if trace.pose[0].shape != simulation.pose.shape:
         raise RunError("unreadable-run", f"the scenario of run {run.id} has other objects now", "run it again")
-    simulation.pose[:], simulation.goal[:] = trace.pose[row], trace.goal[row]
-    simulation.control[:], simulation.count[0] = trace.control[row], step
-    simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]
-    simulation.stopped[:] = trace.stopped[row]
-    simulation.refresh()
+    for row in range(1, step - int(trace.step[0]) + 1):
+        simulation.pose[:], simulation.control[:] = trace.pose[row], trace.control[row]
+        simulation.step_external()
+        simulation.goal[:], simulation.stopped[:] = trace.goal[row], trace.stopped[row]
+        simulation.arrived[:], simulation.collided[:] = trace.arrived[row], trace.collided[row]
 
 
 def step_of(run: Run, step: int | None) -> int:
