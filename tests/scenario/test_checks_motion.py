@@ -24,6 +24,7 @@ BASE = {
 POST = {"shape": {"name": "circle", "radius": 0.3}, "state": [5, 5, 0]}
 WALL = {"shape": {"name": "rectangle", "length": 0.1, "width": 6}, "state": [5, 5, 0]}
 
+ROOM_IN_CM = [[0, 0], [1000, 0], [1000, 800], [0, 800], [0, 0]]
 FAST = {"vel_max": [5, 1], "vel_min": [0, -1], "goal_threshold": 0.3}
 LINE = {"shape": {"name": "linestring", "vertices": [[0, 5], [10, 5]]}, "state": [0, 0, 0]}
 LONG_WALL = {"shape": {"name": "rectangle", "length": 0.05, "width": 8}, "state": [7, 5, 0]}
@@ -98,6 +99,11 @@ FOUND = [
     (one({"vel_max": [1, 90], "vel_min": [-1, -90]}), "rate-in-degrees"),
     (one({"vel_max": [80, 1], "vel_min": [-80, -1]}), "speed-in-centimetres"),
     (one({"shape": {"name": "circle", "radius": 20}, "state": [5, 5, 0]}), "looks-like-centimetres"),
+    (one({}, {"shape": {"name": "linestring", "vertices": ROOM_IN_CM}, "state": [0, 0, 0]}), "looks-like-centimetres"),
+    (one({}, {"shape": {"name": "linestring", "vertices": [[0, 0], [0, 300]]}, "state": [500, 0, 0]}),
+        "looks-like-centimetres"),
+    (one({}, {"shape": {"name": "polygon", "vertices": [[500, 0], [505, 0], [505, 300]]}, "state": [0, 0, 0]}),
+        "looks-like-centimetres"),
     (one({}, step_time=100), "step-time-long"),
     (one({"sensors": [{"name": "lidar2d", "range_max": 0.15}]}), "lidar-blind"),
     (one({"sensors": [{"name": "lidar2d", "angle_range": 1.5e-5}]}), "lidar-beams"),
@@ -141,6 +147,8 @@ SANE = [
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, WALL, collision_mode="unobstructed"),
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5}, {**WALL, "unobstructed": True}),
     one({"vel_max": [8, 1], "vel_min": [-8, -1], "goal_threshold": 0.5, "goal": [9, 1]}, {**WALL, "state": [2, 6, 0]}),
+    one({}, {"shape": {"name": "linestring", "vertices": [[-1000, 5.5], [1000, 5.5]]}, "state": [0, 4, 0]}),
+    one({}, {"shape": {"name": "linestring", "vertices": [[0, 0], [25, 0], [25, 25]]}, "state": [0, 0, 0]}),
     one({**FAST, "goal": [9, 1]}, LINE),
     one({**FAST, "goal": [9, 1], "kinematics": {"name": "omni"}, "vel_max": [5, 5], "vel_min": [-5, -5]}, LINE),
     one({**FAST, "goal": [9, 1]}, {**LONG_WALL, "state": [5, 4, 1.5708]}),

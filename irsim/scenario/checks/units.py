@@ -26,6 +26,7 @@ _OF_WORLD = 0.5
 """Something as long as that share of its world may be a ship."""
 _FAR = 2.0
 """So many times the size of the world outside of it is nowhere."""
+_ON_EDGE = 1e-6
 _WIDEST_SPREAD = 0.5
 """No lidar is as inexact [rad]."""
 _LONG_BEAM, _OFF, _LEAST_BODY = 100.0, 5.0, 0.1
@@ -119,6 +120,11 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             f"'{record.name}' is {width:.3g} m thick, and the world is {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
         )
+    elif record.shape.name in ("polygon", "linestring"):
+        told = list(_outline(context, record))
+        yield from told
+        if told:
+            return
     x0, y0, x1, y1 = world.bounds
     x, y = record.state[:2]
     if not context.given(record, "state"):
@@ -131,6 +137,31 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             f"'{record.name}' stands {far:.3g} m outside of the world, which is {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: ({x:g}, {y:g}) cm are ({x / 100:g}, {y / 100:g})",
         )
+
+
+def _outline(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Corners far outside of the world, which in centimetres would all be inside."""
+    world, (x, y, theta) = context.scenario.world, record.state[:3]
+    x0, y0, x1, y1 = world.bounds
+    cos, sin = math.cos(theta), math.sin(theta)
+    corners = [
+        (x + cos * u - sin * v, y + sin * u + cos * v)
+        for part in parts_of(record.shape)
+        for u, v in getattr(part, "vertices", ())
+    ]
+    inside = all(
+        x0 - _ON_EDGE <= u / 100 <= x1 + _ON_EDGE and y0 - _ON_EDGE <= v / 100 <= y1 + _ON_EDGE for u, v in corners
+    )
+    far = max((max(u - x1, v - y1, x0 - u, y0 - v) for u, v in corners), default=0.0)
+    if not inside or far <= _FAR * max(world.width, world.height):
+        return
+    u, v = max(corners, key=lambda corner: max(abs(corner[0]), abs(corner[1])))
+    yield hint(
+        "looks-like-centimetres",
+        context.entry_path(record, "shape"),
+        f"'{record.name}' reaches ({u:.4g}, {v:.4g}), and the world is {world.width:g} m × {world.height:g} m",
+        fix=f"lengths are in metres: ({u:.4g}, {v:.4g}) cm are ({u / 100:.4g}, {v / 100:.4g})",
+    )
 
 
 def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> Iterator[Finding]:
