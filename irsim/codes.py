@@ -219,8 +219,8 @@ CODES: dict[str, Code] = {
     "looks-like-centimetres": Code(
         "length looks like centimetres",
         "Lengths are in metres, and something does not fit into its world or is larger than any vehicle: a body, beams "
-        "(range_max), the offset of a sensor, an obstacle's place or corners far outside. Example: shape: {name: circle, "
-        "radius: 20} in a world of 10 m; 20 cm are radius: 0.2.",
+        "(range_max), the offset of a sensor, an obstacle's place or corners far outside. Example: shape: {name: "
+        "circle, radius: 20} in a world of 10 m; 20 cm are radius: 0.2.",
     ),
     "step-time-long": Code(
         "a step of a second or more",

@@ -204,3 +204,34 @@ def test_goals_of_several_objects_do_not_become_the_way_of_each() -> None:
 )
 def test_comments_of_a_text(text: str, found: list[str]) -> None:
     assert comments(text) == found
+
+
+def test_keys_of_follow_written_into_its_local_behavior_move_one_level_up() -> None:
+    """Where they have an effect: the robots of the repaired text look at other robots only, and wander."""
+    text = (
+        "robot:\n"
+        "  - kinematics: {name: diff}  # two wheels\n"
+        "    shape: {name: circle, radius: 0.3}\n"
+        "    number: 2\n"
+        "    state: [[1, 5, 0], [9, 5, 0]]\n"
+        "    behavior: {name: follow, local: {name: orca, target_roles: robot, timeHorizon: 2, wander: true}}\n"
+    )
+    mended = mend(text)
+    assert [repair.finding.code for repair in mended.repairs] == ["ignored-key"]
+    assert "behavior: {name: follow, local: {name: orca, timeHorizon: 2}, wander: true, target_roles: robot}" in (
+        mended.text
+    )
+    scenario = mended.reading.scenario
+    assert scenario is not None
+    assert [(o.wander, o.target_roles) for o in scenario.objects] == [(True, "robot")] * 2
+    before = mend(text.replace("target_roles: robot, ", "").replace(", wander: true", ""))
+    assert "ignored-key" not in [item.code for item in before.reading.diagnostics]
+
+
+def test_keys_that_stand_in_both_places_go_from_the_inner_one() -> None:
+    text = (
+        "robot: {kinematics: {name: diff}, shape: {name: circle}, state: [1, 5, 0], goal: [9, 5],\n"
+        "  behavior: {name: follow, target_roles: obstacle, local: {name: orca, target_roles: all}}}\n"
+        "obstacle: [{shape: {name: circle}, state: [5, 5, 0]}]\n"
+    )
+    assert "{name: follow, target_roles: obstacle, local: {name: orca}}" in mend(text).text

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from irsim.behaviors._options import CustomOptions
+from irsim.behaviors._options import BehaviorOptions, CustomOptions
 from irsim.diagnostics import Edit, nearest, surely
 from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.where import at
 from irsim.scenario.wording import flow
 
 _OWN = (
@@ -44,6 +45,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         if options.name == "rvo":
             yield from _rvo(context, record, key, options)
         yield from _capped(context, record, key, options)
+        yield from _local(context, record, key, options)
     if record.kinematics is None and (record.behavior or record.group_behavior) is not None:
         key = "behavior" if record.behavior is not None else "group_behavior"
         yield warning(
@@ -149,6 +151,37 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
             (*path, written),
             f"random goals may lie outside the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]",
             fix="leave range_low and range_high out to use the world's own extent",
+        )
+
+
+def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+    """Keys of the whole that are written into the ``local`` behavior of ``follow``, where nobody reads them."""
+    local: Any = getattr(options, "local", None)
+    path = context.entry_path(record, key)
+    written: Any = at(context.data, path)
+    if not isinstance(local, BehaviorOptions) or not isinstance(written, Mapping):
+        return
+    inner = written.get("local")
+    lost = [
+        name
+        for name in BehaviorOptions.model_fields
+        if name != "name" and name in local.model_fields_set and getattr(local, name) != getattr(options, name)
+    ]
+    if not isinstance(inner, Mapping) or not lost:
+        return
+    rest = {name: value for name, value in inner.items() if name not in lost}
+    moved = {**written, "local": rest, **{name: inner[name] for name in lost if name not in written}}
+    for name in lost:
+        there = name in written
+        yield warning(
+            "ignored-key",
+            (*path, "local", name),
+            f"within 'local' the key '{name}' has no effect: '{options.name}' reads it one level up",
+            given=inner[name],
+            fix=f"remove it: '{name}' stands there already"
+            if there
+            else f"{key}: {{name: {options.name}, {name}: {flow(inner[name])}, local: {flow(rest)}}}",
+            edit=Edit("remove", (*path, "local", name)) if there else Edit("replace", path, moved),
         )
 
 
