@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from irsim.changes.keys import changed_keys, data_of, entry_pairs
+from irsim.changes.keys import changed_keys, data_of, entry_pairs, place
 from irsim.changes.texts import changed_comments, changed_lines, comments_told
 from irsim.changes.worlds import changed_worlds
 from irsim.errors import PlacementError
@@ -26,14 +26,15 @@ def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
         seed: Both worlds are built with it; default: the scenario's own, else 0.
     """
     keys = list(changed_keys(data_of(a.document), data_of(b.document), ()))
+    pairs = entry_pairs(a.document, b.document)
     worlds, why = None, "one of the scenarios is invalid"
     if a.scenario is not None and b.scenario is not None:
         try:
-            worlds = changed_worlds(a.scenario, b.scenario, entry_pairs(a.document, b.document), seed, keys)
+            worlds = changed_worlds(a.scenario, b.scenario, pairs, seed, keys)
         except PlacementError as error:
             why = error.diagnostics[0].message
     lines = changed_lines(a.document.text, b.document.text)
-    lost, edited = changed_comments(a.document.text, b.document.text)
+    lost, edited = changed_comments(a.document, b.document, pairs)
     there = bool(comments(a.document.text or ""))
     return ScenarioDiff(
         before=a.document.name or "(text)",
@@ -55,7 +56,7 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
     if not written:
         text = "no key differs but for the order" if moved else "no key differs"
     else:
-        named = ", ".join(change.path for change in written[:_NAMED])
+        named = ", ".join(place(change.change, change.path) for change in written[:_NAMED])
         more = f" and {len(written) - _NAMED} more" if len(written) > _NAMED else ""
         text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}{more}"
     if moved:

@@ -11,7 +11,7 @@ from irsim.diagnostics import Path, format_path
 from irsim.results import KeyChange
 from irsim.scenario.load import Document
 
-__all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "same"]
+__all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "place", "same"]
 
 _LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
 """Keys whose lists hold things that are recognised again when others come or go before them."""
@@ -59,6 +59,11 @@ def changed_keys(a: Any, b: Any, path: Path) -> Iterator[KeyChange]:
         yield _change("changed", path, a, b)
 
 
+def place(change: str, path: str) -> str:
+    """The path of a change, in words that say so where its number is that of the file before."""
+    return f"former {path}" if change == "removed" and path.endswith("]") else path
+
+
 def _change(kind: Any, path: Path, before: Any, after: Any) -> KeyChange:
     return KeyChange(change=kind, path=format_path(path), before=_json(before), after=_json(after))
 
@@ -85,10 +90,12 @@ def same(a: Any, b: Any) -> bool:
 def entry_pairs(a: Document, b: Document) -> dict[str, Pairs]:
     """Which entries of the two belong together, by section."""
     old, new = data_of(a), data_of(b)
-    return {
-        role: _aligned(*(data.get(role) or [] if isinstance(data, Mapping) else [] for data in (old, new)))
-        for role in ("robot", "obstacle")
-    }
+    return {role: _aligned(_entries(old, role), _entries(new, role)) for role in ("robot", "obstacle")}
+
+
+def _entries(data: Any, role: str) -> list[Any]:
+    entries = data.get(role) if isinstance(data, Mapping) else None
+    return entries if isinstance(entries, list) else []
 
 
 def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:

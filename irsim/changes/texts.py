@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 
+from irsim.changes.keys import Pairs
+from irsim.diagnostics import Path
 from irsim.results import CommentChange
-from irsim.scenario.comments import comments
+from irsim.scenario.comments import places_of_comments
+from irsim.scenario.load import Document
 
 __all__ = ["changed_comments", "changed_lines", "comments_told"]
 
 _EDITED = 0.5
-"""Comments that are more alike than that are one that was edited."""
+"""Comments that are more alike than that are one that was edited, whatever they are about."""
+_MANY, _NEAR = 1_000, 100
+"""Pairs, and equal comments, that are looked at."""
+
+Comment = tuple[str, set[Path]]
+"""Its text, and the paths that it may be about."""
 
 
 def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
@@ -22,28 +31,56 @@ def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
     return sum(line.startswith("-") for line in found), sum(line.startswith("+") for line in found)
 
 
-def changed_comments(a: str | None, b: str | None) -> tuple[list[str], list[CommentChange]]:
-    """Comments that are gone, and those that say something else now."""
-    if a is None or b is None:
+def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tuple[list[str], list[CommentChange]]:
+    """Comments that are gone, and those that say something else now: about the same thing, or in much the same words.
+
+    Args:
+        a: The file before.
+        b: The file after.
+        pairs: Entries of the files that belong together, by section.
+    """
+    if a.text is None or b.text is None:
         return [], []
-    left = comments(b)
+    entries: dict[Path, Path] = {
+        (role, i): (role, j) for role, found in pairs.items() for i, j in found if i is not None and j is not None
+    }
+    old = [
+        (text, {(*entries.get(path[:2], path[:2]), *path[2:]) for path in about})
+        for text, about in places_of_comments(a)
+    ]
+    new = [(text, set(about)) for text, about in places_of_comments(b)]
+    gone, left = _unequal(old, new)
+    twins: dict[int, int] = {}
+    if len(gone) * len(left) <= _MANY:
+        alike = {(i, j): difflib.SequenceMatcher(None, old[i][0], new[j][0], False).ratio() for i in gone for j in left}
+        about_one = [(-score, *pair) for pair, score in alike.items() if old[pair[0]][1] & new[pair[1]][1]]
+        in_one_way = [(-score, *pair) for pair, score in alike.items() if score > _EDITED]
+        for _, i, j in [*sorted(about_one), *sorted(in_one_way)]:
+            if i not in twins and j not in twins.values():
+                twins[i] = j
+    lost = [old[i][0] for i in gone if i not in twins]
+    return lost, [CommentChange(before=old[i][0], after=new[j][0]) for i, j in sorted(twins.items())]
+
+
+def _unequal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list[int], list[int]]:
+    """Places of the comments that have no equal one on the other side, if possible one about the same thing."""
+    there = defaultdict[str, list[int]](list)
+    for j, (text, _) in enumerate(new):
+        there[text].append(j)
     gone = []
-    for comment in comments(a):
-        if comment in left:
-            left.remove(comment)
+    for i, (text, about) in enumerate(old):
+        twin = next((j for j in there[text][:_NEAR] if new[j][1] & about), None)
+        if twin is not None:
+            there[text].remove(twin)
         else:
-            gone.append(comment)
-    lost, edited = [], []
-    few = len(gone) * len(left) <= 1_000
-    for comment in gone:
-        alike = {new: difflib.SequenceMatcher(None, comment, new, False).ratio() for new in left} if few else {}
-        twin = max(alike, key=lambda new: alike[new], default=None)
-        if twin is None or alike[twin] <= _EDITED:
-            lost.append(comment)
+            gone.append(i)
+    rest = []
+    for i in gone:
+        if there[old[i][0]]:
+            there[old[i][0]].pop(0)
         else:
-            left.remove(twin)
-            edited.append(CommentChange(before=comment, after=twin))
-    return lost, edited
+            rest.append(i)
+    return rest, sorted(j for found in there.values() for j in found)
 
 
 def comments_told(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:

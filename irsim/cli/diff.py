@@ -38,10 +38,15 @@ def diff(
     Order, layout and other ways to write the same do not count. Entries are recognised when others come or go.
     """
     from irsim import api
+    from irsim.changes.keys import place
     from irsim.cli.output import print_json
 
     found = api.diff(before, after, seed=seed)
-    extra = [change.path for change in found.keys if only and not any(_within(change.path, path) for path in only)]
+    extra = [
+        place(change.change, change.path)
+        for change in found.keys
+        if only and not any(_within(change.path, path) for path in only)
+    ]
     extra += _comments_outside(found, after, only) if only and found.comments_changed else []
     if json_output:
         print_json(found)
@@ -53,12 +58,16 @@ def diff(
 
 def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[str]:
     """Changed comments about what may not change."""
-    from irsim.diagnostics import format_path
+    from collections import defaultdict
+
+    from irsim.diagnostics import Path, format_path
     from irsim.scenario.comments import places_of_comments
     from irsim.scenario.load import load_path
     from irsim.scenario.locate import locate
 
-    places = places_of_comments(load_path(locate(after)))
+    places: dict[str, list[Path]] = defaultdict(list)
+    for comment, about in places_of_comments(load_path(locate(after))):
+        places[comment] += about
     return [
         edited.after
         for edited in found.comments_changed
@@ -73,6 +82,7 @@ def _within(path: str, allowed: str) -> bool:
 def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from rich.text import Text
 
+    from irsim.changes.keys import place
     from irsim.cli.output import console
     from irsim.scenario.rewrite import yaml_flow
     from irsim.text import clean, pair
@@ -92,7 +102,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     if found.keys:
         out.print("in the file", style="bold")
     for change in found.keys:
-        line(change.change, change.path, change.before, change.after)
+        line(change.change, place(change.change, change.path), change.before, change.after)
     facts = [fact for fact in found.world or [] if not fact.direct]
     if facts:
         out.print("in the world", style="bold")

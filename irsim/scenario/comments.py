@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
@@ -28,37 +29,46 @@ def keeps_comments(before: str, after: str) -> bool:
     return not Counter(comments(before)) - Counter(comments(after))
 
 
-def places_of_comments(document: Document) -> dict[str, list[Path]]:
-    """What each comment may be about: all that stands on its line or, if it stands alone, on the line it goes with.
+def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
+    """The comments of a text, in order, and what each may be about.
 
-    That is the next line with something on it or, for a comment that is indented more than that, the last one before
-    that is not indented more than the comment.
+    That is all that stands on its line or, if it stands alone, on the line it goes with: the next line with something
+    on it or, for a comment that is indented more than that, the last one before that is not indented more than the
+    comment.
 
     Args:
         document: With its text.
 
     Returns:
-        Comment → paths, in which a single robot or obstacle is the first of a list.
+        Comments with paths, in which a single robot or obstacle is the first of a list.
     """
     if document.text is None:
-        return {}
+        return []
     there: dict[int, list[Path]] = defaultdict(list)
     for path, line in _nodes(document.tree(), ()):
         there[line].append(_listed(path[len(document.prefix) :], document))
-    lines = document.text.splitlines()
-    found: dict[str, list[Path]] = defaultdict(list)
+    occupied, lines = sorted(there), document.text.splitlines()
+    found: list[tuple[str, list[Path]]] = []
+    line, read, known = 1, 0, dict[tuple[int, int], int]()
     for match in _QUOTED_OR_COMMENT.finditer(document.text):
         if match["comment"] is None:
             continue
-        line = document.text.count("\n", 0, match.start("comment")) + 1
+        line, read = line + document.text.count("\n", read, match.start("comment")), match.start("comment")
+        about = line
         if line not in there:
-            after = min((k for k in there if k > line), default=None)
-            indent = _indent(lines[line - 1])
-            if after is None or _indent(lines[after - 1]) < indent:
-                after = max((k for k in there if k < line and _indent(lines[k - 1], " -") <= indent), default=line)
-            line = after
-        found[match["comment"].strip()] += there.get(line, [])
+            spot = bisect.bisect(occupied, line), _indent(lines[line - 1])
+            if spot not in known:
+                known[spot] = _line_of(*spot, occupied, lines)
+            about = known[spot]
+        found.append((match["comment"].strip(), there.get(about, [])))
     return found
+
+
+def _line_of(at: int, indent: int, occupied: list[int], lines: list[str]) -> int:
+    """The line that a comment is about which stands alone before the ``at``-th of those on which something starts."""
+    if at < len(occupied) and _indent(lines[occupied[at] - 1]) >= indent:
+        return occupied[at]
+    return next((k for k in reversed(occupied[:at]) if _indent(lines[k - 1], " -") <= indent), 0)
 
 
 def _nodes(node: Node | None, path: Path) -> Iterator[tuple[Path, int]]:

@@ -158,6 +158,64 @@ def test_an_edited_comment_is_not_lost() -> None:
     assert found.summary.endswith("no comment lost, 1 comment changed")
 
 
+@pytest.mark.parametrize(
+    ("before", "after"), [("# by the door", "# starts"), ("# the hall", "# 10 x 8 m"), ("# who moves", "# one robot")]
+)
+def test_a_comment_about_the_same_thing_is_edited(before: str, after: str) -> None:
+    old = BASE.replace("robot:\n", "# who moves\nrobot:\n")
+    found = diff(old, old.replace(before, after))
+    assert found.comments_lost == []
+    assert [(item.before, item.after) for item in found.comments_changed] == [(before, after)]
+    invalid = diff(old, old.replace(before, after).replace("radius: 0.3", "radius: -1"))
+    assert [(item.before, item.after) for item in invalid.comments_changed] == [(before, after)]
+
+
+def test_another_comment_about_something_else_does_not_replace_one() -> None:
+    found = diff(BASE, BASE.replace("   # by the door", "").replace("goal: [9, 4]", "goal: [9, 4]   # east"))
+    assert (found.comments_lost, found.comments_changed) == (["# by the door"], [])
+
+
+@pytest.mark.parametrize(
+    "text", ["robot: 5   # five\n", "- 1   # one\n", "robot: [   # open\n", "# nothing\n", "5   # x"]
+)
+def test_comments_of_what_is_no_scenario(text: str) -> None:
+    assert diff(BASE, text).comments_lost
+    assert diff(text, text.replace("# ", "# not ")).comments_lost == []
+
+
+def test_a_comment_goes_with_its_entry() -> None:
+    entries = ["  # slow\n  - {state: [5, 1, 0]}\n", "  - {state: [5, 6, 0]}   # fast\n"]
+    before = f"obstacle:\n{entries[0]}{entries[1]}"
+    after = f"obstacle:\n{entries[1].replace('fast', 'quick')}{entries[0].replace('slow', 'dawdling')}"
+    found = diff(before, after)
+    assert found.comments_lost == []
+    assert {(item.before, item.after) for item in found.comments_changed} == {
+        ("# slow", "# dawdling"),
+        ("# fast", "# quick"),
+    }
+    gone = diff(before, f"obstacle:\n{entries[1]}")
+    assert (gone.comments_lost, gone.comments_changed) == (["# slow"], [])
+
+
+def test_equal_comments_stand_for_themselves() -> None:
+    before = "obstacle:\n  - {state: [5, 1, 0]}   # here\n  - {state: [5, 6, 0]}   # here\n"
+    found = diff(before, before.replace("# here", "# 5, 1", 1))
+    assert [(item.before, item.after) for item in found.comments_changed] == [("# here", "# 5, 1")]
+    assert found.comments_lost == []
+
+
+def test_an_entry_that_is_gone_is_named_as_in_the_file_before() -> None:
+    before = "obstacle:\n" + "".join(
+        f"  - {{shape: {{name: circle, radius: {radius}}}, state: [{x}, 8, 0]}}\n"
+        for x, radius in ((5, 0.4), (6, 0.5), (7, 0.6))
+    )
+    lines = before.splitlines(keepends=True)
+    found = diff(before, "".join([*lines[:2], lines[3].replace("0.6", "0.7")]))
+    assert found.summary == "2 keys differ: obstacle[1].shape.radius, former obstacle[1]"
+    result = diff(BASE, BASE.replace("    goal: [9, 4]\n", ""))
+    assert result.summary.startswith("1 key differs: robot[0].goal;")
+
+
 def test_long_values_are_cut_where_they_differ() -> None:
     before, after = pair("a" * 200 + "1" + "b" * 200, "a" * 200 + "2" + "b" * 200, 60)
     assert max(len(before), len(after)) == 60

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
+from irsim.changes.keys import place
 from irsim.text import clean, pair, seconds
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
@@ -165,7 +166,7 @@ def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     if found is None:
         return None
     most = _MOST_CHANGES if detailed else _MOST_CHANGES // 4
-    lines = [f"{item['change']} {item['path']}: {_values(item)}" for item in found["keys"]]
+    lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
     facts = [item for item in found["world"] or [] if not item["direct"]]
     lines += [f"in the world: {item['change']} {_fact(item)}: {_values(item)}" for item in facts]
     lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
