@@ -36,6 +36,7 @@ def obstacle(**keys: Any) -> dict[str, Any]:
 
 
 TRIANGLES = [{"name": "polygon", "vertices": [[i, 5], [i + 1, 5], [i, 6]]} for i in range(3)]
+BOX = {"name": "rectangle", "length": 2, "width": 0.3}
 
 SANE: list[dict[str, Any]] = [
     {},
@@ -59,6 +60,7 @@ SANE: list[dict[str, Any]] = [
     robot(kinematics={"name": "diff", "noise": True}),
     robot(kinematics={"name": "omni"}),
     robot(behavior={"name": "dash", "wander": True}),
+    {"obstacle": [{"number": 2, "shape": BOX, "state": [[5, 8, 0], [5, 8, 1.5708]]}]},
     robot(behavior={"name": "follow", "local": {"name": "orca", "timeHorizon": 2}}),
     robot(behavior={"name": "follow", "local": {"name": "orca", "target_roles": "all"}}),
     {"world": {"width": 6, "height": 6, "offset": [20, 20]},
@@ -134,7 +136,8 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (robot(shape=None), "hint", "default-shape", ("robot", 0)),
     (robot(goal=None), "hint", "default-goal", ("robot", 0)),
     (robot(state=[1, 1, 90]), "hint", "heading-in-degrees", ("robot", 0, "state")),
-    (robot(goal=[[[2, 2, 0], [3, 3, -180]]]), "hint", "heading-in-degrees", ("robot", 0, "goal", 0)),
+    (robot(goal=[[[2, 2, 0], [3, 3, -180]]]), "hint", "heading-in-degrees", ("robot", 0, "goal", 0, 1)),
+    (robot(waypoints=[[2, 2, 0], [3, 3, 90]]), "hint", "heading-in-degrees", ("robot", 0, "waypoints", 1)),
     (robot(state=[20, 1]), "hint", "outside-world", ("robot", 0, "state")),
     (robot(number=6, distribution={"name": "circle", "radius": 8}),
         "hint", "outside-world", ("robot", 0, "distribution")),
@@ -164,8 +167,16 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (robot(waypoints=[[2, 2], [20, 1]]), "hint", "outside-world", ("robot", 0, "waypoints", 1)),
     (
         robot(behavior={"name": "dash", "wander": True, "range_low": [0, 0, 0], "range_high": [20, 5, 0]}),
+        "hint", "wander-outside", ("robot", 0, "behavior", "range_high"),
+    ),
+    (
+        robot(behavior={"name": "dash", "wander": True, "range_low": [-2, 0], "range_high": [5, 5]}),
         "hint", "wander-outside", ("robot", 0, "behavior", "range_low"),
     ),
+    ({"obstacle": [{"number": 2, "shape": BOX, "state": [[5, 8, 0], [5, 8, 0]]}]},
+        "warning", "stacked", ("obstacle", 0, "state")),
+    ({"obstacle": [{"number": 2, "shape": {"name": "circle"}, "state": [[5, 8, 0], [5, 8, 1]]}]},
+        "warning", "stacked", ("obstacle", 0, "state")),
     (
         robot(behavior={"name": "dash", "wander": True, "range_low": [5, 5], "range_high": [1, 9]}),
         "error", "range-order", ("robot", 0, "behavior", "range_low"),
@@ -241,6 +252,21 @@ def test_a_single_obstacle_mapping_joins_the_first_robots() -> None:
 def test_only_the_first_members_group_behavior_counts() -> None:
     data = {"robot": [{**DIFF, "group": 1}, {**DIFF, "group": 1, "state": [3, 3], "group_behavior": {"name": "sfm"}}]}
     assert ("hint", "group-behavior-unused", ("robot", 1, "group_behavior")) in findings(data)
+
+
+@pytest.mark.parametrize(
+    ("keys", "fix"),
+    [
+        ({}, "add 'kinematics: {name: diff}' (or omni, omni_angular, acker)"),
+        ({"kinematics": {"name": "static"}},
+            "write 'kinematics: {name: diff}' (or omni, omni_angular, acker) instead of {name: static}"),
+        ({"kinematics": None}, "write 'kinematics: {name: diff}' (or omni, omni_angular, acker) instead of null"),
+    ],
+)  # fmt: skip
+def test_what_makes_it_move_is_no_second_key(keys: dict[str, Any], fix: str) -> None:
+    entry = {"shape": {"name": "circle"}, "state": [5, 8, 0], "goal": [5, 2], "behavior": {"name": "dash"}, **keys}
+    found = read({"obstacle": [entry]}, strict=True).diagnostics
+    assert [item.fix for item in found if item.code == "behavior-without-kinematics"] == [fix]
 
 
 def test_who_is_driven_by_a_group_does_not_stand_still() -> None:

@@ -52,7 +52,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "behavior-without-kinematics",
             context.entry_path(record, key),
             f"an object without kinematics never moves, whatever its {key.replace('_', ' ')}",
-            fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
+            fix=_drive(context, record),
         )
     if record.behavior is not None or record.group_behavior is not None:
         return
@@ -63,7 +63,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "behavior-without-kinematics",
             context.entry_path(record, goal),
             "a robot without kinematics never moves: it cannot get to its goal",
-            fix="add 'kinematics: {name: diff}' (or omni, omni_angular, acker)",
+            fix=_drive(context, record),
         )
     elif not driven and not record.static and (record.role == "robot" or (record.kinematics is not None and goal)):
         unless = "the program gives it actions" if record.role == "robot" else "the program moves it"
@@ -74,6 +74,15 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix="none needed if it is to stand or a program passes actions; otherwise add 'behavior: {name: dash}'",
             edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
         )
+
+
+def _drive(context: Context, record: ObjectRecord) -> str:
+    """What makes an object move that has no kinematics, or those that stand still."""
+    drives = "(or omni, omni_angular, acker)"
+    if "kinematics" not in at(context.data, record.path):
+        return f"add 'kinematics: {{name: diff}}' {drives}"
+    written = at(context.data, context.entry_path(record, "kinematics"))
+    return f"write 'kinematics: {{name: diff}}' {drives} instead of {flow(written)}"
 
 
 def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehaviors) -> Iterator[Finding]:
@@ -145,10 +154,11 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         )
         return
     x0, y0, x1, y1 = context.scenario.world.bounds
-    if options.wander and (low[0] < x0 or low[1] < y0 or high[0] > x1 or high[1] > y1):
+    below, above = (p[0] < x0 or p[1] < y0 or p[0] > x1 or p[1] > y1 for p in (low, high))
+    if options.wander and (below or above):
         yield hint(
             "wander-outside",
-            (*path, written),
+            (*path, "range_low" if below else "range_high"),
             f"random goals may lie outside the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]",
             fix="leave range_low and range_high out to use the world's own extent",
         )

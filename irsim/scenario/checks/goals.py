@@ -237,11 +237,14 @@ def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
             if not context.given(record, key):
                 break
             poses = [record.state] if key == "state" else record.goals
-            angle = next((pose[2] for pose in poses if len(pose) > 2 and abs(pose[2]) > _TURN), None)
-            if angle is not None and angle == int(angle):
+            turned = (i for i, pose in enumerate(poses) if len(pose) > 2 and abs(pose[2]) > _TURN)
+            if (index := next(turned, None)) is None:
+                continue
+            angle = poses[index][2]
+            if angle == int(angle):
                 yield hint(
                     "heading-in-degrees",
-                    context.entry_path(record, key),
+                    context.entry_path(record, key) if key == "state" else _goal_path(context, record, key, index),
                     f"a heading of {angle:g} radians is {abs(angle) / (2 * math.pi):.1f} turns",
                     fix=f"angles are in radians: {angle:g} degrees are {math.radians(angle):.5g}",
                 )

@@ -12,6 +12,7 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.findings import Finding, error, hint, warning
 from irsim.scenario.model import Entry
 from irsim.scenario.objects import ObjectRecord
+from irsim.vectors import is_vector
 
 _NEAR = 1e-9
 _MOST_ALIKE = 50
@@ -92,14 +93,17 @@ def _stacked(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[
         return
     places: dict[tuple[float, ...], int] = defaultdict(int)
     for record in records:
-        places[tuple(round(v, 9) for v in record.state[:2])] += 1
+        round_body = record.shape.name == "circle" and not any(record.shape.center)
+        places[tuple(round(v, 9) for v in record.state[: 2 if round_body else 3])] += 1
     most = max(places.values())
     if most > 1:
         where = next(pose for pose, count in places.items() if count == most)
         key = "state" if entry.state is not None else "number"
+        several = entry.state is not None and not is_vector(entry.state) and len(entry.state) > 1
         yield warning(
             "stacked",
             (*path, key),
             f"{most} objects of this entry start at the same place ({where[0]:g}, {where[1]:g})",
-            fix="give 'state' one vector per object, or a 'distribution': {name: random} or {name: circle}",
+            fix=("a vector of its own in 'state' for each object" if several else "give 'state' one vector per object")
+            + ", or a 'distribution': {name: random} or {name: circle}",
         )
