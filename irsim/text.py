@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["clean", "pair", "seconds"]
+from collections.abc import Mapping
+
+__all__ = ["clean", "kinds", "pair", "seconds"]
 
 
 def pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
@@ -23,6 +25,20 @@ def pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
     if start > 3:
         first, second = "..." + first[start:], "..." + second[start:]
     return clean(first, longest), clean(second, longest)
+
+
+def kinds(before: object, after: object) -> tuple[object, object]:
+    """Of options of two kinds, or of some and none, what they are: their names. Other values stay as they are.
+
+    Args:
+        before: One value.
+        after: The other.
+    """
+    names = [value.get("name") if isinstance(value, Mapping) else value for value in (before, after)]
+    options = [value for value in (before, after) if value is not None]
+    if options and names[0] != names[1] and all(isinstance(value, Mapping) and "name" in value for value in options):
+        return names[0], names[1]
+    return before, after
 
 
 def seconds(time: float) -> str:

@@ -15,7 +15,8 @@ __all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "place", 
 
 _LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
 """Keys whose lists hold things that are recognised again when others come or go before them."""
-_ALIKE = 0.34
+_ALIKE, _MANY = 0.34, 10_000
+"""Share of leaves of items that belong together; pairs that are looked at: of more, only those in order."""
 
 Pairs = list[tuple[int | None, int | None]]
 
@@ -116,8 +117,10 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
         twin = next((j for j in right if name is not None and _name_of(b[j]) == name), None)
         if twin is not None:
             take(i, twin)
-    few = len(left) * len(right) <= 10_000
-    alike = [(-_likeness(a[i], b[j]), abs(i - j), i, j) for i in left for j in right] if few else []
+    few = len(left) * len(right) <= _MANY
+    candidates = [(i, j) for i in left for j in right] if few else list(zip(left, right, strict=False))
+    of_a, of_b = ({k: set(_leaves(items[k])) for k in rest} for items, rest in ((a, left), (b, right)))
+    alike = [(-_likeness(of_a[i], of_b[j]), abs(i - j), i, j) for i, j in candidates]
     for score, _, i, j in sorted(alike):
         if -score >= _ALIKE and i in left and j in right:
             take(i, j)
@@ -150,10 +153,9 @@ def _name_of(item: Any) -> str | None:
     return name if isinstance(name, str) else None
 
 
-def _likeness(a: Any, b: Any) -> float:
+def _likeness(a: set[tuple[str, str]], b: set[tuple[str, str]]) -> float:
     """Share of leaves that two items have in common, 0 to 1."""
-    ours, theirs = set(_leaves(a)), set(_leaves(b))
-    return len(ours & theirs) / max(1, len(ours | theirs))
+    return len(a & b) / max(1, len(a | b))
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, str]]:

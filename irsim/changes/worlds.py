@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -55,13 +56,15 @@ def changed_worlds(
     twins = twins_of(old["objects"], new["objects"], pairs)
     gone = set(range(len(old["objects"]))) - {i for i, _ in twins}
     come = set(range(len(new["objects"]))) - {j for _, j in twins}
+    alone = _alone(old["objects"], "removed", keys)
     for i in sorted(gone):
         item = old["objects"][i]
-        direct = _alone(item, "removed", old["objects"], keys)
+        direct = listed(item["entry"]) in alone
         changes.append(WorldChange(object=item["name"], change="removed", before=_brief(item), direct=direct))
+    alone = _alone(new["objects"], "added", keys)
     for j in sorted(come):
         item = new["objects"][j]
-        direct = _alone(item, "added", new["objects"], keys)
+        direct = listed(item["entry"]) in alone
         changes.append(WorldChange(object=item["name"], change="added", after=_brief(item), direct=direct))
     twins.sort(key=lambda pair: pair[1])
     changes += [
@@ -75,18 +78,28 @@ def changed_worlds(
         )
         for i, j in moved(twins)
     ]
+    about = defaultdict[str, list[KeyChange]](list)
+    for key in keys:
+        about[_entry_of(key.path)].append(key)
+    same = dict(twins)
     for i, j in twins:
         name, entry = new["objects"][j]["name"], listed(new["objects"][j]["entry"])
+        written = [*about[entry], *about[entry.partition("[")[0]]]
         found = list(object_facts(old["objects"][i], new["objects"][j]))
         if not any(key == "group_behavior" for key, _, _ in found):
-            found += _company(old["objects"], new["objects"], i, j, dict(twins))
+            found += _company(old["objects"], new["objects"], i, j, same)
         changes += [
             WorldChange(
-                object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, keys)
+                object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, written)
             )
             for k, was, now in found
         ]
     return changes
+
+
+def _entry_of(path: str) -> str:
+    """The entry that a path is in, or its section where it is the path of a whole one."""
+    return path.partition(".")[0]
 
 
 def _company(
@@ -95,9 +108,10 @@ def _company(
     """That an object is led by a group behavior with others than before: most of those in both worlds."""
     before = old[i].get("group_members") or []
     after = new[j].get("group_members") or []
-    there = set(twins.values())
+    if not before and not after:
+        return
     was = {twins[k] for k in before if k in twins} - {j}
-    now = {k for k in after if k in there} - {j}
+    now = set(after) & set(twins.values()) - {j}
     if 2 * len(was & now) < len(was | now):
         yield "group_members", [old[k]["name"] for k in before], [new[k]["name"] for k in after]
 
@@ -137,11 +151,11 @@ def _numbers(value: Any) -> Iterator[float]:
         yield float(value)
 
 
-def _alone(item: Mapping[str, Any], change: str, objects: Sequence[Any], keys: Sequence[KeyChange]) -> bool:
-    """Whether an object that came or went is all that an entry stands for."""
-    entry = listed(item["entry"])
-    told = any((key.change, key.path) == (change, entry) for key in keys)
-    return told and sum(listed(other["entry"]) == entry for other in objects) == 1
+def _alone(objects: Sequence[Any], change: str, keys: Sequence[KeyChange]) -> set[str]:
+    """Entries that came or went and that stand for one object."""
+    told = {key.path for key in keys if key.change == change}
+    count = Counter(listed(item["entry"]) for item in objects)
+    return {entry for entry in told if count[entry] == 1}
 
 
 def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:

@@ -85,7 +85,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from irsim.changes.keys import place
     from irsim.cli.output import console
     from irsim.scenario.rewrite import yaml_flow
-    from irsim.text import clean, pair
+    from irsim.text import clean, kinds, pair
 
     out = console()
 
@@ -107,7 +107,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     if facts:
         out.print("in the world", style="bold")
     for fact in facts:
-        line(fact.change, " ".join(filter(None, (fact.object or "world", fact.key))), fact.before, fact.after)
+        line(fact.change, " ".join(filter(None, (fact.object or "world", fact.key))), *kinds(fact.before, fact.after))
     for comment in found.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, _LONGEST)}"), soft_wrap=True)
     for edited in found.comments_changed:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import irsim
 from irsim import templates
-from irsim.text import pair
+from irsim.cli.app import app
+from irsim.text import kinds, pair
 
 BASE = """\
 world: {width: 10, height: 8, seed: 3}   # the hall
@@ -298,6 +300,27 @@ def test_a_group_behavior_is_told_of_all_that_follow_it() -> None:
         ("robot_1", False),
         ("robot_2", False),
     ]
+
+
+def test_people_are_told_of_options_by_their_name(tmp_path: Path) -> None:
+    before, after = tmp_path / "before.yaml", tmp_path / "after.yaml"
+    before.write_text(LED, encoding="utf-8")
+    after.write_text(LED.replace("[9, 6], group: 0", "[9, 6], group: 1"), encoding="utf-8")
+    shown = CliRunner().invoke(app, ["diff", str(before), str(after)])
+    assert "~ robot_2 group_behavior  orca -> null" in shown.stdout.splitlines()
+    assert kinds({"name": "orca", "a": 1}, {"name": "orca", "a": 2}) == (
+        {"name": "orca", "a": 1},
+        {"name": "orca", "a": 2},
+    )
+    assert kinds([1], None) == ([1], None)
+
+
+def test_of_many_entries_that_all_changed_each_is_recognised() -> None:
+    before = "robot:\n" + "".join(robot(2 + i) for i in range(120))
+    found = diff(f"world: {{height: 200}}\n{before}", f"world: {{height: 200}}\n{before.replace('0.3', '0.4')}")
+    assert {change for change, _ in keys(found)} == {"changed"}
+    assert len(found.keys) == len(found.world or []) == 120
+    assert all(fact.direct for fact in found.world or [])
 
 
 def test_a_group_behavior_that_nobody_follows_changes_no_world() -> None:

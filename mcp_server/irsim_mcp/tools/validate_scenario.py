@@ -10,7 +10,7 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.changes.keys import place
-from irsim.text import clean, pair, seconds
+from irsim.text import clean, kinds, pair, seconds
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.whole import whole
@@ -168,7 +168,10 @@ def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     most = _MOST_CHANGES if detailed else _MOST_CHANGES // 4
     lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
     facts = [item for item in found["world"] or [] if not item["direct"]]
-    lines += [f"in the world: {item['change']} {_fact(item)}: {_values(item)}" for item in facts]
+    for item in facts:
+        before, after = kinds(item["before"], item["after"])
+        values = _values(item | {"before": before, "after": after})
+        lines.append(f"in the world: {item['change']} {_fact(item)}: {values}")
     lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
     edited = [pair(item["before"], item["after"]) for item in found["comments_changed"]]
     lines += [f"comment changed: {before} -> {after}" for before, after in edited]
