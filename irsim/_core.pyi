@@ -253,6 +253,8 @@ class RandomPolygon:
 class Room:
     """A closed line that is solid outside: the walls round a world."""
 
+    vertices: list[list[float]]
+
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
 class OccupancyGrid:
@@ -278,6 +280,8 @@ class OccupancyGrid:
 
 class GridCells:
     """The occupied cells of a grid; the pose of the object does not move them."""
+
+    grid: OccupancyGrid
 
     def __init__(self, *, grid: OccupancyGrid) -> None: ...
 

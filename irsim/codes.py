@@ -263,6 +263,13 @@ CODES: dict[str, Code] = {
         "width needed. Example: a door of 0.5 m for a robot of radius 0.3, which needs 0.6 m; widen the door, or "
         "narrow the robot.",
     ),
+    "way-unchecked": Code(
+        "nobody looked for a way",
+        "Ways are looked for with cells of a quarter of a robot's radius or, where the world is too large for that, by "
+        "the gaps that things leave. In a world hundreds of times as wide as the robot, with a map whose outline or "
+        "obstacles have tens of thousands of corners, neither is done: the goal may be out of reach. "
+        "'validate --simulate' with 'behavior: {name: follow}' tells: an event 'no_path' says that there is no way.",
+    ),
     "narrow-passage": Code(
         "a gap hardly wider than the robot",
         "The widest way has a gap less than a quarter wider than the body (its largest inner disc). It can be passed, "

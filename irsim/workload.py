@@ -51,8 +51,8 @@ def step_work(scenario: ResolvedScenario, simulation: Simulation) -> float:
     """
     records = scenario.objects
     place: Floats = simulation.state.pose[: len(records), :2]
-    corners = np.array(_corners(records))
-    still = np.array([record.static for record in records])
+    corners = np.array(_corners(records), dtype=np.int64)
+    still = np.array([record.static for record in records], dtype=bool)
     near = _Nearness(place, corners)
     work = _CORNER * float((corners[~still] - 1).sum())
     for row, record in enumerate(records):

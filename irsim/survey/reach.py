@@ -7,8 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from irsim import _core as core
 from irsim.scenario.checks import Context
+from irsim.survey.barriers import barriers_of
 from irsim.survey.movers import Mover
+from irsim.survey.passages import Passages, passages_of
 from irsim.survey.room import Gap, Point, Room, gap, plugged, reached_place, room_of
 from irsim.survey.scenes import Scene
 from irsim.survey.tally import Tally
@@ -22,6 +25,9 @@ _MOST_GAPS = 4
 _MOST_PLUGS = 2
 """Gaps that are closed, one after the other, to see whether there is another way."""
 _MOST_QUERIES = 20_000
+_COARSE, _BLIND = 0.5, 0.8
+"""Cells larger than this share of a radius are not what gaps are looked for with, if there is another way; those larger
+than that let everybody pass through thin walls."""
 _SAMPLES, _FEW = 14, 0.05
 """Random goals that are tried along each axis; a share that does not matter."""
 
@@ -68,11 +74,20 @@ def check(
     legs: dict[int, list[Leg]] = {}
     kept, queries = scene.owner.kept, 0
     wanderers: set[object] = set()
+    coarse = [] if room is None else [m for m in movers if room.cell > _COARSE * m.radius]
+    passages = passages_of(context, scene, coarse, roomless, ease=_TIGHT) if coarse else None
+    blind = {m.record.id for m in coarse if room is not None and room.cell > _BLIND * m.radius}
+    far = {m.record.id for m in coarse} if passages is not None else set()
     for mover in sorted(movers, key=lambda m: m.record.role != "robot"):  # robots first: not all is looked at
         pose = scene.pose[mover.record.id]
         start = mover.centre(pose)
         if mover.record.wander:
-            if room is not None and mover.record.path not in wanderers and room.holds(start):
+            if (
+                room is not None
+                and mover.record.path not in wanderers
+                and mover.record.id not in blind
+                and room.holds(start)
+            ):
                 wanderers.add(mover.record.path)
                 _wander(room, scene, mover, start, tally)
             continue
@@ -90,6 +105,12 @@ def check(
                 or _in_something(scene, mover, start, index)
             ):
                 break
+            if mover.record.id in far or mover.record.id in blind:
+                if not _passes(context, scene, room, passages, mover, index, start, tally):
+                    break
+                made.append(Leg(mover, start, to, _crosses(scene, mover, start, to), index))
+                start = to
+                continue
             arrival = _arrival(room, mover, to)
             if arrival is None:
                 break
@@ -99,7 +120,7 @@ def check(
                 measured, found = _tightest(room, scene, mover, start, arrival)
                 kept["gaps"] = kept.get("gaps", 0) + measured
             if found is not None and found.width + found.slack < 2 * mover.radius:
-                _no_way(context, room, scene, movers, mover, start, index, found, tally)
+                _lost(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if room.clearance.widest(start, to, mover.reach)[0] < least:
                 ends = _apart(room, mover, start, arrival)
@@ -107,7 +128,7 @@ def check(
                 if key not in kept:
                     kept[key] = gap(room, *ends)
                 found = kept[key]
-                _no_way(context, room, scene, movers, mover, start, index, found, tally)
+                _lost(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None and mover.record.role == "robot":
                 _narrow(mover, index, found, scene, tally)
@@ -165,7 +186,67 @@ def _tightest(room: Room, scene: Scene, mover: Mover, start: Point, arrival: Poi
     return len(closed), None
 
 
-def _no_way(
+def _passes(
+    context: Context,
+    scene: Scene,
+    room: Room,
+    passages: Passages | None,
+    mover: Mover,
+    index: int,
+    start: Point,
+    tally: Tally,
+) -> bool:
+    """Tell what is to be told of a way in a large world; False if there is none."""
+    goal = scene.goals[mover.record.id][index]
+    to = (goal[0], goal[1])
+    pair = (mover.record.id, index)
+    if passages is None or pair not in passages.found:
+        if mover.record.role == "robot" and _crosses(scene, mover, start, to):
+            _unchecked(mover, index, room, scene, tally)
+        return True
+    found, closed = passages.found[pair]
+    if closed:
+        outside = False
+        if context.scenario.world.boundary == "none":
+            inner = barriers_of(scene.owner, most=2 * mover.radius, open_edge=False)
+            outside = inner is not None and inner.openings([(start, to)])[0].width >= 2 * mover.radius
+        _no_way(context, scene, mover, index, found, None, outside, tally)
+        return False
+    if found is not None and mover.record.role == "robot":
+        _narrow(mover, index, found, scene, tally)
+    return True
+
+
+def _crosses(scene: Scene, mover: Mover, start: Point, goal: Point) -> bool:
+    """The same, exactly."""
+    length = math.dist(start, goal)
+    left = length - mover.reach
+    if left <= 0:
+        return False
+    ux, uy = (goal[0] - start[0]) / length, (goal[1] - start[1]) / length
+    r = mover.radius * (1 - 1e-9)
+    corners = [
+        [start[0] + t * ux - side * uy, start[1] + t * uy + side * ux]
+        for t, side in ((0, -r), (left, -r), (left, r), (0, r))
+    ]
+    return scene.terrain.collides([core.Polygon(vertices=corners)], (0.0, 0.0, 0.0))
+
+
+def _unchecked(mover: Mover, index: int, room: Room, scene: Scene, tally: Tally) -> None:
+    width, height = (room.box[2] - room.box[0], room.box[3] - room.box[1])
+    tally.add(
+        "way-unchecked",
+        mover.goal_path(index),
+        mover.record,
+        f"something stands between '{mover.record.name}' and its goal, and whether there is a way is not known: "
+        f"{width:g} m × {height:g} m with so many corners are too much to look for ways of {_metres(2 * mover.radius)}",
+        "behavior: {name: follow}, and --simulate or a run: an event 'no_path' says that there is none",
+        scene.seed,
+        serious=False,
+    )
+
+
+def _lost(
     context: Context,
     room: Room,
     scene: Scene,
@@ -174,6 +255,27 @@ def _no_way(
     start: Point,
     index: int,
     found: Gap | None,
+    tally: Tally,
+) -> None:
+    """There is no way over cells that are fine enough."""
+    x, y, *_ = scene.goals[mover.record.id][index]
+    need, outside, place = 2 * mover.radius, False, None
+    if not scene.rough:
+        place = reached_place(room, (x, y), mover.radius, start, max(need / 2, _TIGHT * need / 2 - room.half))
+    if context.scenario.world.boundary == "none":
+        wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
+        outside = wider.clearance.widest(start, (x, y), mover.reach)[0] >= mover.radius - wider.half
+    _no_way(context, scene, mover, index, found, place, outside, tally)
+
+
+def _no_way(
+    context: Context,
+    scene: Scene,
+    mover: Mover,
+    index: int,
+    found: Gap | None,
+    place: Point | None,
+    outside: bool,
     tally: Tally,
 ) -> None:
     name, goals = mover.record.name, scene.goals[mover.record.id]
@@ -189,13 +291,10 @@ def _no_way(
         fix = f"a gap of more than {_metres(need)} ({_metres(_TIGHT * need)} to pass with ease), or a narrower robot"
     if hasattr(context.scenario.world.obstacle_map, "fill"):
         fix += ", or a map with another 'seed' or a lower 'fill'"
-    place = reached_place(room, (goal[0], goal[1]), mover.radius, start, max(need / 2, _TIGHT * need / 2 - room.half))
-    if place is not None and not scene.rough:
+    if place is not None:
         fix += f", or another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"
-    if context.scenario.world.boundary == "none":
-        wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
-        if wider.clearance.widest(start, (goal[0], goal[1]), mover.reach)[0] >= mover.radius - wider.half:
-            why += ". Only outside of the world, whose edge is open, it could get round"
+    if outside:
+        why += ". Only outside of the world, whose edge is open, it could get round"
     tally.add(
         "goal-unreachable",
         mover.goal_path(index),

@@ -186,6 +186,12 @@ def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.Mon
     assert dry_run(scenario) == found
 
 
+def test_a_world_without_objects_is_tried_too() -> None:
+    report = irsim.validate(text="world: {width: 10, height: 8, time_limit: 5}\n", simulate=True)
+    assert report.dry_run is not None
+    assert "no robots" in report.dry_run.summary
+
+
 def test_a_seed_without_room_is_a_finding() -> None:
     report = irsim.validate(
         text="world: {width: 6, height: 6}\n"
