@@ -106,12 +106,12 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
         found["group_members"] = members
         if record.wander:
             found |= {"range_low": _plain(record.range_low), "range_high": _plain(record.range_high)}
-    found["sensors"] = [_options(sensor) for sensor in record.sensors]
+    found["sensors"] = [_options(sensor, "type") for sensor in record.sensors]  # which is another word for name
     return found
 
 
-def _options(model: BaseModel | None) -> Any:
-    return None if model is None else _plain(model.model_dump(mode="json", exclude={"plot"}))
+def _options(model: BaseModel | None, *without: str) -> Any:
+    return None if model is None else _plain(model.model_dump(mode="json", exclude={"plot", *without}))
 
 
 def _shape(record: ObjectRecord) -> Any:

@@ -109,7 +109,9 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
         left.remove(i)
         right.remove(j)
 
-    for block in difflib.SequenceMatcher(None, [repr(x) for x in a], [repr(x) for x in b], False).get_matching_blocks():
+    for block in difflib.SequenceMatcher(
+        None, [_told(x) for x in a], [_told(x) for x in b], False
+    ).get_matching_blocks():
         for k in range(block.size):
             take(block.a + k, block.b + k)
     for i in list(left):
@@ -163,4 +165,13 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
         for key, item in value.items():
             yield from _leaves(item, f"{path}.{key}")
     else:
-        yield path, repr(value)
+        yield path, _told(value)
+
+
+def _told(value: Any) -> str:
+    """One text for all that is the same: in whatever order keys are, 1 or 1.0."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(sorted(f"{key!r}: {_told(item)}" for key, item in value.items())) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_told, value)) + "]"
+    return repr(int(value)) if isinstance(value, float) and value.is_integer() else repr(value)

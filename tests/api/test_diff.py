@@ -78,6 +78,19 @@ def test_a_default_written_out_changes_the_file_but_not_the_world() -> None:
     assert not found.same
 
 
+def test_entries_are_the_same_with_decimal_points_and_keys_in_another_order() -> None:
+    before = "obstacle:\n  - {state: [5, 1, 0], name: a}\n  - {shape: {name: circle, radius: 1}, state: [5, 6]}\n"
+    after = (
+        "obstacle:\n  - {name: a, state: [5.0, 1.0, 0.0]}\n  - {state: [5.0, 6], shape: {radius: 1.0, name: circle}}\n"
+    )
+    assert diff(before, after).same
+
+
+def test_a_sensor_is_the_same_by_either_word() -> None:
+    found = diff(BASE, BASE.replace("name: lidar2d", "type: lidar2d"))
+    assert found.world == []
+
+
 PAIR = (
     "robot:\n  - {number: 2, kinematics: {name: omni}, state: [[1, 3, 0], [1, 5, 0]], goal: [[9, 3], [9, 5]], "
     "shape: {name: circle, radius: 0.2}, behavior: {name: dash}}\n"
