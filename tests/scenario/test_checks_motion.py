@@ -93,6 +93,7 @@ FOUND = [
     (one({**FAST, "goal": [9, 1], "behavior": {"name": "orca"}}, LINE), "jumps-through"),
     (one({**FAST, "goal": [1, 9], "state": [1, 1, -2]}, LINE), "jumps-through"),
     (one({**FAST, "goal": [9, 1], "kinematics": {"name": "diff", "noise": True}}, LINE), "jumps-through"),
+    (one({**FAST, "goal": [9, 1], "behavior": {"name": "dash", "loop": True}}, LINE), "jumps-through"),
     (one({**FAST, "state": [2, 5, 0], "goal": [9.5, 5]}, boundary="walls"), "jumps-through"),
     (one({**FAST, "behavior": {"name": "orca"}}, boundary="walls"), "jumps-through"),
     (one({"vel_max": [3, 1], "vel_min": [-3, -1]}), "goal-overshoot"),

@@ -118,8 +118,8 @@ class _Body:
         """Straight from its start to its goals."""
         goals = [] if self.record.kinematics is None else self.record.goals
         points = [(p[0], p[1]) for p in (self.record.state, *goals)]
-        if self.record.loop and len(points) > 2:
-            points += [points[1], points[0]]
+        if self.record.loop and len(points) > 1:
+            points.append(points[1] if len(points) > 2 else points[0])
         return list(itertools.pairwise(points)) or [(points[0], points[0])]
 
     @cached_property
