@@ -5,12 +5,14 @@ from __future__ import annotations
 import random
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim
+from irsim.env import Env
 from irsim.scenario.entry import Entry
 from irsim.scenario.load import load_data
 from irsim.scenario.objects import ResolvedScenario
@@ -127,6 +129,44 @@ def test_other_ways_to_write_a_world_are_the_same_world(data: dict[str, Any], se
         assert found.world == [], (before, after, found.summary)
         assert "the worlds are the same" in found.summary
     assert irsim.diff(before_text=before, after_text=written(shuffled(data, rng), rng)).same
+
+
+EDITS: dict[str, Any] = {
+    "group": st.integers(0, 2),
+    "group_behavior": st.sampled_from([None, {"name": "orca"}, {"name": "orca", "safe_radius": 0.4}]),
+    "behavior": st.sampled_from([None, {"name": "dash"}, {"name": "rvo"}]),
+    "vel_max": st.sampled_from([[0.5, 0.5], [2, 2]]),
+    "kinematics": st.sampled_from([{"name": "diff"}, {"name": "omni"}]),
+    "static": st.booleans(),
+}
+
+
+@settings(max_examples=40, deadline=None)
+@given(data=scenarios(), edit=st.data())
+def test_objects_that_move_otherwise_are_told(data: dict[str, Any], edit: st.DataObject) -> None:
+    number = edit.draw(st.integers(0, len(data["robot"]) - 1))
+    key = edit.draw(st.sampled_from(sorted(EDITS)))
+    robots = [*data["robot"]]
+    robots[number] = robots[number] | {key: edit.draw(EDITS[key])}
+    other = data | {"robot": robots}
+    found = irsim.diff(before_text=yaml.safe_dump(data), after_text=yaml.safe_dump(other))
+    if not np.array_equal(_ways(data), _ways(other)):
+        assert found.world, (data, other)
+    if not found.world:
+        assert "the worlds are the same" in found.summary
+
+
+def _ways(data: dict[str, Any]) -> Any:
+    """Poses of the robots in some steps."""
+    scenario = _resolved(data)
+    assert scenario is not None
+    env = Env(scenario, display=False, headless=True, seed=0, log_level="ERROR")
+    ways = []
+    for _ in range(15):
+        env.step()
+        ways.append([robot.state[:3, 0].tolist() for robot in env.robot_list])
+    env.end(ending_time=0.0)
+    return np.array(ways)
 
 
 LED: dict[str, Any] = {
