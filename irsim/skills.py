@@ -16,7 +16,7 @@ from irsim import resources
 from irsim.diagnostics import nearest
 from irsim.errors import IrsimError
 
-__all__ = ["PLACES", "Installed", "Skill", "SkillError", "find_skills", "install", "place_of"]
+__all__ = ["PLACES", "Installed", "PlaceError", "Skill", "SkillError", "find_skills", "install", "place_of"]
 
 PLACES: Mapping[str, str] = {
     "claude": ".claude/skills",
@@ -37,6 +37,12 @@ class SkillError(IrsimError, ValueError):
     """A skill that this package does not have."""
 
     code = "unknown-skill"
+
+
+class PlaceError(IrsimError, OSError):
+    """Skills cannot be put into a folder."""
+
+    code = "file-access"
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +130,28 @@ def install(place: Path, skills: Iterable[Skill], *, force: bool = False, dry_ru
         skills: Which.
         force: Overwrite changed files and replace links.
         dry_run: Only say what would be done.
+
+    Raises:
+        PlaceError: The folder cannot be there: a file or a link to nothing is in its place.
     """
+    _check(place)
     return [_install(place / skill.name, skill, force=force, dry_run=dry_run) for skill in skills]
+
+
+def _check(place: Path) -> None:
+    """Whether the folder is there or can be made."""
+    for path in (place, *place.parents):
+        if not os.path.lexists(path):
+            continue
+        if path.is_dir():
+            return
+        if path.is_symlink():
+            target = os.readlink(path)
+            raise PlaceError(
+                f"'{path}' is a link to '{target}', which is no folder; make that folder, or remove the link: "
+                f"rm '{path}'"
+            )
+        raise PlaceError(f"'{path}' is a file where a folder must be; move it away")
 
 
 def _read(page: Path) -> Skill:

@@ -10,7 +10,7 @@ import typer
 
 from irsim.cli.guard import INVALID
 from irsim.cli.options import Imports, MaxObjects
-from irsim.errors import ScenarioNotFoundError
+from irsim.errors import ArgumentError, ScenarioNotFoundError
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -30,7 +30,12 @@ def validate(
         bool, typer.Option("--lenient", help="Only warn where IR-SIM would carry on, as irsim run does.")
     ] = False,
     fix: Annotated[
-        bool, typer.Option("--fix", help="Make the repairs that need no guessing, in the file; comments stay.")
+        bool,
+        typer.Option(
+            "--fix",
+            help="Make the repairs that need no guessing, in the file; comments stay. With - it prints the repaired "
+            "text, and findings to standard error.",
+        ),
     ] = False,
     simulate: Annotated[
         bool,
@@ -48,6 +53,12 @@ def validate(
     from irsim.cli.output import print_json, progress
 
     import_user_modules(imports)
+    filtering = fix and "-" in files
+    if filtering and (json_output or len(files) > 1):
+        raise ArgumentError(
+            "--fix prints the repaired text of standard input, and nothing else fits beside it",
+            "leave out --json and other files, or give the text as a file",
+        )
     valid = True
     for file in files:
         text = sys.stdin.read() if file == "-" else None
@@ -60,7 +71,9 @@ def validate(
         if json_output:
             print_json(report, line=True)
         else:
-            _show(report, file, text)
+            _show(report, file, text, stderr=filtering)
+        if filtering:
+            sys.stdout.write(text or "")
     if not valid:
         raise typer.Exit(INVALID)
 
@@ -91,20 +104,20 @@ def _checked(
     return report, text
 
 
-def _show(report: ValidationReport, file: str, text: str | None) -> None:
+def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool) -> None:
     from rich.text import Text
 
     from irsim.cli.findings import print_findings
     from irsim.cli.output import console
     from irsim.text import clean
 
-    out = console()
+    out = console(stderr=stderr)
     for item in report.fixes:
         line = "" if item.line is None else f"line {item.line}: "
         out.print(
             Text.assemble(("fixed", "bold green"), f" {item.code}  {line}{clean(item.change, 300)}"), soft_wrap=True
         )
-    print_findings(report.findings, file, text=text)
+    print_findings(report.findings, file, text=text, stderr=stderr)
     if report.dry_run is not None:
         show_dry_run(report.dry_run, out)
     if report.valid:

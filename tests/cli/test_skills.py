@@ -155,6 +155,23 @@ def test_a_link_is_left_alone_and_its_target_in_any_case(skill: Callable[..., Sk
     assert list(other.iterdir()) == []
 
 
+@pytest.mark.parametrize("where", [".claude", ".claude/skills"])
+@pytest.mark.parametrize("more", [[], ["--dry-run"], ["--force"]])
+def test_a_link_to_nothing_in_place_of_the_folder_is_named(where: str, more: list[str]) -> None:
+    link = Path(where)
+    link.parent.mkdir(exist_ok=True)
+    link.symlink_to("nowhere")
+    result = CliRunner().invoke(app, ["skills", "install", "--target", "claude", *more])
+    told = " ".join(result.stderr.split())
+    assert result.exit_code == 1
+    assert "error file-access" in told
+    assert f"{where}' is a link to 'nowhere', which is no folder; make that folder, or remove the link: rm" in told
+    link.unlink()
+    link.write_text("", encoding="utf-8")
+    result = CliRunner().invoke(app, ["skills", "install", "--target", "claude", *more])
+    assert f"{where}' is a file where a folder must be" in " ".join(result.stderr.split())
+
+
 def test_a_failure_leaves_what_was_there(
     skill: Callable[..., Skill], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

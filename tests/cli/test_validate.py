@@ -74,6 +74,28 @@ def test_fix_mends_the_file_in_place(irsim: Run, room: Path) -> None:
     assert "fixed" not in irsim("validate", "room.yaml", "--fix").stdout
 
 
+def test_fix_of_standard_input_is_a_filter(irsim: Run, room: Path) -> None:
+    crooked = ROOM.replace("behavior", "behaviour") + "# the end\n"
+    result = irsim("validate", "-", "--fix", input=crooked)
+    assert (result.exit_code, result.stdout) == (0, ROOM + "# the end\n")
+    assert "renamed 'behaviour' to 'behavior'" in result.stderr
+    assert "valid: 1 robot" in result.stderr
+    assert irsim("validate", "-", "--fix", input=ROOM).stdout == ROOM  # nothing to do
+    hopeless = ROOM.replace("dash", "no-such-thing")
+    result = irsim("validate", "-", "--fix", input=hopeless)
+    assert (result.exit_code, result.stdout) == (2, hopeless)
+    assert "unknown-behavior" in result.stderr
+
+
+@pytest.mark.parametrize("more", ["--json", "room.yaml"])
+def test_fix_of_standard_input_prints_nothing_else(irsim: Run, room: Path, more: str) -> None:
+    before = room.read_text(encoding="utf-8")
+    result = irsim("validate", "-", "--fix", more, input=ROOM)
+    assert result.exit_code == 2
+    assert "--fix prints the repaired text of standard input" in " ".join(result.stderr.split())
+    assert room.read_text(encoding="utf-8") == before
+
+
 def test_fix_says_which_repair_would_lose_comments(irsim: Run, room: Path) -> None:
     goal = next(line for line in ROOM.splitlines() if "goal:" in line)
     text = ROOM.replace(goal, "    goal:\n      x: 9  # by the door\n      y: 5")

@@ -80,13 +80,11 @@ def test_the_script_works_as_written(folder: Path) -> None:
     [
         (["hall.yaml", "--policy", "policy:missing"], 2, "missing"),
         (["hall.yaml", "--policy", "broken:act"], 1, "ZeroDivisionError"),
-        (["short.yaml"], 2, "world.time_limit"),
         (["wrong.yaml"], 2, "hight"),
     ],
 )
 def test_the_scripts_exit_codes_tell_whose_fault_it_is(folder: Path, words: list[str], code: int, said: str) -> None:
     (folder / "broken.py").write_text("def act(env):\n    return 1 / 0\n", encoding="utf-8")
-    (folder / "short.yaml").write_text(SKELETON, encoding="utf-8")
     (folder / "wrong.yaml").write_text(HALL.replace("height", "hight"), encoding="utf-8")
     if words[0] == "hall.yaml":
         words = [*words, "--steps", "5"]
@@ -96,6 +94,15 @@ def test_the_scripts_exit_codes_tell_whose_fault_it_is(folder: Path, words: list
     assert done.stdout == ""
     assert said in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_without_a_time_limit_the_script_has_the_horizon_of_irsim_run(folder: Path) -> None:
+    (folder / "open.yaml").write_text(SKELETON, encoding="utf-8")
+    script = str(SKILL / "scripts" / "episodes.py")
+    told = json.loads(execute(["python", script, "open.yaml", "--episodes", "1"], folder))
+    run = irsim.run(folder / "open.yaml")
+    assert run.time_limit_from == "default"
+    assert told["steps_at_most"] * 0.1 == pytest.approx(run.time_limit)
 
 
 def test_the_behavior_works_by_the_command_it_names(folder: Path) -> None:

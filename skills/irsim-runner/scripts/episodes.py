@@ -16,12 +16,14 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
+import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import irsim
+from irsim.episode import default_time_limit
 
 MOST = 100  # episodes told one by one, and collisions of an episode
 
@@ -33,7 +35,9 @@ def read_arguments() -> argparse.Namespace:
     parser.add_argument("--policy", metavar="MODULE:FUNCTION", help="the function; default: behaviors drive")
     parser.add_argument("--episodes", type=int, default=10, help="how many (default: 10)")
     parser.add_argument("--seed", type=int, help="default: the scenario's, else a fresh one, which is printed")
-    parser.add_argument("--steps", type=int, help="horizon of an episode; default: the scenario's world.time_limit")
+    parser.add_argument(
+        "--steps", type=int, help="horizon of an episode; default: world.time_limit, else as irsim run does"
+    )
     parser.add_argument(
         "--same-layout", action="store_true", help="repeat the first layout instead of drawing the next"
     )
@@ -55,10 +59,11 @@ def find_policy(name: str | None) -> Callable[[Any], Any]:
 
 def horizon_of(env: Any, steps: int | None) -> int:
     """Steps of an episode at most."""
+    if steps is not None:
+        return steps
     limit = env.scenario.world.time_limit
-    if steps is None and limit is None:
-        raise ValueError("the scenario has no world.time_limit: give --steps")
-    return steps if steps is not None else round(limit / env.step_time)
+    seconds = default_time_limit(env.scenario, env) if limit is None else limit
+    return math.ceil(seconds / env.step_time - 1e-9)  # as irsim run does
 
 
 def run_episode(env: Any, policy: Callable[[Any], Any], horizon: int) -> dict[str, Any]:
