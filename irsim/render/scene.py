@@ -236,11 +236,17 @@ class Scene:
         return plain
 
 
+class RegionError(ArgumentError):
+    """There is no such part of a world."""
+
+    where = "region"
+
+
 def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
     """X from, x to, y from, y to of a part of a world given as x_min, y_min, x_max, y_max [m].
 
     Raises:
-        ArgumentError: It is none.
+        RegionError: It is none.
     """
     corners = [float(value) for value in region]
     if len(corners) == _CORNERS and all(abs(value) <= _FARTHEST for value in corners):
@@ -249,7 +255,7 @@ def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
             return x0, x1, y0, y1
     given = ", ".join(f"{value:g}" for value in corners)
     sizes = f"x_max and y_max at least {_SMALLEST:g} m beyond x_min and y_min, all within {_FARTHEST:g} m of 0"
-    raise ArgumentError(
+    raise RegionError(
         f"there is no region {given}", f"give x_min, y_min, x_max, y_max in metres, in this order: {sizes}"
     )
 

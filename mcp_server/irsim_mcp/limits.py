@@ -12,6 +12,7 @@ __all__ = [
     "EPISODES",
     "RUN_SECONDS",
     "SCENARIOS",
+    "SEED",
     "SEEDS",
     "STEPS",
     "WAIT_SECONDS",
@@ -23,6 +24,8 @@ STEPS = 5_000
 """Steps of one run."""
 SCENARIOS, BEHAVIORS, SEEDS, EPISODES = 20, 5, 100, 2_000
 """Of a benchmark."""
+SEED = 2**53 - 1
+"""Largest seed: beyond, not everybody who reads JSON has whole numbers."""
 WAIT_SECONDS = 50
 """Longest wait for a job in one call."""
 RUN_SECONDS = 45

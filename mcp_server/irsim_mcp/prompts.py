@@ -59,7 +59,11 @@ def add_prompts(server: MCPServer, services: Services) -> None:
             meaning=DIFFICULTIES[difficulty],
         )
 
-    def debug_run(run_id: Annotated[str, Field(description="Of run_episode; last is the last one.")]) -> str:
+    def debug_run(
+        run_id: Annotated[str, Field(description="Of run_episode; last is the last one. Or a job_id.")],
+    ) -> str:
+        if run_id not in services.workspace.runs() and services.jobs.known(run_id):
+            return _DEBUG_JOB.format(job_id=clean(run_id))
         services.workspace.check_run(run_id)
         return _DEBUG.format(run_id=clean(run_id))
 
@@ -135,6 +139,19 @@ Find out why the run {run_id} of the robot-navigation simulator irsim went as it
 4. Change the least that cures it. Call validate_scenario, then run_episode with the same seed, then with two others: \
 a cure for one seed only is none.
 5. Report the cause with its evidence (step, objects, distance), the change, and the outcomes before and after."""
+
+_DEBUG_JOB = """\
+Find out why episodes of the benchmark {job_id} of the robot-navigation simulator irsim failed, and what to change.
+
+1. Call get_job with job_id={job_id} until it has ended, then inspect_run with run_id={job_id}: its episodes, those \
+that failed first, and the call of run_episode that runs one again.
+2. Run one of each kind of failure again; each gives a run_id of its own.
+3. Call inspect_run with that run_id, then view="collisions" and view="closest": who, with whom, when, how fast.
+4. Call render_snapshot with that run_id and the step shortly before, and look.
+5. Say the cause in one sentence: what was too fast, too narrow, in the way, aimed wrong, or seen too late.
+6. Change the least that cures it. Call validate_scenario, then benchmark with the same seeds, then with others: a \
+cure for the seeds you looked at only is none.
+7. Report the causes with their evidence (seed, step, objects), the change, and the table before and after."""
 
 _COMPARE = """\
 Compare the behaviors that could drive the robots in {what} of the robot-navigation simulator irsim, fairly.

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
-from irsim_mcp.limits import ServerLimits
+from irsim_mcp.limits import SEED, ServerLimits
 from irsim_mcp.sandbox import Workspace
 from irsim_mcp.whole import Found
 from irsim_mcp.worker import Progress, Workers
@@ -21,7 +21,7 @@ ScenarioPath = Annotated[str | None, Field(description="Scenario file: path rela
 ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,
-    Field(ge=0, le=2**53, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),
+    Field(ge=0, le=SEED, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),
 ]
 
 

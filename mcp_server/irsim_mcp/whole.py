@@ -17,19 +17,20 @@ class Found(dict[str, Any]):
     text: str = ""
 
 
-def whole(found: Found, room: int, elsewhere: str) -> TextContent:
+def whole(found: Found, room: int, elsewhere: str, *, about: str = "") -> TextContent:
     """The JSON that ``--json`` prints.
 
     Args:
         found: The result.
         room: Characters at most.
         elsewhere: What to do when it is longer.
+        about: What to say first then.
 
     Raises:
         ToolError: It is longer.
     """
     text = found.text
     if len(text) > room:
-        what = f"the whole result has {len(text):,} characters; at most {room:,} are given"
+        what = f"{about}the whole result has {len(text):,} characters; at most {room:,} are given"
         raise failure("over-limit", what, where="response_format", fix=elsewhere)
     return TextContent(type="text", text=text)

@@ -166,14 +166,14 @@ async def _end(process: Process) -> None:
 def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None, run: str | None) -> Exception:
     """The error for a process that gave no result; ``code`` is None if it had to be stopped."""
     kept = "" if run is None else f"; inspect_run run_id={run} shows how far it came"
+    done = "" if reached is None else f" after {reached[0]:,} of {reached[1]:,} steps"
     if code is None or (os.name == "posix" and code == -signal.SIGXCPU):
-        done = "" if reached is None else f" after {reached[0]:,} of {reached[1]:,} steps"
         fix = "use fewer objects or lidar beams"
         if reached is not None:
             fix = f"ask for fewer steps (about {max(1, reached[0] * 9 // 10):,} fit), or {fix}"
         return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix + kept)
     fix = "use fewer objects or lidar beams; if it happens with a small scenario too, please report it"
-    return failure("worker-failed", f"the process that did the work ended with code {code}", fix=fix)
+    return failure("worker-failed", f"the process that did the work ended with code {code}{done}", fix=fix + kept)
 
 
 def process_options() -> tuple[list[str], dict[str, Any]]:

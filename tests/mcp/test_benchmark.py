@@ -92,6 +92,17 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     assert f"seed={bad[0]} behavior='dash' (collision)" in found["next"]
 
 
+async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        asked = {"scenarios": [RANDOM], "seeds": 2, "first_seed": 2**53 - 2}
+        job = data_of(await client.call_tool("benchmark", asked))["job_id"]
+        table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
+        assert sorted(row[2] for row in table["rows"]) == [2**53 - 2, 2**53 - 1]
+        for row in table["rows"]:
+            again = data_of(await client.call_tool("run_episode", {"scenario_yaml": RANDOM, "seed": row[2]}))
+            assert (again["outcome"], again["steps"]) == (row[3], row[5])
+
+
 async def test_means_of_fewer_episodes_say_so_and_the_period_is_told(workspace: Path) -> None:
     arguments = {"scenarios": [RANDOM], "behaviors": ["dash", "rvo"], "seeds": 10}
     async with connected(workspace) as client:
@@ -229,6 +240,13 @@ async def test_limits(workspace: Path) -> None:
         for arguments, start in (
             ({"scenarios": []}, "bad-argument: there are no scenarios"),
             ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: 0 seeds"),
+            (
+                {"scenarios": [ROOM], "first_seed": 2**53 - 9},
+                (
+                    f"bad-argument: the seeds {2**53 - 9} to {2**53} go beyond {2**53 - 1}, the largest that "
+                    f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
+                ),
+            ),
             ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
             ({"scenarios": ["none.yaml"]}, "file-not-found"),
             ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),

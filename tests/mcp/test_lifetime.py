@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import signal
 import subprocess
 import sys
 import time
@@ -144,6 +146,25 @@ async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> N
             await anyio.sleep(0.02)
         assert not any(map(runs, workers))
         assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
+
+
+@linux
+@pytest.mark.anyio
+async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(workspace: Path) -> None:
+    async def on_progress(done: float, total: float | None, message: str | None) -> None:
+        if list(workspace.rglob("trace*")):  # some of it is written down
+            for pid in children_of(os.getpid()):
+                os.kill(pid, signal.SIGKILL)
+
+    async with connected(workspace) as client:
+        told = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG}, progress_callback=on_progress))
+        found = re.search(r"inspect_run run_id=(\S+) shows how far it came", told)
+        assert found is not None, told
+        assert re.match(
+            r"worker-failed: the process that did the work ended with code -9 after \d+ of [0-9,]+ steps", told
+        )
+        table = data_of(await client.call_tool("inspect_run", {"run_id": found[1], "limit": 1}))
+    assert "interrupted" in json.dumps(table)
 
 
 @pytest.mark.anyio

@@ -47,21 +47,24 @@ async def test_every_prompt_names_tools_that_there_are(workspace: Path) -> None:
     (workspace / "crash.yaml").write_text(CRASH, encoding="utf-8")
     async with connected(workspace) as client:
         run_id = data_of(await client.call_tool("run_episode", {"scenario_yaml": CRASH}))["run_id"]
+        job = data_of(await client.call_tool("benchmark", {"scenarios": [CRASH], "seeds": 1}))["job_id"]
         tools = {tool.name for tool in (await client.list_tools()).tools}
         views = {"collisions", "closest"}
         texts = [
             await filled(client, "design_scenario", {"goal": 'ten robots\nthat "swap" places'}),
             await filled(client, "debug_run", {"run_id": run_id}),
             await filled(client, "debug_run", {"run_id": "last"}),
+            await filled(client, "debug_run", {"run_id": job}),
             await filled(client, "compare_policies", {"scenario": "crash.yaml"}),
             await filled(client, "compare_policies", {"scenario": "crossing"}),
         ]
         assert data_of(await client.call_tool("inspect_run", {"run_id": run_id, "view": "closest"}))
     assert "\"ten robots that 'swap' places\"" in texts[0]
-    assert "the template crossing" in texts[4]
+    assert f"get_job with job_id={job} until it has ended, then inspect_run with run_id={job}" in texts[3]
+    assert "the template crossing" in texts[5]
     for text in texts:
         assert len(text) < 2000
-        assert set(re.findall(r"\b[a-z]+_[a-z]+\b", text)) - tools <= {"run_id"}
+        assert set(re.findall(r"\b[a-z]+_[a-z]+\b", text)) - tools <= {"run_id", "job_id"}
         assert set(re.findall(r'view="(\w+)"', text)) <= views
 
 

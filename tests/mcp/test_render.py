@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.mcp.conftest import CRASH, ROOM, connected, error_of, image_of, text_of
+from tests.mcp.conftest import CRASH, ROOM, connected, data_of, error_of, image_of, text_of
 
 pytestmark = pytest.mark.anyio
 
@@ -53,16 +53,20 @@ async def test_overlays(empty: Path) -> None:
     assert "names, goals, paths, sensors" in error_of(bad)
 
 
-async def test_region(empty: Path) -> None:
-    async with connected(empty) as client:
+async def test_region(workspace: Path) -> None:
+    async with connected(workspace) as client:
         whole, part = [
             image_of(await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, **keys})).data
             for keys in ({}, {"region": [0, 0, 2, 2]})
         ]
-        bad = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "region": [2, 0, 1, 1]})
+        run = data_of(await client.call_tool("run_episode", {"scenario_yaml": ROOM}))["run_id"]
+        bad = [
+            error_of(await client.call_tool("render_snapshot", {**scene, "region": [5, 5, 1, 1]}))
+            for scene in ({"scenario_yaml": ROOM}, {"run_id": run}, {"run_id": run, "strip": 3, "step": -1})
+        ]
     assert whole != part
-    assert "bad-argument" in error_of(bad)
-    assert "x_min, y_min, x_max, y_max" in error_of(bad)
+    for told in bad:
+        assert told.startswith("bad-argument: there is no region 5, 5, 1, 1 (region). Fix: give x_min, y_min, x_max, ")
 
 
 async def test_plans_in_words(empty: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -218,8 +219,13 @@ async def test_the_whole_result_on_request(empty: Path) -> None:
     async with connected(empty, text=500) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": ROOM, "response_format": "json"})
         line = error_of(result)
-        assert "over-limit" in line
-        assert "result.json" in line
+        run = re.search(r"run_id=(\S+)", line)
+        assert run is not None
+        assert line.startswith("over-limit: the run is done, outcome success, but the whole result has ")
+        assert f"irsim://runs/{run[1]}/result.json has all; or use response_format=detailed" in line
+    async with connected(empty) as client:
+        table = data_of(await client.call_tool("inspect_run", {"run_id": run[1], "view": "speeds"}))
+        assert len(table["rows"]) == 1
 
 
 async def test_next_after_people_stand_since_a_collision_and_after_what_is_parked(empty: Path) -> None:

@@ -16,7 +16,7 @@ from irsim.text import clean
 from irsim_mcp.episodes import again
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import PARTIAL
-from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEEDS, STEPS, WAIT_SECONDS
+from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEED, SEEDS, STEPS, WAIT_SECONDS
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services, line_of
 from irsim_mcp.tool import StrictTool, strict
@@ -75,7 +75,7 @@ def tool(services: Services) -> StrictTool:
         wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
         chosen = behaviors or ["as-written"]
-        _check(scenarios, chosen, seeds)
+        _check(scenarios, chosen, seeds, first_seed)
         files = [services.scenario_source(item) for item in scenarios]
         job = services.jobs.start(
             "benchmark",
@@ -99,7 +99,7 @@ def tool(services: Services) -> StrictTool:
     return strict(benchmark, title="Compare behaviors", description=_DESCRIPTION, read_only=False, idempotent=True)
 
 
-def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int) -> None:
+def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int, first: int) -> None:
     if not scenarios or seeds < 1:
         what = "there are no scenarios" if not scenarios else f"{seeds} seeds are none"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
@@ -112,6 +112,9 @@ def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int) -> No
             f"{SCENARIOS} x {BEHAVIORS} x {SEEDS}, and {EPISODES:,} in all",
             fix="ask for fewer seeds, or in several calls",
         )
+    if first + seeds - 1 > SEED:
+        what = f"the seeds {first} to {first + seeds - 1} go beyond {SEED}, the largest that run_episode takes"
+        raise failure("bad-argument", what, where="first_seed", fix=f"give at most {SEED - seeds + 1}")
 
 
 def answer(state: dict[str, Any]) -> CallToolResult:

@@ -15,7 +15,7 @@ from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
-from irsim_mcp.whole import whole
+from irsim_mcp.whole import Found, whole
 
 __all__ = ["Episode", "tool"]
 
@@ -128,11 +128,22 @@ def tool(services: Services) -> StrictTool:
         episode = _episode(found, response_format == "detailed")
         text = TextContent(type="text", text=_text(episode))
         if response_format == "json":
-            text = whole(found, services.limits.text, f"read {uri(found['run_id'] or 'ID', 'result.json')}")
+            text = _whole(found, services.limits.text)
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
     return strict(
         run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True, page=PAGE
+    )
+
+
+def _whole(found: Found, room: int) -> TextContent:
+    """The JSON; if that is too long the error says how the run ended and where the rest is."""
+    run, about = found["run_id"], f"the run is done, outcome {found['outcome']}, but "
+    if run is None:
+        return whole(found, room, "use response_format=detailed", about=about)
+    views = f"inspect_run run_id={run} view=speeds, closest or collisions tells of every robot, in pages"
+    return whole(
+        found, room, f"{views}; {uri(run, 'result.json')} has all; or use response_format=detailed", about=about
     )
 
 
