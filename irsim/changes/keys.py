@@ -5,11 +5,13 @@ from __future__ import annotations
 import bisect
 import difflib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics import Path, format_path
 from irsim.results import KeyChange
-from irsim.scenario.load import Document
+
+if TYPE_CHECKING:
+    from irsim.scenario.load import Document
 
 __all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "place", "same"]
 
