@@ -31,6 +31,8 @@ from irsim.scenario.randomness import random_parts
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
 
 DEFAULT_SEEDS = 10
+_TOGETHER = 5
+"""Seeds that one behavior runs before the next one has its turn: what is stopped can be compared then, too."""
 _TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
 
 
@@ -119,6 +121,8 @@ def benchmark(
         for seed in (every if chances[name] else every[:1])
     ]
 
+    rank = {seed: position // _TOGETHER for position, seed in enumerate(chosen)}
+    turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
     from irsim import __version__
 
     head = BenchmarkResult(
@@ -145,10 +149,12 @@ def benchmark(
 
         def keep(number: int, result: Mapping[str, Any]) -> None:
             if book is not None:
-                book.add(number, row(number, result))
+                book.add(turns[number], row(turns[number], result))
 
-        found = run_tasks([task for *_, task in plan], workers=workers or cores(), progress=progress, kept=keep)
-    return with_episodes(head, [row(number, result) for number, result in enumerate(found)])
+        tasks = [plan[number][2] for number in turns]
+        found = run_tasks(tasks, workers=workers or cores(), progress=progress, kept=keep)
+    results = dict(zip(turns, found, strict=True))
+    return with_episodes(head, [row(number, results[number]) for number in range(len(plan))])
 
 
 def _sources(files: Any) -> list[str]:

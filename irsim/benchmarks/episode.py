@@ -73,7 +73,7 @@ class Task:
         return Task(Job(**job), data["seed"])
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def scenario_of(job: Job) -> ResolvedScenario:
     """The scenario of a job, ready to build; the last few are remembered.
 

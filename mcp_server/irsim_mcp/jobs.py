@@ -121,8 +121,8 @@ class Jobs:
 
         Returns:
             ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
-            (of a job that was stopped: of the episodes that were kept; ``why``, unless somebody wanted it) or ``error``
-            where there is one.
+            (of a job that was stopped: of the episodes that were kept; ``why`` and ``fix``, unless somebody wanted it)
+            or ``error`` where there is one.
 
         Raises:
             ToolError: There is no such job.
@@ -214,7 +214,7 @@ def _state(job: Path) -> dict[str, Any]:
     if status == "running":
         return state
     if isinstance(about, dict) and "why" in about:
-        state["why"] = str(about["why"])
+        state |= {"why": str(about["why"]), "fix": str(about.get("fix") or "call benchmark again for all")}
     if isinstance(partial := json_of(job, PARTIAL), dict):
         return state | {"result": partial, "done": len(partial["episodes"])}
     return state | {"done": _logged(job)}
@@ -249,7 +249,8 @@ class _Keeper(threading.Thread):
                 mark_cancelled(self._job)
                 return
             if "what" in answer.get("error", ()) and _logged(self._job):
-                _note(self._job, {**self._about, "why": answer["error"]["what"]})
+                why = {"why": answer["error"]["what"], "fix": answer["error"].get("fix")}
+                _note(self._job, {**self._about, **why})
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError, RunError):

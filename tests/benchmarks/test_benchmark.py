@@ -96,6 +96,22 @@ def test_a_log_is_in_order_whoever_computed_and_may_end_in_the_middle_of_a_line(
     assert order == [one for one in ((e.scenario, e.behavior, e.seed) for e in whole.episodes) if one in order]
 
 
+def test_what_is_stopped_has_as_much_of_every_behavior(files, tmp_path) -> None:
+    class Stopped(Exception):
+        pass
+
+    def stop(done: int, total: int) -> None:
+        if done == 45:
+            raise Stopped
+
+    log = tmp_path / "episodes.jsonl"
+    with pytest.raises(Stopped):
+        irsim.benchmark(files[0], ["dash", "rvo", "orca"], 100, workers=1, log=log, progress=stop)
+    part = irsim.benchmarks.logged(log)
+    assert [row.episodes for row in part.rows] == [15, 15, 15]
+    assert [row.paired["path_length"].n for row in part.rows[1:]] == [15, 15]
+
+
 def test_what_is_no_log_is_told(files, tmp_path) -> None:
     for text in ("", "{}\n", "what\n", '{"number": 1}\n'):
         (tmp_path / "log").write_text(text)

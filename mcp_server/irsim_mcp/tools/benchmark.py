@@ -143,7 +143,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
         if state["status"] != "finished":
             why, more = "", "call benchmark again for all"
             if "why" in state:
-                why, more = f"{clean(state['why'])}. ", "ask for fewer seeds, scenarios or steps at a time"
+                why, more = f"{clean(state['why'], 300)}. ", clean(state["fix"], 300)
             found.next = f"{why}This is of the {found.done} episodes that were done; {more}."
     text = TextContent(type="text", text=_text(found))
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
