@@ -273,8 +273,9 @@ CODES: dict[str, Code] = {
     "narrow-passage": Code(
         "a gap hardly wider than the robot",
         "The widest way has a gap less than a quarter wider than the body (its largest inner disc). It can be passed, "
-        "but behaviors that keep a distance may refuse, and one that is a little off hits the side. Example: a door of "
-        "0.65 m for a robot 0.6 m wide; 0.75 m or more is easier.",
+        "but behaviors that keep a distance may refuse, and one that is a little off hits the side. It is a warning "
+        "where a robot under 'follow' that is alone does not get through, as its planner's cells are too large. "
+        "Example: a door of 0.65 m for a robot 0.6 m wide; 0.75 m or more is easier.",
     ),
     "goals-overlap": Code(
         "robots share a place at the end",

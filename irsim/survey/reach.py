@@ -12,6 +12,7 @@ from irsim.scenario.checks import Context
 from irsim.survey.barriers import barriers_of
 from irsim.survey.movers import Mover
 from irsim.survey.passages import Passages, passages_of
+from irsim.survey.planned import missed_way
 from irsim.survey.room import Gap, Point, Room, gap, plugged, reached_place, room_of
 from irsim.survey.scenes import Scene
 from irsim.survey.tally import Tally
@@ -131,7 +132,7 @@ def check(
                 _lost(context, room, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None and mover.record.role == "robot":
-                _narrow(mover, index, found, scene, tally)
+                _narrow(context, mover, index, found, scene, tally)
             made.append(Leg(mover, start, to, _line(room, mover, start, to), index))
             start = room.clearance.climb(arrival, mover.radius)
     return legs
@@ -213,7 +214,7 @@ def _passes(
         _no_way(context, scene, mover, index, found, None, outside, tally)
         return False
     if found is not None and mover.record.role == "robot":
-        _narrow(mover, index, found, scene, tally)
+        _narrow(context, mover, index, found, scene, tally)
     return True
 
 
@@ -306,19 +307,27 @@ def _no_way(
     )
 
 
-def _narrow(mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
+def _narrow(context: Context, mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
     need, name = 2 * mover.radius, mover.record.name
     x, y = found.place
-    tally.add(
-        "narrow-passage",
-        mover.goal_path(index),
-        mover.record,
+    what = (
         f"the way of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}): "
-        f"{_metres(max(0.0, found.width - need) / 2)} to each side of its {_metres(need)}",
-        f"{_metres(_TIGHT * need)} or more are easier to get through",
-        scene.seed,
-        serious=False,
+        f"{_metres(max(0.0, found.width - need) / 2)} to each side of its {_metres(need)}"
     )
+    fix = f"{_metres(_TIGHT * need)} or more are easier to get through"
+    missed = missed_way(context, scene, mover, index)
+    if missed is not None:
+        cells = "" if missed.cell is None else f" with cells of {_metres(missed.cell)}"
+        planner = f"its planner '{missed.planner}'{cells}"
+        what += (
+            f". Alone it gets stuck on the path of {planner}"
+            if missed.found
+            else f". It stands still: {planner} does not find that way"
+        )
+        fix = f"a gap of {_metres(_TIGHT * need)} or more"
+        if missed.finer is not None:
+            fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
+    tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
 
 
 def _metres(value: float) -> str:

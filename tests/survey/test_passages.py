@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import irsim
 from irsim import _core as core
 from irsim.diagnostics import Diagnostic
 from irsim.scenario.read import read
@@ -105,6 +106,38 @@ def test_what_is_too_much_is_told_and_costs_little() -> None:
     begin = time.process_time()
     found(data)
     assert time.process_time() - begin < 2
+
+
+SLANTED = """\
+world: {{width: 12, height: 10, boundary: walls}}
+robot:
+  - {{kinematics: {{name: diff}}, shape: {{name: circle, radius: 0.3}}, state: [1, 5, 0], {goal},
+     behavior: {{name: follow, planner: {planner}}}}}
+obstacle:
+  - {{shape: {{name: polygon, vertices: [[4, 0], [5, 0], [4.5, 4.8]]}}, state: [0, 0, 0]}}
+  - {{shape: {{name: circle, radius: 1}}, state: [4.5, 6.45, 0]}}
+  - {{shape: {{name: rectangle, length: 0.2, width: 3.2}}, state: [4.5, 8.9, 0]}}
+"""
+
+
+@pytest.mark.parametrize("goal", ["goal: [11, 5]", "waypoints: [[2, 2], [11, 5]]", "waypoints: [[2, 7], [11, 5]]"])
+def test_a_gap_that_the_planner_cannot_see_is_a_warning_with_cells_that_show_it(goal: str) -> None:
+    text = SLANTED.format(goal=goal, planner="astar")
+    (item,) = irsim.validate(text=text).findings
+    assert (item.code, item.severity) == ("narrow-passage", "warning")
+    assert "It stands still: its planner 'astar' with cells of 0.1 m does not find that way" in item.message
+    assert irsim.run(text=text).outcome == "timeout"
+    assert item.fix is not None
+    planner = item.fix.partition("planner: ")[2].partition("} ")[0] + "}"
+    mended = SLANTED.format(goal=goal, planner=planner)
+    (item,) = irsim.validate(text=mended).findings
+    assert (item.code, item.severity) == ("narrow-passage", "hint")
+    assert irsim.run(text=mended).outcome == "success"
+
+
+def test_a_gap_that_a_robot_without_planner_has_to_find_is_a_hint() -> None:
+    text = SLANTED.format(goal="goal: [11, 5]", planner="astar").replace("name: follow, planner: astar", "name: orca")
+    assert [item.severity for item in irsim.validate(text=text).findings if item.code == "narrow-passage"] == ["hint"]
 
 
 def random_things(rng: np.random.Generator, low: float, high: float) -> list[Any]:
