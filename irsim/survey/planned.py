@@ -16,15 +16,16 @@ __all__ = ["Missed", "missed_way"]
 
 _CELL = 0.1
 """Of grid planners without a resolution and without a map [m]."""
-_FINER = (0.1, 0.05, 0.03, 0.02, 0.01)
-_MOST_CELLS = 1_500_000
+_FINER = (0.05, 0.03, 0.02)
+_MOST_CELLS, _MOST_FINE, _MOST_ROUGH = 1_000_000, 350_000, 20_000
+"""Of the world at the size that the robot plans with, at those that are tried, and where several scenes are."""
 _MOST_OBJECTS = 1000
 _MOST = 2
 """Ways that are tried in one scene."""
 _MOST_STEPS, _MOST_WORK = 2000, 200_000
 """Of one try; and steps times objects."""
 _PAUSE, _STILL = 5.0, 0.2
-"""Who gets no farther in so many seconds, times its speed where that is below 1 m/s, and does not turn, stands [s], [m and rad]."""
+"""Who gets no farther and does not turn in so many seconds stands [s], [m], [rad]; less where slower than 1 m/s."""
 
 
 @dataclass(frozen=True)
@@ -55,26 +56,33 @@ def missed_way(context: Context, scene: Scene, mover: Mover, index: int) -> Miss
     """
     behavior: Any = mover.record.behavior
     kept = scene.owner.kept
-    if mover.behavior != "follow" or behavior is None or not mover.is_disc or kept.get("planned", 0) >= _MOST:
+    if (
+        mover.behavior != "follow"
+        or behavior is None
+        or not mover.is_disc
+        or kept.get("planned", 0) >= (1 if scene.rough else _MOST)
+    ):
         return None
     kept["planned"] = kept.get("planned", 0) + 1
     planner = behavior.planner
     cell = _cell(context, planner)
     world = context.resolved.world
     area = world.width * world.height
-    if (cell is not None and area > _MOST_CELLS * cell**2) or len(context.resolved.objects) > _MOST_OBJECTS:
+    most = _MOST_ROUGH if scene.rough else _MOST_CELLS
+    if (cell is not None and area > most * cell**2) or len(context.resolved.objects) > _MOST_OBJECTS:
         return None
     ended = _tried(context, scene, mover, index, behavior)
     if ended == "fine":
         return None
-    for finer in _FINER:
-        if area > _MOST_CELLS * finer**2:
+    for finer in () if "finer" in kept else _FINER:  # once in a scene
+        if area > (_MOST_ROUGH if scene.rough else _MOST_FINE) * finer**2:
             break
         fine = AStar(resolution=finer)
         if (cell is None or finer < cell) and (
             _tried(context, scene, mover, index, behavior.model_copy(update={"planner": fine})) == "fine"
         ):
             return Missed(planner.name, ended == "stands", cell, finer)
+    kept["finer"] = True
     return Missed(planner.name, ended == "stands", cell, None)
 
 
