@@ -60,6 +60,7 @@ class Solver {
 
  private:
   bool sweep_all() {
+    for (const Buffers::Block& block : b_.blocks) b_.bodies[block.object].first_block = -1;
     b_.blocks.clear();
     bool moved = false;
     for (Buffers::Pair& pair : b_.pairs) moved = resolve(pair) || moved;
@@ -109,6 +110,7 @@ class Solver {
 
   void place_moving() {
     b_.bodies.resize(world_.objects);
+    b_.blocks.clear();
     b_.vertices.resize(bodies_.vertices.size());
     b_.normals.resize(bodies_.vertices.size());
     b_.boxes.resize(bodies_.pieces.size());
@@ -119,6 +121,7 @@ class Solver {
       body.moved = {};
       body.turned = 0.0;
       body.placed = false;
+      body.first_block = -1;
       body.driven = matter.driven && matter.pushable;
       body.passive = !matter.driven && matter.pushable;
       body.start_velocity = world_.is_static[i] ? Vec2{} : velocity(i);
@@ -306,16 +309,17 @@ class Solver {
     const Buffers::Body& body = b_.bodies[object];
     Vec2 free = direction;
     double into = -1e-9;
-    for (const Buffers::Block& block : b_.blocks) {  // what is most in the way counts; the next sweep sees the rest
-      const double against = block.object == object ? dot(direction, block.normal) : 0.0;
+    for (int k = body.first_block; k >= 0; k = b_.blocks[k].next) {
+      const Buffers::Block& block = b_.blocks[k];  // what is most in the way counts; the next sweep sees the rest
+      const double against = dot(direction, block.normal);
       if (!(against < into)) continue;
       into = against;
       const Vec2 along = direction - block.normal * into;
       const bool sticks = body.passive && norm(along) <= -into * block.friction;
       free = sticks ? Vec2{} : along;
     }
-    for (const Buffers::Block& block : b_.blocks) {
-      if (careful_ && block.object == object && dot(free, block.normal) < -1e-9) free = {};
+    for (int k = careful_ ? body.first_block : -1; k >= 0; k = b_.blocks[k].next) {
+      if (dot(free, b_.blocks[k].normal) < -1e-9) free = {};
     }
     const double gain = std::max(0.0, dot(free, direction));
     double arm = cross(point - body.centroid, direction);
@@ -367,9 +371,22 @@ class Solver {
     }
     const double friction = 0.5 * (world_.matter[a].friction + world_.matter[b].friction);
     // What only turns is in the way all the same.
-    if (!(to_b.translation > 0.0) && bodies_.inverse_mass[a] > 0.0) b_.blocks.push_back({a, o.normal, friction});
-    if (!(to_a.translation > 0.0) && bodies_.inverse_mass[b] > 0.0) b_.blocks.push_back({b, o.normal * -1.0, friction});
+    if (!(to_b.translation > 0.0) && bodies_.inverse_mass[a] > 0.0) block(a, o.normal, friction);
+    if (!(to_a.translation > 0.0) && bodies_.inverse_mass[b] > 0.0) block(b, o.normal * -1.0, friction);
     return moved;
+  }
+
+  /// What a body cannot be pushed into for the rest of this sweep; each body has a list of its own.
+  void block(int object, Vec2 normal, double friction) {
+    Buffers::Body& body = b_.bodies[object];
+    const int added = static_cast<int>(b_.blocks.size());
+    if (body.first_block < 0) {
+      body.first_block = added;
+    } else {
+      b_.blocks[body.last_block].next = added;
+    }
+    body.last_block = added;
+    b_.blocks.push_back({object, normal, friction, -1});
   }
 
   /// A driver with too little traction stalls; one with enough keeps its motion while the body can be shifted. A body

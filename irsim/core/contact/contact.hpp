@@ -32,7 +32,8 @@ struct ContactBuffers {
     double turned = 0.0;      // [rad]
     std::uint32_t moves = 0;  // how often it was corrected in this step
     bool placed = false;
-    bool driven, passive;  // of those that can be pushed
+    bool driven, passive;         // of those that can be pushed
+    int first_block, last_block;  // among `blocks`; the first is -1 without any
   };
   /// Two objects that may meet, a < b.
   struct Pair {
@@ -48,6 +49,7 @@ struct ContactBuffers {
     int object;
     Vec2 normal;  // from what is in the way to the object
     double friction;
+    int next;  // of the same object, in order; -1 at the end
   };
   std::vector<Body> bodies;
   std::vector<Vec2> vertices, normals;

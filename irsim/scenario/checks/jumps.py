@@ -170,6 +170,8 @@ def _band(context: Context, body: _Body) -> _Band | None:
     """None for who may be anywhere."""
     world, record = context.scenario.world, body.record
     driven = record.group_behavior is not None or record.group in context.driven_groups
+    if min(map(len, (record.vel_min, record.vel_max, record.acce))) < 2:  # told of as too short
+        return None
     if not _is_straight(record) or driven or world.collision_mode in _STRAYING or world.control_mode != "auto":
         return None
     way = body.way
