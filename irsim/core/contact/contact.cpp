@@ -60,8 +60,8 @@ class Solver {
 
  private:
   bool sweep_all() {
-    for (const Buffers::Block& block : b_.blocks) b_.bodies[block.object].first_block = -1;
-    b_.blocks.clear();
+    for (const int i : b_.blocked) b_.blocks[i].clear();
+    b_.blocked.clear();
     bool moved = false;
     for (Buffers::Pair& pair : b_.pairs) moved = resolve(pair) || moved;
     return moved;
@@ -110,7 +110,8 @@ class Solver {
 
   void place_moving() {
     b_.bodies.resize(world_.objects);
-    b_.blocks.clear();
+    b_.blocked.clear();
+    if (b_.blocks.size() < b_.bodies.size()) b_.blocks.resize(b_.bodies.size());
     b_.vertices.resize(bodies_.vertices.size());
     b_.normals.resize(bodies_.vertices.size());
     b_.boxes.resize(bodies_.pieces.size());
@@ -121,7 +122,7 @@ class Solver {
       body.moved = {};
       body.turned = 0.0;
       body.placed = false;
-      body.first_block = -1;
+      b_.blocks[i].clear();
       body.driven = matter.driven && matter.pushable;
       body.passive = !matter.driven && matter.pushable;
       body.start_velocity = world_.is_static[i] ? Vec2{} : velocity(i);
@@ -309,8 +310,7 @@ class Solver {
     const Buffers::Body& body = b_.bodies[object];
     Vec2 free = direction;
     double into = -1e-9;
-    for (int k = body.first_block; k >= 0; k = b_.blocks[k].next) {
-      const Buffers::Block& block = b_.blocks[k];  // what is most in the way counts; the next sweep sees the rest
+    for (const Buffers::Block& block : b_.blocks[object]) {  // the most in the way counts; the next sweep sees the rest
       const double against = dot(direction, block.normal);
       if (!(against < into)) continue;
       into = against;
@@ -318,8 +318,10 @@ class Solver {
       const bool sticks = body.passive && norm(along) <= -into * block.friction;
       free = sticks ? Vec2{} : along;
     }
-    for (int k = careful_ ? body.first_block : -1; k >= 0; k = b_.blocks[k].next) {
-      if (dot(free, b_.blocks[k].normal) < -1e-9) free = {};
+    if (careful_) {
+      for (const Buffers::Block& block : b_.blocks[object]) {
+        if (dot(free, block.normal) < -1e-9) free = {};
+      }
     }
     const double gain = std::max(0.0, dot(free, direction));
     double arm = cross(point - body.centroid, direction);
@@ -376,17 +378,9 @@ class Solver {
     return moved;
   }
 
-  /// What a body cannot be pushed into for the rest of this sweep; each body has a list of its own.
   void block(int object, Vec2 normal, double friction) {
-    Buffers::Body& body = b_.bodies[object];
-    const int added = static_cast<int>(b_.blocks.size());
-    if (body.first_block < 0) {
-      body.first_block = added;
-    } else {
-      b_.blocks[body.last_block].next = added;
-    }
-    body.last_block = added;
-    b_.blocks.push_back({object, normal, friction, -1});
+    if (b_.blocks[object].empty()) b_.blocked.push_back(object);
+    b_.blocks[object].push_back({normal, friction});
   }
 
   /// A driver with too little traction stalls; one with enough keeps its motion while the body can be shifted. A body

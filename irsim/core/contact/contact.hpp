@@ -32,8 +32,7 @@ struct ContactBuffers {
     double turned = 0.0;      // [rad]
     std::uint32_t moves = 0;  // how often it was corrected in this step
     bool placed = false;
-    bool driven, passive;         // of those that can be pushed
-    int first_block, last_block;  // among `blocks`; the first is -1 without any
+    bool driven, passive;  // of those that can be pushed
   };
   /// Two objects that may meet, a < b.
   struct Pair {
@@ -45,11 +44,10 @@ struct ContactBuffers {
     double scale;             // sum over all corrections
     bool a_yields, b_yields;  // in the last correction
   };
+  /// Something that a body cannot be pushed into for the rest of a sweep.
   struct Block {
-    int object;
-    Vec2 normal;  // from what is in the way to the object
+    Vec2 normal;  // from what is in the way to the body
     double friction;
-    int next;  // of the same object, in order; -1 at the end
   };
   std::vector<Body> bodies;
   std::vector<Vec2> vertices, normals;
@@ -59,8 +57,9 @@ struct ContactBuffers {
   Packing packing;
   std::vector<std::pair<int, int>> found;
   std::vector<int> distance, queue, links, first_link;
-  std::vector<Block> blocks;
-  std::vector<const Pair*> pair_of;  // contacts
+  std::vector<std::vector<Block>> blocks;  // by object
+  std::vector<int> blocked;                // objects that have any
+  std::vector<const Pair*> pair_of;        // contacts
   std::vector<std::uint8_t> reached;
 };
 
