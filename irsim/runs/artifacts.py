@@ -6,12 +6,10 @@ import base64
 import csv
 import io
 import json
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from irsim.diagnostics import nearest
 from irsim.runs.files import RunError, text_of
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
@@ -84,7 +82,8 @@ def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
 
 
 def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, most: int) -> str:
-    _check_object(run, run.names, robot)
+    if robot is not None:
+        run.index_of(robot)  # refuses names that nobody has
     if from_step > max([run.last_step, 0, *(event.step for event in run.events)]):
         raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent, where="from_step")
     room, parts, next_step = most - 200, list[tuple[int, str]](), None
@@ -109,8 +108,7 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
     begin, end = int(trace.step[0]), int(trace.step[-1])
     if not begin <= from_step <= end:
         raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent, where="from_step")
-    _check_object(run, trace.names, robot)
-    objects = slice(None) if robot is None else [trace.names.index(robot)]
+    objects = slice(None) if robot is None else [run.index_of(robot)]
     last = end if to_step is None else min(to_step, end)
     rows = range(from_step - begin, last - begin + 1, max(1, every))
     keys = [] if robot is None else [key for key in trace.ranges if key.startswith(f"{robot}/")]
@@ -161,13 +159,6 @@ def _csv(run: Run, from_step: int, to_step: int | None, every: int, robot: str |
         if out.tell() > most - 100:
             return f"{out.getvalue()[:whole]}# next_step: {step}\n"
     return out.getvalue()
-
-
-def _check_object(run: Run, names: Sequence[str], robot: str | None) -> None:
-    if robot is not None and robot not in names:
-        near = nearest(robot, names)
-        fix = f"did you mean '{clean(near)}'?" if near is not None else "irsim://runs/<id>/run.json has the names"
-        raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix, where="robot")
 
 
 def _finite(ranges: Any) -> list[float | None]:

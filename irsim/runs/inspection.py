@@ -108,7 +108,7 @@ def inspect_run(
         what = f"run {opened.id} has no steps from {from_step} {to}"
         raise RunError("step-out-of-range", what, opened.extent, where="from_step" if from_step > end else "to_step")
     chosen = _fields(fields)
-    objects = _objects(opened, trace, robot)
+    objects = _objects(opened, robot)
     start = _start(cursor)
     question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit, limits)
     found = VIEWS[view](question)
@@ -148,17 +148,11 @@ def _fields(names: Sequence[str] | None) -> Sequence[Field]:
     return [field for field in FIELDS if field in names]
 
 
-def _objects(run: Run, trace: Trace, robot: str | None) -> list[int]:
+def _objects(run: Run, robot: str | None) -> list[int]:
     if robot is None:
         roles = [item.get("role") for item in run.resolved["objects"]]
         return [index for index, role in enumerate(roles) if role == "robot"]
-    found = [index for index, name in enumerate(trace.names) if name == robot]
-    if found:
-        return found
-    near = nearest(robot, trace.names)
-    some = ", ".join(clean(name, 40) for name in trace.names[:5])
-    fix = f"did you mean {clean(near, 40)!r}?" if near else f"there are {some}" + ", …" * (len(trace.names) > 5)
-    raise RunError("bad-argument", f"run {run.id} has no object {clean(robot)!r}", fix, where="robot")
+    return [run.index_of(robot)]
 
 
 def _start(cursor: str | None) -> int:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from irsim.diagnostics import nearest
 from irsim.observers.events import Event
 from irsim.observers.trace import Trace, joined
 from irsim.results import RunResult
@@ -19,6 +20,7 @@ from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.notes import lacking
 from irsim.runs.plain import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
+from irsim.text import clean
 
 __all__ = ["Run", "list_runs", "open_run"]
 
@@ -51,6 +53,25 @@ class Run:
     def names(self) -> tuple[str, ...]:
         """Names of the objects, in order."""
         return tuple(str(name) for name in self.meta["names"])
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """What else decided how it went: ``strict``, ``imports``, ``behavior``."""
+        options = self.meta.get("options")
+        return options if isinstance(options, dict) else {}
+
+    def index_of(self, name: str) -> int:
+        """Which object has that name.
+
+        Raises:
+            RunError: None; names the nearest one, or some.
+        """
+        if name in self.names:
+            return self.names.index(name)
+        near = nearest(name, self.names)
+        some = ", ".join(clean(other, 40) for other in self.names[:5])
+        fix = f"did you mean {clean(near, 40)!r}?" if near else f"there are {some}" + ", …" * (len(self.names) > 5)
+        raise RunError("bad-argument", f"run {self.id} has no object {clean(name)!r}", fix, where="robot")
 
     @property
     def step_time(self) -> float:

@@ -38,11 +38,10 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
         ScenarioError: It can't be used any more.
     """
     limits = limits or DEFAULT_LIMITS
-    options = run.meta.get("options")
-    options = options if isinstance(options, dict) else {}
+    options = run.options
     document = load_text(run.scenario_text, path=_place(run, limits), limits=limits)
     document.maps = _maps(run)
-    strict, behavior = bool(options.get("strict")) and not options.get("imports"), options.get("behavior")
+    strict, behavior = bool(options.get("strict")) and not has_modules(run), options.get("behavior")
     if isinstance(behavior, str):
         from irsim.benchmarks.variant import behavior_of, with_behavior
 
@@ -79,8 +78,7 @@ def replayed(
 
 def has_modules(run: Run) -> bool:
     """Whether modules of a user took part, which nobody imports to look at it: it can't be simulated again."""
-    options = run.meta.get("options")
-    return isinstance(options, dict) and bool(options.get("imports"))
+    return bool(run.options.get("imports"))
 
 
 def _put(run: Run, env: Env, step: int) -> None:
