@@ -7,42 +7,53 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from irsim._conflict import refuse_conflicts
+from irsim.common.conflict import refuse_conflicts
+from irsim.compat.finder import install
 
 refuse_conflicts()
+install()
 
 if TYPE_CHECKING:
     from irsim.api import diff, fix, render, run, validate
-    from irsim.batch import Batch, batch
     from irsim.benchmarks import benchmark
+    from irsim.diagnostics.errors import (
+        IrsimError,
+        NotSimulatedError,
+        PlacementError,
+        ScenarioError,
+        ScenarioNotFoundError,
+    )
     from irsim.env import Env, EnvBase, EnvBase3D, make
-    from irsim.errors import IrsimError, NotSimulatedError, PlacementError, ScenarioError, ScenarioNotFoundError
-    from irsim.lib import register_behavior
-    from irsim.replay.export import replay
+    from irsim.env.batch import Batch, batch
+    from irsim.objects.handlers.registration import register_behavior
+    from irsim.runs.replay.export import replay
 
     __version__: str
 
 _HOMES = {
-    "Batch": "irsim.batch",
+    "Batch": "irsim.env.batch",
     "Env": "irsim.env",
     "EnvBase": "irsim.env",
     "EnvBase3D": "irsim.env",
-    "IrsimError": "irsim.errors",
-    "NotSimulatedError": "irsim.errors",
-    "PlacementError": "irsim.errors",
-    "ScenarioError": "irsim.errors",
-    "ScenarioNotFoundError": "irsim.errors",
-    "batch": "irsim.batch",
+    "IrsimError": "irsim.diagnostics.errors",
+    "NotSimulatedError": "irsim.diagnostics.errors",
+    "PlacementError": "irsim.diagnostics.errors",
+    "ScenarioError": "irsim.diagnostics.errors",
+    "ScenarioNotFoundError": "irsim.diagnostics.errors",
+    "batch": "irsim.env.batch",
     "benchmark": "irsim.benchmarks",
     "diff": "irsim.api",
     "fix": "irsim.api",
     "make": "irsim.env",
-    "register_behavior": "irsim.lib",
+    "register_behavior": "irsim.objects.handlers.registration",
     "render": "irsim.api",
-    "replay": "irsim.replay.export",
+    "replay": "irsim.runs.replay.export",
     "run": "irsim.api",
     "validate": "irsim.api",
 }
+
+_PACKAGES = frozenset({"config", "env", "gui", "lib", "msg", "util", "version", "world"})
+"""Packages of IR-SIM that are attributes of ``irsim`` whether somebody has imported them or not."""
 
 __all__ = [
     "Batch",
@@ -77,6 +88,8 @@ def __getattr__(name: str) -> Any:
         value: Any = version("irsim-mcp")
     elif name in _HOMES:
         value = getattr(import_module(_HOMES[name]), name)
+    elif name in _PACKAGES:
+        return import_module(f"irsim.{name}")
     else:
         raise AttributeError(f"module 'irsim' has no attribute {name!r}")
     globals()[name] = value
@@ -84,4 +97,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__all__, *_PACKAGES})

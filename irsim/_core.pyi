@@ -292,7 +292,7 @@ class PerlinCells:
         size: Cells of the noise along x and y; of `every` cells along an axis one is kept.
         origin: Lower left corner, world frame [m].
         cell_size: Extent of the cells that are kept [m].
-        complexity, fill, fractal, attenuation: As in :class:`irsim.maps.perlin.PerlinMap`.
+        complexity, fill, fractal, attenuation: As in :class:`irsim.components.maps.perlin.PerlinMap`.
     """
 
     def __init__(

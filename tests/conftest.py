@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import HealthCheck, settings
 
-from irsim.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
+from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
 
 # How fast a machine draws and runs examples is no property of the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -15,18 +15,18 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from irsim.arguments import as_given, whole
 from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
-from irsim.benchmarks.variant import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
-from irsim.episode import Progress, import_modules, read_scenario, source_of
-from irsim.errors import ArgumentError, OverLimitError
-from irsim.results import BenchmarkResult, EpisodeRow, Finding
+from irsim.common.arguments import as_given, whole
+from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
+from irsim.results.results import BenchmarkResult, EpisodeRow, Finding
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.load import Document, load_path, load_text
-from irsim.scenario.randomness import random_parts
+from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.yaml.document import Document, load_path, load_text
 
 __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
 

@@ -8,18 +8,18 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any, Literal
 
-from irsim.benchmarks.variant import behavior_of, with_behavior
 from irsim.env import Env
-from irsim.episode import horizon_of, import_modules
-from irsim.metrics.company import on_their_way
+from irsim.episodes.episode import horizon_of, import_modules
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
-from irsim.observers.events import first_events
-from irsim.observers.trace import record
+from irsim.metrics.roles import on_their_way
+from irsim.scenario.behavior_override import behavior_of, with_behavior
 from irsim.scenario.limits import Limits
-from irsim.scenario.load import load_text
-from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.document import load_text
+from irsim.simulation.events import first_events
+from irsim.simulation.trace import record
 
 __all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
 
@@ -37,7 +37,7 @@ class Job:
     Attributes:
         text: The scenario.
         path: Its file, for what it names beside it; None for a text.
-        behavior: See :func:`irsim.benchmarks.variant.behavior_of`.
+        behavior: See :func:`irsim.scenario.behavior_override.behavior_of`.
         steps: Horizon; None: that of the scenario.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user, for what they register.

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from irsim.arguments import as_given, is_whole
-from irsim.benchmarks.variant import BenchmarkError
+from irsim.common.arguments import as_given, is_whole
+from irsim.scenario.behavior_override import BenchmarkError
 
 __all__ = ["seeds_from"]
 

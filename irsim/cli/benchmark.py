@@ -14,7 +14,7 @@ from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+    from irsim.results.results import BenchmarkResult, BenchmarkRow, Estimate, Proportion
 
 __all__ = ["benchmark", "show_benchmark"]
 
@@ -104,8 +104,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from irsim.labels import labels_of, seeds_of
-    from irsim.text import clean
+    from irsim.common.text import clean
+    from irsim.results.labels import labels_of, seeds_of
 
     if not out.is_terminal:
         out.width = max(out.width, _WIDE)
@@ -164,7 +164,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
 
 def _against(row: BenchmarkRow, mine: str, first: str) -> str:
     """One line of paired differences."""
-    from irsim.text import clean
+    from irsim.common.text import clean
 
     told = []
     for key, name, unit in _DIFFERENCES:

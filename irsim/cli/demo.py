@@ -25,13 +25,13 @@ def demo(
     """Simulate a bundled scenario and leave an animation of it in the current directory."""
     from rich.text import Text
 
-    from irsim import templates
+    from irsim.bundled import templates
     from irsim.cli.output import console, print_json, progress
     from irsim.cli.run import show_result
 
     with progress("simulating and drawing") as report:
         from irsim import api
-        from irsim.files import check_suffix
+        from irsim.common.files import check_suffix
 
         check_suffix(out, api.VIDEO_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)

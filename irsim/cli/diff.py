@@ -10,7 +10,7 @@ from irsim.cli.guard import FAILED
 from irsim.cli.options import Json, Seed
 
 if TYPE_CHECKING:
-    from irsim.results import ScenarioDiff
+    from irsim.results.results import ScenarioDiff
 
 __all__ = ["diff"]
 
@@ -38,8 +38,8 @@ def diff(
     Order, layout and other ways to write the same do not count. Entries are recognised when others come or go.
     """
     from irsim import api
-    from irsim.changes.keys import place
     from irsim.cli.output import print_json
+    from irsim.validation.diff.keys import place
 
     found = api.diff(before, after, seed=seed)
     extra = [
@@ -60,10 +60,10 @@ def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[
     """Changed comments about what may not change."""
     from collections import defaultdict
 
-    from irsim.diagnostics import Path, format_path
-    from irsim.scenario.comments import places_of_comments
-    from irsim.scenario.load import load_path
+    from irsim.diagnostics.diagnostic import Path, format_path
     from irsim.scenario.locate import locate
+    from irsim.scenario.yaml.comments import places_of_comments
+    from irsim.scenario.yaml.document import load_path
 
     places: dict[str, list[Path]] = defaultdict(list)
     for comment, about in places_of_comments(load_path(locate(after))):
@@ -82,10 +82,10 @@ def _within(path: str, allowed: str) -> bool:
 def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from rich.text import Text
 
-    from irsim.changes.keys import place
     from irsim.cli.output import console
-    from irsim.scenario.rewrite import yaml_flow
-    from irsim.text import clean, kinds, pair
+    from irsim.common.text import clean, kinds, pair
+    from irsim.scenario.yaml.rewrite import yaml_flow
+    from irsim.validation.diff.keys import place
 
     out = console()
 

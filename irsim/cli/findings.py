@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from irsim.cli.output import has_colors
-from irsim.errors import IrsimError
+from irsim.diagnostics.errors import IrsimError
 
 if TYPE_CHECKING:
-    from irsim.diagnostics import Diagnostic
-    from irsim.results import Finding, ValidationReport
+    from irsim.diagnostics.diagnostic import Diagnostic
+    from irsim.results.results import Finding, ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
@@ -21,7 +21,7 @@ class UserImportError(IrsimError, ImportError):
     """A module named by ``--import`` cannot be imported.
 
     Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
     """
 
     code = "import-failed"
@@ -37,7 +37,7 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, st
     """
     if not diagnostics:
         return
-    from irsim.scenario.report import format_diagnostics
+    from irsim.diagnostics.report import format_diagnostics
 
     stream = sys.stderr if stderr else sys.stdout
     print(format_diagnostics(diagnostics, text, color=has_colors(stream)), file=stream)
@@ -54,8 +54,8 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
     """
     if not findings:
         return
-    from irsim.diagnostics import Diagnostic
-    from irsim.templates.fill import parse_path
+    from irsim.bundled.templates.fill import parse_path
+    from irsim.diagnostics.diagnostic import Diagnostic
 
     diagnostics = [
         Diagnostic(
@@ -103,7 +103,7 @@ def limits_for(max_objects: int | None) -> Limits | None:
 
 def not_found(file: str, message: str) -> ValidationReport:
     """The report on a file that does not exist."""
-    from irsim.results import Finding, ValidationReport
+    from irsim.results.results import Finding, ValidationReport
 
     finding = Finding(
         code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message
@@ -114,7 +114,7 @@ def not_found(file: str, message: str) -> ValidationReport:
 
 
 def _text_of(file: str) -> str | None:
-    from irsim.scenario.load import load_path
     from irsim.scenario.locate import locate
+    from irsim.scenario.yaml.document import load_path
 
     return load_path(locate(file)).text

@@ -14,8 +14,8 @@ from typing import ParamSpec, TypeVar
 import typer
 
 from irsim.cli.output import silence_stdout
-from irsim.errors import IrsimError, ScenarioError, ScenarioNotFoundError
-from irsim.text import clean
+from irsim.common.text import clean
+from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
 
 __all__ = ["FAILED", "INTERRUPTED", "INVALID", "guarded"]
 

@@ -11,7 +11,7 @@ from irsim.cli.options import Json
 from irsim.runs.files import RunError
 
 if TYPE_CHECKING:
-    from irsim.results import RunTable
+    from irsim.results.results import RunTable
 
 __all__ = ["inspect"]
 
@@ -89,8 +89,8 @@ def _list_runs() -> None:
     from rich.table import Table
 
     from irsim.cli.output import console
+    from irsim.common.text import clean
     from irsim.runs import list_runs
-    from irsim.text import clean
 
     runs = list_runs()
     if not runs:
@@ -124,7 +124,7 @@ def _list_runs() -> None:
 def _print_csv(table: RunTable) -> None:
     import csv
 
-    from irsim.text import clean
+    from irsim.common.text import clean
 
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(table.columns)
@@ -135,7 +135,7 @@ def _show(table: RunTable, out: object) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from irsim.text import clean
+    from irsim.common.text import clean
 
     assert isinstance(out, Console)
     ended = table.status if table.outcome is None else table.outcome
@@ -162,7 +162,7 @@ def _show(table: RunTable, out: object) -> None:
 
 
 def _cell(value: object) -> str:
-    from irsim.text import clean
+    from irsim.common.text import clean
 
     if isinstance(value, bool):
         return "yes" if value else "no"

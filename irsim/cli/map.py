@@ -14,7 +14,7 @@ from irsim.cli.guard import guarded
 from irsim.cli.options import File, Imports, Json, Seed
 
 if TYPE_CHECKING:
-    from irsim.map_files import MapFiles
+    from irsim.api.ros_maps import MapFiles
 
 __all__ = ["map_app"]
 
@@ -57,7 +57,7 @@ def import_(
     json_output: Json = False,
 ) -> None:
     """Write a scenario with the map of the ROS map server: its extent, and its cells as a picture."""
-    from irsim.map_files import import_map
+    from irsim.api.ros_maps import import_map
 
     _show(import_map(file, out, unknown=unknown.value, overwrite=force), json_output, ["irsim", "render", str(out)])
 
@@ -74,7 +74,7 @@ def export(
 ) -> None:
     """Write the map of a scenario for the ROS map server: a YAML file and a picture."""
     from irsim import api
-    from irsim.map_files import export_map
+    from irsim.api.ros_maps import export_map
 
     api.import_modules(imports or ())
     resolved, _ = api.read_scenario(scenario, strict=False)

@@ -30,11 +30,12 @@ def new(
     """
     from rich.text import Text
 
-    from irsim import api, templates
+    from irsim import api
+    from irsim.bundled import templates
     from irsim.cli.findings import print_findings
     from irsim.cli.output import console
-    from irsim.files import write_new
-    from irsim.modeline import with_modeline
+    from irsim.common.files import write_new
+    from irsim.scenario.yaml.modeline import with_modeline
 
     template = templates.load(name)
     text = templates.fill(template, templates.parse_settings(settings or ()))

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from irsim.api.overlays import OVERLAYS
 from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Strict
-from irsim.overlays import OVERLAYS
 
 __all__ = ["render"]
 
@@ -62,8 +62,8 @@ def render(
     import_user_modules(imports)
     with progress("drawing") as report:
         from irsim import api
-        from irsim.files import check_suffix
-        from irsim.render.files import PICTURE_FORMATS
+        from irsim.common.files import check_suffix
+        from irsim.graphics.encoding.picture_files import PICTURE_FORMATS
 
         check_suffix(out, [*PICTURE_FORMATS, *api.VIDEO_SUFFIXES])
         result = api.render(

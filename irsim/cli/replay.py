@@ -33,7 +33,7 @@ def replay(
     from rich.text import Text
 
     from irsim.cli.output import console, print_json, progress
-    from irsim.replay.export import replay as write
+    from irsim.runs.replay.export import replay as write
 
     if file is not None and out is not None:
         raise RunError("bad-argument", f"two files are named, '{file}' and '{out}'", "name one file")

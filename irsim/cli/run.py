@@ -14,7 +14,7 @@ from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Stri
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results import RunResult
+    from irsim.results.results import RunResult
 
 __all__ = ["run", "show_result"]
 
@@ -68,7 +68,7 @@ def run(
         _mention_missing_screen()
     with progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
-        from irsim.files import check_suffix
+        from irsim.common.files import check_suffix
 
         if save_gif is not None:
             check_suffix(save_gif, api.VIDEO_SUFFIXES)
@@ -104,7 +104,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     """
     from rich.text import Text
 
-    from irsim.text import clean, seconds
+    from irsim.common.text import clean, seconds
 
     if result.robots:
         out.print(_table(result))
@@ -136,7 +136,7 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
 
 
 def _mention_missing_screen() -> None:
-    from irsim.render.window import has_screen
+    from irsim.graphics.figure.window import has_screen
 
     if not has_screen():
         typer.echo("there is no screen here, so no window opens; --save-gif leaves a film", err=True)
@@ -146,7 +146,7 @@ def _table(result: RunResult) -> object:
     from rich.table import Table
     from rich.text import Text
 
-    from irsim.text import clean, seconds
+    from irsim.common.text import clean, seconds
 
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("robot", "outcome"):

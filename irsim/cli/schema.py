@@ -31,9 +31,9 @@ def schema(
     if scenario is not None:
         _connect(scenario)
         return
-    from irsim import resources
-    from irsim.files import write_atomically
-    from irsim.scenario.schema import schema_text
+    from irsim.common import data_files as resources
+    from irsim.common.files import write_atomically
+    from irsim.scenario.model.json_schema import schema_text
 
     text = schema_text()
     if str(out) == "-" or (out is None and not check and resources.checkout() is None):
@@ -52,11 +52,11 @@ def schema(
 
 def _connect(scenario: Path) -> None:
     """Put the editor line on top of a scenario file."""
-    from irsim.errors import ScenarioError
-    from irsim.files import write_atomically
-    from irsim.modeline import schema_reference, with_modeline
-    from irsim.scenario.load import load_path
+    from irsim.common.files import write_atomically
+    from irsim.diagnostics.errors import ScenarioError
     from irsim.scenario.locate import locate
+    from irsim.scenario.yaml.document import load_path
+    from irsim.scenario.yaml.modeline import schema_reference, with_modeline
 
     document = load_path(locate(scenario))
     if document.text is None:

@@ -12,7 +12,7 @@ from irsim.cli.guard import FAILED, guarded
 from irsim.cli.options import Json
 
 if TYPE_CHECKING:
-    from irsim.skills import Installed
+    from irsim.bundled.skills import Installed
 
 __all__ = ["skills_app"]
 
@@ -31,7 +31,7 @@ class Target(str, Enum):
 
 def list_(json_output: Json = False) -> None:
     """List the skills for coding agents that come with irsim."""
-    from irsim.skills import find_skills
+    from irsim.bundled.skills import find_skills
 
     found = find_skills()
     if json_output:
@@ -75,7 +75,7 @@ def install(
     json_output: Json = False,
 ) -> None:
     """Put the skills where a coding agent looks for them. Exits with 1 if files changed by you were left alone."""
-    from irsim import skills
+    from irsim.bundled import skills
 
     chosen = skills.find_skills(skill or ())
     places = {skills.place_of(one.value, user=user): one.value for one in reversed(target)}

@@ -27,13 +27,13 @@ def templates(
     json_output: Json = False,
 ) -> None:
     """List the bundled scenarios to start from."""
-    from irsim.templates import find
+    from irsim.bundled.templates import find
 
     found = find(words or ())
     if sheet is not None:
-        from irsim.render.sheet import contact_sheet
-        from irsim.snapshot import snapshot
-        from irsim.templates import scenario_file
+        from irsim.api.take_snapshot import snapshot
+        from irsim.bundled.templates import scenario_file
+        from irsim.graphics.encoding.contact_sheet import contact_sheet
 
         steps = [(template.name, scenario_file(template.name)) for template in found]
         pictures = ((name, snapshot(path, seed=1, steps=_SHEET_STEPS, overlays=_OVERLAYS).png) for name, path in steps)

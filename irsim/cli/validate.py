@@ -10,12 +10,12 @@ import typer
 
 from irsim.cli.guard import INVALID
 from irsim.cli.options import Imports, MaxObjects
-from irsim.errors import ArgumentError, ScenarioNotFoundError
+from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results import DryRun, ValidationReport
+    from irsim.results.results import DryRun, ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["validate"]
@@ -93,7 +93,7 @@ def _checked(
         if fixes and path is None:
             text = mended
         elif fixes:
-            from irsim.files import write_atomically
+            from irsim.common.files import write_atomically
             from irsim.scenario.locate import locate
 
             write_atomically(Path(locate(file)), mended)
@@ -109,7 +109,7 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
 
     from irsim.cli.findings import print_findings
     from irsim.cli.output import console
-    from irsim.text import clean
+    from irsim.common.text import clean
 
     out = console(stderr=stderr)
     for item in report.fixes:
@@ -133,7 +133,7 @@ def show_dry_run(found: DryRun, out: Console) -> None:
     """
     from rich.text import Text
 
-    from irsim.text import clean, seconds
+    from irsim.common.text import clean, seconds
 
     seed = f" (seed {found.seed})" if found.random else ""
     lines = [

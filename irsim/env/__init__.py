@@ -1,21 +1,22 @@
 """``irsim.make`` and the environment."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from irsim._names import submodule
-from irsim.env.env_base import Env, EnvBase, make
+from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from irsim.env.env_base import Env, EnvBase, make
     from irsim.env.env_base3d import EnvBase3D
 
 __all__ = ["Env", "EnvBase", "EnvBase3D", "make"]
 
-
-def __getattr__(name: str) -> Any:
-    if name == "EnvBase3D":
-        from irsim.env.env_base3d import EnvBase3D
-
-        return EnvBase3D
-    if (module := submodule(__name__, name)) is not None:
-        return module
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "Env": "irsim.env.env_base",
+        "EnvBase": "irsim.env.env_base",
+        "EnvBase3D": "irsim.env.env_base3d",
+        "make": "irsim.env.env_base",
+    },
+    modules=["env_base", "env_base3d", "env_config", "env_logger", "env_plot", "env_plot3d"],
+)

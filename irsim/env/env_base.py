@@ -8,33 +8,33 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import ref
 
-from irsim.actions import assign_actions, beyond_limits
-from irsim.current import use
-from irsim.diagnostics import Diagnostic, format_path
-from irsim.env_custom import EnvCustom
-from irsim.env_live import EnvLive
-from irsim.env_maps import EnvMaps
-from irsim.env_messages import EnvMessages
-from irsim.env_objects import EnvObjects
-from irsim.log import LEVELS, Logger
-from irsim.observers.events import Event, read_events
-from irsim.observers.outcome import Outcome, outcome_of
-from irsim.observers.trace import Rollout, record_rollout
-from irsim.parameters import EnvParam, PathParam, WorldParam, WorldView, checked_step_mode
-from irsim.python_parts import attach_python
-from irsim.render.palette import Palette
-from irsim.scenario.objects import ResolvedScenario
-from irsim.scenario.opening import open_scenario
-from irsim.simulation import Simulation
-from irsim.streams import check_seed, fresh_seed
-from irsim.views import views
+from irsim.common.log import LEVELS, Logger
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.env.live import EnvLive
+from irsim.env.load_behavior import EnvCustom
+from irsim.env.maps import EnvMaps
+from irsim.env.messages import EnvMessages
+from irsim.env.objects import EnvObjects
+from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView, checked_step_mode
+from irsim.graphics.scene.palette import Palette
+from irsim.objects.actions import assign_actions, beyond_limits
+from irsim.objects.extensions.attach import attach_python
+from irsim.objects.view import views
+from irsim.scenario.open import open_scenario
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.active_env import use
+from irsim.simulation.events import Event, read_events
+from irsim.simulation.outcome import Outcome, outcome_of
+from irsim.simulation.random_streams import check_seed, fresh_seed
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import Rollout, record_rollout
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from irsim.object_factory import EnvConfig, ObjectFactory
+    from irsim.env.factory import EnvConfig, ObjectFactory
+    from irsim.objects.view import ObjectView
     from irsim.runs.recorder import Recorder
-    from irsim.views import ObjectView
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -155,7 +155,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
     @property
     def env_config(self) -> EnvConfig:
         """The scenario as parsed, and what loads it."""
-        from irsim.object_factory import EnvConfig
+        from irsim.env.factory import EnvConfig
 
         return EnvConfig(self)
 

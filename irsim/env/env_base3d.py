@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from irsim.env.env_base import Env
-from irsim.parameters import WorldView
+from irsim.env.parameters import WorldView
 
 if TYPE_CHECKING:
-    from irsim.render.plot import EnvPlot
-    from irsim.simulation import Simulation
+    from irsim.rendering.env_plot import EnvPlot
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["EnvBase3D", "World3D"]
 
@@ -40,6 +40,6 @@ class EnvBase3D(Env):
         return World3D(simulation)
 
     def _new_plot(self) -> EnvPlot:
-        from irsim.render.plot3d import EnvPlot3D
+        from irsim.rendering.env_plot3d import EnvPlot3D
 
         return EnvPlot3D(self, depth=self._world.depth, display=self.display, full=self.full, attach=self._attach)

@@ -1,6 +1,6 @@
 """Live control: keyboard and mouse."""
 
-from irsim.gui.keyboard import KeyboardControl
-from irsim.gui.mouse import MouseControl
+from irsim.gui.keyboard_control import KeyboardControl
+from irsim.gui.mouse_control import MouseControl
 
 __all__ = ["KeyboardControl", "MouseControl"]

@@ -1,11 +1,275 @@
-"""The keyboard under the name of IR-SIM."""
+"""Driving a robot and steering a run with keys, from the figure's window or a global listener (package ``pynput``)."""
 
-from typing import Any
+from __future__ import annotations
 
-from irsim._names import from_homes
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
 
-_get = from_homes(__name__, {"KeyboardControl": "irsim.gui.keyboard"})
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from irsim.common.log import Logger
+    from irsim.env.parameters import WorldParam
+
+__all__ = ["KEY_TABLE", "KeyboardControl"]
+
+_STEP = 0.2
+"""Change of a top speed per key press [m/s or rad/s]."""
+_AXES = {
+    "w": ("linear", 1),
+    "s": ("linear", -1),
+    "a": ("turn", 1),
+    "d": ("turn", -1),
+    "q": ("yaw", 1),
+    "e": ("yaw", -1),
+}
+KEY_TABLE = (
+    ("w / s", "forwards / backwards"),
+    ("a / d", "turn left / right; sideways for omni drives"),
+    ("q / e", "yaw left / right (omni_angular)"),
+    ("z / c", "lower / raise the top turn rate"),
+    ("shift + z / c", "lower / raise the top speed"),
+    ("alt + digit", "drive another robot"),
+    ("r", "reset"),
+    ("l", "reload the file"),
+    ("space", "pause and go on"),
+    ("F5", "one step at a time"),
+    ("x", "keyboard or behaviors"),
+    ("v", "save the figure"),
+    ("y", "stop and start refreshing the window"),
+    ("esc", "quit"),
+)
+"""Keys and what they do."""
 
 
-def __getattr__(name: str) -> Any:
-    return _get(name)
+class Controlled(Protocol):
+    """What keys act on: an environment."""
+
+    logger: Logger
+    world_param: WorldParam
+    display: bool
+    pause_flag: bool
+    quit_flag: bool
+    debug_flag: bool
+    debug_count: int
+    reset_flag: bool
+    reload_flag: bool
+    save_figure_flag: bool
+
+    def pause(self) -> None:
+        """Hold."""
+
+    def resume(self) -> None:
+        """Go on."""
+
+
+class KeyboardControl:
+    """Keys of one environment.
+
+    Args:
+        env_ref: The environment.
+        backend: ``mpl`` takes the key events of the figure; ``pynput`` listens globally, where that package is
+            installed and there is a screen, and falls back to ``mpl`` with a warning elsewhere.
+        global_hook: ``pynput``: react even if the mouse is outside the figure.
+        key_lv_max: Linear speed while a key is held [m/s].
+        key_ang_max: Turn rate while a key is held [rad/s].
+        key_lv, key_ang, key_rot: Commands at the start.
+        key_id: Index of the robot that is driven.
+
+    Attributes:
+        key_vel: (3, 1) linear, turn (or lateral) and yaw command.
+        listener: The global listener, or None.
+    """
+
+    def __init__(
+        self,
+        env_ref: Controlled,
+        *,
+        backend: str = "pynput",
+        global_hook: bool = False,
+        key_lv_max: float = 3.0,
+        key_ang_max: float = 1.0,
+        key_lv: float = 0.0,
+        key_ang: float = 0.0,
+        key_rot: float = 0.0,
+        key_id: int = 0,
+    ) -> None:
+        self.env_ref = env_ref
+        self.backend, self.global_hook = backend, global_hook
+        self.key_lv_max, self.key_ang_max = float(key_lv_max), float(key_ang_max)
+        self.key_lv, self.key_ang, self.key_rot = float(key_lv), float(key_ang), float(key_rot)
+        self.key_id = key_id
+        self.key_vel: NDArray[np.float64] = np.array([[self.key_lv], [self.key_ang], [self.key_rot]])
+        self.listener: Any = None
+        self.in_figure = False
+        self._held: set[str] = set()
+        self._connections: list[tuple[Any, int]] = []
+        if env_ref.world_param.control_mode == "keyboard":
+            for keys, what in KEY_TABLE:
+                env_ref.logger.info(f"{keys:<14} {what}")
+
+    # where keys come from --------------------------------------------------------------------------------------------
+    def attach(self, canvas: Any) -> None:
+        """Take the key events of a figure, and start the global listener if that is the backend."""
+        manager = getattr(canvas, "manager", None)
+        handler = getattr(manager, "key_press_handler_id", None)
+        if handler is not None:  # Matplotlib's own shortcuts: s saves, q closes, …
+            canvas.mpl_disconnect(handler)
+        if self.backend == "pynput" and not self._listen():
+            self.backend = "mpl"
+        events: dict[str, Callable[[Any], None]] = {
+            "figure_enter_event": self._enter,
+            "figure_leave_event": self._leave,
+        }
+        if self.backend == "mpl":
+            events |= {"key_press_event": self._on_press, "key_release_event": self._on_release}
+        self._connections = [(canvas, canvas.mpl_connect(name, call)) for name, call in events.items()]
+
+    def _listen(self) -> bool:
+        if not self.env_ref.display:
+            return False
+        try:
+            from pynput import keyboard
+        except Exception as error:  # pynput fails in its own ways where there is no screen
+            reason = "not installed" if isinstance(error, ImportError) else str(error)
+            if self.env_ref.world_param.control_mode == "keyboard":
+                self.env_ref.logger.warning(f"keyboard backend pynput: {reason}; the figure's key events are used")
+            return False
+        self.listener = keyboard.Listener(
+            on_press=lambda key: self._heard(key, self.press), on_release=lambda key: self._heard(key, self.release)
+        )
+        self.listener.start()
+        return True
+
+    def _heard(self, key: Any, act: Any) -> None:
+        name = _name_of(key)
+        if name is not None and (self.global_hook or self.in_figure):
+            act(name)
+
+    def _enter(self, _: Any) -> None:
+        self.in_figure = True
+
+    def _leave(self, _: Any) -> None:
+        self.in_figure = False
+
+    def _on_press(self, event: Any) -> None:
+        if event.key is not None:
+            self.press(event.key)
+
+    def _on_release(self, event: Any) -> None:
+        if event.key is not None:
+            self.release(event.key)
+
+    def stop(self) -> None:
+        """Let go of the figure and of the listener."""
+        for canvas, number in self._connections:
+            canvas.mpl_disconnect(number)
+        self._connections = []
+        if self.listener is not None:
+            self.listener.stop()
+            self.listener = None
+
+    close = stop
+
+    @property
+    def logger(self) -> Logger:
+        """The logger of the environment."""
+        return self.env_ref.logger
+
+    # what keys do ----------------------------------------------------------------------------------------------------
+    def press(self, key: str) -> None:
+        """A key goes down; names are those of Matplotlib: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""
+        plain = _without_modifiers(key)
+        if plain in _AXES:
+            self._held.add(plain)
+            self._command()
+        elif key.startswith("alt+") and plain.isdigit():
+            self.key_id = int(plain)
+            self.env_ref.logger.info(f"the keyboard drives robot {self.key_id}")
+        elif plain in ("z", "c"):
+            self._change_top_speed(-_STEP if plain == "z" else _STEP, linear=key.startswith("shift+") or key.isupper())
+        else:
+            self._switch(plain)
+
+    def release(self, key: str) -> None:
+        """A key goes up."""
+        plain = _without_modifiers(key)
+        if plain in self._held:
+            self._held.discard(plain)
+            self._command()
+
+    def _command(self) -> None:
+        sums = {"linear": 0, "turn": 0, "yaw": 0}
+        for key in self._held:
+            axis, sign = _AXES[key]
+            sums[axis] += sign
+        self.key_lv = sums["linear"] * self.key_lv_max
+        self.key_ang = sums["turn"] * self.key_ang_max
+        self.key_rot = sums["yaw"] * self.key_ang_max
+        self.key_vel = np.array([[self.key_lv], [self.key_ang], [self.key_rot]])
+
+    def _change_top_speed(self, change: float, *, linear: bool) -> None:
+        if linear:
+            self.key_lv_max = max(0.0, self.key_lv_max + change)
+        else:
+            self.key_ang_max = max(0.0, self.key_ang_max + change)
+        self.env_ref.logger.info(f"top speed {self.key_lv_max:.1f} m/s, turn rate {self.key_ang_max:.1f} rad/s")
+        self._command()
+
+    def _switch(self, key: str) -> None:
+        env = self.env_ref
+        if key == "r":
+            env.reset_flag = True
+        elif key == "l":
+            env.reload_flag = True
+        elif key == "v":
+            env.save_figure_flag = True
+        elif key == "escape":
+            env.quit_flag = True
+        elif key == " ":
+            if env.pause_flag:
+                env.resume()
+            else:
+                env.pause()
+        elif key == "f5":
+            env.pause_flag, env.debug_flag = False, True
+            env.debug_count += 1
+        elif key == "x":
+            driven = env.world_param.control_mode == "keyboard"
+            env.world_param.control_mode = "auto" if driven else "keyboard"
+            env.logger.info(f"control mode: {env.world_param.control_mode}")
+        elif key == "y":
+            env.display = not env.display
+
+    def control(self, drive: str | None, size: int) -> NDArray[np.float64]:
+        """The present command as controls of a drive.
+
+        Args:
+            drive: Name of the kinematics; omni drives take the turn command sideways, scaled by the top speeds.
+            size: How many controls it has.
+
+        Returns:
+            (size,) controls.
+        """
+        linear, turn, yaw = self.key_vel[:, 0]
+        if drive in ("omni", "omni_angular"):
+            turn = turn * self.key_lv_max / self.key_ang_max if self.key_ang_max > 0 else 0.0
+        command = np.zeros(size)
+        given = np.array([linear, turn, yaw])[:size]
+        command[: len(given)] = given
+        return command
+
+
+def _without_modifiers(key: str) -> str:
+    """``shift+W`` is the key ``w``."""
+    return key.rpartition("+")[2].lower() if key != "+" else key
+
+
+def _name_of(key: Any) -> str | None:
+    """Matplotlib's name of a key of ``pynput``."""
+    character = getattr(key, "char", None)
+    if character:
+        return str(character)
+    name = getattr(key, "name", None)
+    return {"space": " ", "esc": "escape"}.get(name, name) if name else None

@@ -7,8 +7,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from irsim.errors import IrsimError
-from irsim.text import clean
+from irsim.common.text import clean
+from irsim.diagnostics.errors import IrsimError
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
@@ -65,7 +65,7 @@ class TopicError(IrsimError, LookupError):
     """Nothing is known under that name.
 
     Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
         message: What is wrong.
         near: Topics with similar names.
     """

@@ -12,11 +12,11 @@ from typing import Any
 from pydantic import BaseModel
 
 import irsim
-from irsim import resources
-from irsim._options import field_docs
+from irsim.common import data_files as resources
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
-from irsim.registry import REGISTRIES
+from irsim.options.base import field_docs
+from irsim.options.registry import REGISTRIES
 
 __all__ = ["PACKS", "written"]
 
@@ -40,9 +40,9 @@ def written(title: str, *parts: str) -> str:
 
 def runner() -> Pages:
     """Pages of ``irsim-runner``."""
-    from irsim.batch import Batch
     from irsim.env import Env
-    from irsim.views import ObjectView
+    from irsim.env.batch import Batch
+    from irsim.objects.view import ObjectView
 
     functions = (
         *("make", "run", "render", "validate", "benchmark", "batch"),
@@ -68,7 +68,7 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Pages of ``irsim-benchmark``."""
-    from irsim import results
+    from irsim.results import results
 
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
@@ -142,9 +142,8 @@ def _find(name: str) -> tuple[str, Any]:
     """A function by its name below ``irsim`` or in full."""
     if not name.startswith("irsim."):
         return f"irsim.{name}", getattr(importlib.import_module(irsim._HOMES[name]), name)
-    from irsim import lib
-
-    return name, getattr(lib, name.rpartition(".")[2])
+    module, _, name_there = name.rpartition(".")
+    return name, getattr(importlib.import_module(module), name_there)
 
 
 def _signature(member: Any) -> str:

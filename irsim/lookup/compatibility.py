@@ -1,20 +1,14 @@
-"""The published page about IR-SIM 2.12, ``irsim/compatibility/README.md``: one row per key and per public name."""
+"""The published page about IR-SIM 2.12, ``irsim/compat/README.md``: one row per key and per public name."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from irsim.compatibility.differences import (
-    ABSENT,
-    DIFFERENCES,
-    EXTENSIONS,
-    KEY_DIFFERENCES,
-    NAME_DIFFERENCES,
-)
-from irsim.compatibility.names import reference_names
+from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, KEY_DIFFERENCES, NAME_DIFFERENCES
+from irsim.compat.names import reference_names
+from irsim.lookup.schema_walk import Node, mappings
 from irsim.lookup.tables import plain_table
-from irsim.lookup.walk import Node, mappings
-from irsim.registry import REGISTRIES
+from irsim.options.registry import REGISTRIES
 
 __all__ = ["page"]
 

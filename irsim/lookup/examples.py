@@ -8,9 +8,9 @@ from typing import Any
 
 import yaml
 
-from irsim import templates
-from irsim.lookup.walk import yaml_text
-from irsim.resources import read_yaml
+from irsim.bundled import templates
+from irsim.common.data_files import read_yaml
+from irsim.lookup.schema_walk import yaml_text
 
 __all__ = ["example_of"]
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from irsim import templates
-from irsim.codes import CODES, TOOL_CODES
+from irsim.bundled import templates
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
-from irsim.lookup.gaps import find_gaps
 from irsim.lookup.guides import GUIDES
+from irsim.lookup.schema_walk import COLOR, Node
 from irsim.lookup.tables import key_list, key_table, plain_table
 from irsim.lookup.topics import lookup
-from irsim.lookup.walk import COLOR, Node
-from irsim.registry import KINEMATICS, REGISTRIES
-from irsim.scenario.schema import json_schema
+from irsim.lookup.unsupported import find_gaps
+from irsim.options.registry import KINEMATICS, REGISTRIES
+from irsim.scenario.model.json_schema import json_schema
 
 __all__ = ["PAGES", "pages"]
 

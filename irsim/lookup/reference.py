@@ -10,13 +10,13 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import irsim.compatibility
-from irsim import resources
-from irsim.files import write_atomically
+import irsim.compat
+from irsim.common import data_files as resources
+from irsim.common.files import write_atomically
 from irsim.lookup.api_pages import PACKS
 from irsim.lookup.compatibility import page
 from irsim.lookup.pages import pages
-from irsim.scenario.schema import json_schema
+from irsim.scenario.model.json_schema import json_schema
 
 __all__ = ["SKILLS", "compatibility", "main", "out_of_date"]
 
@@ -39,7 +39,7 @@ def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
 
 def compatibility() -> dict[Path, str]:
     """Where the page about IR-SIM 2.12 is, and what it should say."""
-    return {Path(irsim.compatibility.__file__).with_name("README.md"): page(json_schema())}
+    return {Path(irsim.compat.__file__).with_name("README.md"): page(json_schema())}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

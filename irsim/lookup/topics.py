@@ -7,17 +7,18 @@ import functools
 import re
 from collections.abc import Sequence
 
-from irsim import templates
-from irsim.code_examples import EXAMPLES
-from irsim.codes import CODES, TOOL_CODES, Code
-from irsim.compatibility import DIFFERENCES
+from irsim.bundled import templates
+from irsim.bundled.templates import Template
+from irsim.common.text import clean
+from irsim.compat import DIFFERENCES
+from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
+from irsim.diagnostics.examples import EXAMPLES
 from irsim.lookup import full_text
 from irsim.lookup.answer import Answer, Key, TopicError
-from irsim.lookup.everyday import EVERYDAY, named
 from irsim.lookup.examples import example_of
 from irsim.lookup.guides import GUIDES
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_line, metric_topic
-from irsim.lookup.walk import (
+from irsim.lookup.schema_walk import (
     COLOR,
     Node,
     alternatives,
@@ -30,10 +31,9 @@ from irsim.lookup.walk import (
     step,
     yaml_text,
 )
-from irsim.registry import REGISTRIES, Registry
-from irsim.scenario.schema import json_schema
-from irsim.templates import Template
-from irsim.text import clean
+from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.options.registry import REGISTRIES, Registry
+from irsim.scenario.model.json_schema import json_schema
 
 __all__ = ["lookup", "schema_part"]
 

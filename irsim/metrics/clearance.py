@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim import _core as core
-from irsim.metrics.company import KINDS, NOBODY, STATIC, company_of
-from irsim.simulation import Simulation
+import irsim._core as core
+from irsim.metrics.roles import KINDS, NOBODY, STATIC, company_of
+from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
-    from irsim.scenario.objects import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least", "static_distance"]
 
@@ -37,7 +37,7 @@ class Clearance:
 
     Attributes:
         distance: (T, R, 3) distance between footprints [m] to the nearest robot, human and static thing, in this order
-            (:data:`irsim.metrics.company.KINDS`); negative where they overlap, NaN where there is none of the kind.
+            (:data:`irsim.metrics.roles.KINDS`); negative where they overlap, NaN where there is none of the kind.
         partner: (T, R, 3) which object that is, an index into ``names``; -1 where there is none.
         robots: (R,) indices of the robots.
         names: Names of the N objects.

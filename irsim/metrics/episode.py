@@ -15,16 +15,16 @@ from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.metrics.motion import motion
 from irsim.metrics.outcome import outcome
 from irsim.metrics.progress import progress
+from irsim.metrics.proximity import space
 from irsim.metrics.social import social
-from irsim.metrics.space import space
-from irsim.metrics.track import HOLONOMIC, Track, tracks
-from irsim.observers.events import partner_of
-from irsim.simulation import Simulation
+from irsim.metrics.trajectory import HOLONOMIC, Track, tracks
+from irsim.simulation.events import partner_of
+from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
-    from irsim.observers.events import Event
-    from irsim.observers.trace import Trace
-    from irsim.scenario.objects import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.simulation.events import Event
+    from irsim.simulation.trace import Trace
 
 __all__ = ["EpisodeMetrics", "episode_metrics", "episode_value", "robot_metrics"]
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim import _core as core
-from irsim.metrics.company import STATIC, company_of
+import irsim._core as core
+from irsim.metrics.roles import STATIC, company_of
 from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
-    from irsim.simulation import Simulation
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["Geodesics", "inscribed_radius"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.metrics.track import Track, spaced
+from irsim.metrics.trajectory import Track, spaced
 
 __all__ = ["curvatures", "motion", "runs_of"]
 

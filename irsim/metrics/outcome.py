@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from irsim.metrics.company import HUMAN, ROBOT
-from irsim.metrics.track import Track
+from irsim.metrics.roles import HUMAN, ROBOT
+from irsim.metrics.trajectory import Track
 
 __all__ = ["outcome"]
 

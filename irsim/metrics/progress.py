@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.metrics.geodesic import Geodesics
-from irsim.metrics.track import Track, wrapped
+from irsim.metrics.trajectory import Track, wrapped
 
 __all__ = ["UNREACHABLE", "progress"]
 

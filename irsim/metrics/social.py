@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.behaviors.sfm import Sfm
-from irsim.metrics.company import HUMAN, STATIC
-from irsim.metrics.track import Track
-from irsim.observers.events import partner_of
+from irsim.components.behaviors.sfm import Sfm
+from irsim.metrics.roles import HUMAN, STATIC
+from irsim.metrics.trajectory import Track
+from irsim.simulation.events import partner_of
 
 if TYPE_CHECKING:
-    from irsim.observers.events import Event
+    from irsim.simulation.events import Event
 
 __all__ = ["group_gaps", "obstacle_force", "social", "social_forces"]
 

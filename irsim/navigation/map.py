@@ -10,10 +10,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim import _core as core
-from irsim.body import ObjectBody
+import irsim._core as core
 from irsim.navigation.outlines import body_parts, parts_of
-from irsim.world.cells import OCCUPIED, grid_occupied
+from irsim.objects.geometry import ObjectBody
+from irsim.simulation.occupancy import OCCUPIED, grid_occupied
 
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarser", "terrain_of", "world_map"]
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim import _core as core
-from irsim.body import ObjectBody
+import irsim._core as core
+from irsim.objects.geometry import ObjectBody
 
 __all__ = ["body_parts", "parts_of", "placed_parts"]
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim import _core as core
+import irsim._core as core
 from irsim.navigation.map import EnvGridMap, cells_of, footprint_of, terrain_of
-from irsim.streams import check_seed, fresh_seed
+from irsim.simulation.random_streams import check_seed, fresh_seed
 
 __all__ = ["RRT", "AStarPlanner", "InformedRRTStar", "JPSPlanner", "PRMPlanner", "PathNode", "PathPlanner", "RRTStar"]
 

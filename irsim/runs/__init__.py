@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from irsim.common.lazy import lazy_names
 
 if TYPE_CHECKING:
     from irsim.runs.files import RunError
@@ -10,15 +12,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Run", "RunError", "list_runs", "open_run"]
 
-
-def __getattr__(name: str) -> Any:
-    """The names above, without NumPy for those who only look after the folders."""
-    if name == "RunError":
-        from irsim.runs.files import RunError
-
-        return RunError
-    if name in __all__:
-        import irsim.runs.reading
-
-        return getattr(irsim.runs.reading, name)
-    raise AttributeError(f"module 'irsim.runs' has no attribute {name!r}")
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "Run": "irsim.runs.reading",
+        "RunError": "irsim.runs.files",
+        "list_runs": "irsim.runs.reading",
+        "open_run": "irsim.runs.reading",
+    },
+)

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from irsim.common.text import clean
 from irsim.runs.files import RunError, text_of
 from irsim.runs.inspection import inspect_run
 from irsim.runs.reading import Run
 from irsim.runs.store import ARTIFACTS, FILES
 from irsim.scenario.limits import Limits
-from irsim.text import clean
 
 __all__ = ["artifact"]
 
@@ -74,7 +74,7 @@ def artifact(
 
 
 def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
-    from irsim.replay.data import pack_run
+    from irsim.runs.replay.data import pack_run
 
     text = base64.b64encode(pack_run(run, limits=limits).data).decode()
     head = json.dumps({"run_id": run.id, "offset": offset, "total": len(text)})

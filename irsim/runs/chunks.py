@@ -16,9 +16,9 @@ from isal.isal_zlib import crc32
 from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from irsim import _core as core
-from irsim.observers.trace import Trace
+import irsim._core as core
 from irsim.runs.files import Buffer, unreadable
+from irsim.simulation.trace import Trace
 
 __all__ = ["Layout", "chunk_of", "load_chunk", "load_events"]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from irsim.errors import IrsimError
+from irsim.diagnostics.errors import IrsimError
 
 __all__ = [
     "TEMPORARY",
@@ -38,7 +38,7 @@ class RunError(IrsimError, ValueError):
     """A run that cannot be opened, read or written.
 
     Attributes:
-        code: Code of the closed list in :mod:`irsim.codes`.
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
         message: What is wrong.
         fix: What to do instead.
         where: Argument it is about, if it is not the run itself.

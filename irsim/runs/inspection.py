@@ -11,15 +11,15 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.diagnostics import nearest
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
 from irsim.metrics import approaches
-from irsim.observers.trace import Trace
-from irsim.results import RunTable
+from irsim.results.results import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
-from irsim.runs.replaying import scenario_of
+from irsim.runs.resimulation import scenario_of
 from irsim.scenario.limits import Limits
-from irsim.text import clean
+from irsim.simulation.trace import Trace
 
 __all__ = ["FIELDS", "VIEWS", "Field", "View", "inspect_run"]
 

@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from irsim.diagnostics import nearest
-from irsim.observers.events import Event
-from irsim.observers.trace import Trace, joined
-from irsim.results import RunResult
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
+from irsim.results.results import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
-from irsim.runs.notes import lacking
-from irsim.runs.plain import with_options
+from irsim.runs.omissions import lacking
+from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
-from irsim.text import clean
+from irsim.simulation.events import Event
+from irsim.simulation.trace import Trace, joined
 
 __all__ = ["Run", "list_runs", "open_run"]
 

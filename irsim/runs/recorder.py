@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic_core import to_json
 
-from irsim import _core as core
-from irsim.observers.trace import sensors
+import irsim._core as core
 from irsim.runs.chunks import chunk_of
 from irsim.runs.files import Buffer, Claim, RunError, begun, claim, written
-from irsim.runs.notes import lacking
-from irsim.runs.plain import plain_scenario
+from irsim.runs.omissions import lacking
+from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
 from irsim.runs.store import BEGUN, FILES, META, RESULT, made_folder, runs_place, used
+from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
     from irsim.env import Env
-    from irsim.results import RunResult
-    from irsim.simulation import Simulation
+    from irsim.results.results import RunResult
+    from irsim.simulation.simulation import Simulation
 
 __all__ = ["Recorder", "recording"]
 
@@ -140,7 +140,7 @@ class Recorder:
         return kept
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
-        """Let time pass like :meth:`irsim.simulation.Simulation.advance`, and keep what happens."""
+        """Let time pass like :meth:`irsim.simulation.simulation.Simulation.advance`, and keep what happens."""
         done = 0
         while done < steps:
             some = min(steps - done, self._most_steps())
@@ -291,7 +291,7 @@ def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
 
 
 def _told(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
-    """What :func:`irsim.observers.events.read_events` makes of it, as JSON has it."""
+    """What :func:`irsim.simulation.events.read_events` makes of it, as JSON has it."""
     kind, step, first, second, x, y = event
     partner = names[second] if second >= 0 else None
     time = step * step_time

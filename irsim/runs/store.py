@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
+from irsim.common.text import clean
 from irsim.runs.files import RunError, json_of, locked, plain_file, refusal, written
-from irsim.text import clean
 
 __all__ = [
     "ABANDONED",

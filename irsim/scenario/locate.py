@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterable
 
-from irsim.errors import ScenarioNotFoundError
+from irsim.diagnostics.errors import ScenarioNotFoundError
 
 __all__ = ["default_name", "locate"]
 

@@ -9,17 +9,17 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from irsim.diagnostics import Diagnostic, Edit, Path, by_severity
+from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, by_severity
 from irsim.scenario.checks import KEY_CODES, Context, run_checks
-from irsim.scenario.expand import resolve
-from irsim.scenario.findings import Finding, error, place
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.load import Document, load_data, load_path, load_text
-from irsim.scenario.maps import LoadedMap, load_map
-from irsim.scenario.model import Scenario, WorldModel
-from irsim.scenario.objects import ResolvedScenario
-from irsim.scenario.repair import applied, removal
-from irsim.scenario.translate import translate
+from irsim.scenario.messages.findings import Finding, error, place
+from irsim.scenario.messages.translate import translate
+from irsim.scenario.model.scenario import Scenario, WorldModel
+from irsim.scenario.resolve.expand import resolve
+from irsim.scenario.resolve.maps import LoadedMap, load_map
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.document import Document, load_data, load_path, load_text
+from irsim.scenario.yaml.edits import applied, removal
 
 __all__ = ["Reading", "read"]
 

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim._options import field_docs
-from irsim.registry import KINEMATICS, Feature
-from irsim.scenario.opening import or_raise
+from irsim.options.base import field_docs
+from irsim.options.registry import KINEMATICS, Feature
+from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
-from irsim.simulation import Simulation
+from irsim.simulation.simulation import Simulation
 
 __all__ = [
     "check_declaration_order",

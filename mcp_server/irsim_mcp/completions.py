@@ -9,8 +9,8 @@ from typing import Any
 from mcp.server import MCPServer
 from mcp.types import Completion, CompletionArgument, CompletionContext, PromptReference, ResourceTemplateReference
 
+from irsim.common.text import clean
 from irsim.runs.store import ARTIFACTS
-from irsim.text import clean
 from irsim_mcp.docs import DOC, topics
 from irsim_mcp.prompts import DIFFICULTIES, drives, template_names
 from irsim_mcp.resources import SCHEMA, SECTIONS, TEMPLATE

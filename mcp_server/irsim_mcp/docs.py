@@ -9,9 +9,9 @@ from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError
 from mcp.server.mcpserver.resources import FunctionResource
 
-from irsim import resources
-from irsim.diagnostics import nearest
-from irsim.text import clean
+from irsim.common import data_files as resources
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
 
 __all__ = ["DOC", "add_docs", "topics"]
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.errors import failure
 
 __all__ = ["again", "check_finished", "episodes_table"]
@@ -40,7 +40,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
     Raises:
         ToolError: The cursor is none.
     """
-    from irsim.labels import labels_of
+    from irsim.results.labels import labels_of
 
     result = state["result"]
     episodes = sorted(result["episodes"], key=lambda episode: episode["outcome"] == "success")

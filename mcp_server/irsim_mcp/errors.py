@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from mcp.server.mcpserver.exceptions import ToolError
 
-from irsim.codes import CODES, TOOL_CODES
-from irsim.text import clean
+from irsim.common.text import clean
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 
 __all__ = ["failure"]
 
@@ -16,13 +16,13 @@ def failure(code: str, what: str, *, where: str | None = None, fix: str | None =
     """An error to raise: ``code: what (where). Fix: …``, at most 400 characters.
 
     Args:
-        code: Name in the closed list of :mod:`irsim.codes`.
+        code: Name in the closed list of :mod:`irsim.diagnostics.codes`.
         what: What is wrong; cut if the line gets too long.
         where: Argument or path it is about.
         fix: What to change.
     """
     if code not in CODES and code not in TOOL_CODES:
-        raise LookupError(f"undocumented error code {code!r}: add it to irsim/codes.py")
+        raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes.py")
     place = f" ({clean(where)})" if where else ""
     remedy = f" Fix: {_sentence(fix)}" if fix else ""
     room = _LONGEST - len(f"{code}: {place}.{remedy}")

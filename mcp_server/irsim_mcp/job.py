@@ -104,11 +104,11 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 
 def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
     """The text of a file that is not there yet; what it names is looked for beside that."""
-    from irsim.contents import counts_of, in_words
-    from irsim.scenario.load import load_text
-    from irsim.scenario.opening import or_raise
+    from irsim.episodes.scene_summary import counts_of, in_words
+    from irsim.scenario.open import or_raise
     from irsim.scenario.read import read
-    from irsim.survey import survey
+    from irsim.scenario.yaml.document import load_text
+    from irsim.validation.feasibility import survey
 
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
@@ -135,15 +135,15 @@ def _run(job: dict[str, Any], progress: _Progress) -> str:
 def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
-    from irsim.episode import read_scenario
-    from irsim.snapshot import snapshot_of
+    from irsim.api.take_snapshot import snapshot_of
+    from irsim.episodes.episode import read_scenario
 
     arguments, limits = job["arguments"], _limits(job)
     path, text = arguments.pop("path", None), arguments.pop("text", None)
     scenario, warnings = read_scenario(path, text=text, strict=True, limits=limits)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
-        import irsim.render.snapshot  # noqa: F401
+        import irsim.rendering.snapshot  # noqa: F401
 
         os.chdir(job["workspace"])
     result = snapshot_of(scenario, path, warnings=warnings, strict=True, limits=limits, progress=progress, **arguments)
@@ -154,11 +154,11 @@ def _snapshot(job: dict[str, Any], progress: _Progress) -> str:
 def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
+    from irsim.api.film_strip import moments_of
+    from irsim.api.take_snapshot import drawn
     from irsim.runs import open_run
     from irsim.runs.files import RunError
-    from irsim.runs.replaying import check_same, has_modules, replayed, step_of
-    from irsim.snapshot import drawn
-    from irsim.strips import moments_of
+    from irsim.runs.resimulation import check_same, has_modules, replayed, step_of
 
     arguments, moments = job["arguments"], None
     run = open_run(arguments["run_id"], job["workspace"])
@@ -255,8 +255,8 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
 
 def _described(error: Exception) -> dict[str, Any]:
     """An exception as data."""
-    from irsim.diagnostics import format_path
-    from irsim.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError
+    from irsim.diagnostics.diagnostic import format_path
+    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError
 
     if isinstance(error, PlacementError):
         first = error.diagnostics[0]

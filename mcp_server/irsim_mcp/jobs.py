@@ -22,6 +22,7 @@ from typing import Any
 
 import anyio
 
+from irsim.common.text import clean
 from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, written
 from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
@@ -35,7 +36,6 @@ from irsim.runs.store import (
     runs_folder,
     status_of,
 )
-from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import ServerLimits, scenario_limits
 from irsim_mcp.sandbox import Workspace

@@ -14,9 +14,9 @@ from mcp.types import INVALID_PARAMS
 from pydantic import Field
 
 import irsim
-from irsim import resources
-from irsim.diagnostics import nearest
-from irsim.text import clean
+from irsim.common import data_files as resources
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
 from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 
@@ -33,7 +33,7 @@ _LONGEST_SCENARIO = 300
 
 def drives() -> list[str]:
     """Names of the drives, without loading them."""
-    folder = Path(irsim.__file__).parent / "kinematics"
+    folder = Path(irsim.__file__).parent / "components" / "kinematics"
     return sorted(path.stem for path in folder.glob("[a-z]*.py"))
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from irsim import templates
+from irsim.bundled import templates
 from irsim.lookup import TopicError, as_text, schema_part
 from irsim.lookup import lookup as look_up
-from irsim.modeline import without_modeline
 from irsim.runs.files import RunError
+from irsim.scenario.yaml.modeline import without_modeline
 
 __all__ = ["explained", "schema_text"]
 

@@ -11,7 +11,7 @@ from mcp.server.mcpserver.resources import FunctionResource
 
 __all__ = ["PAGE", "replay_app"]
 
-PAGE = "ui://irsim/replay"
+PAGE = "ui://irsim/runs/replay"
 
 
 def replay_app() -> Apps:
@@ -32,6 +32,6 @@ def replay_app() -> Apps:
 
 
 def _html() -> str:
-    from irsim.replay.page import page
+    from irsim.runs.replay.page import page
 
     return page()

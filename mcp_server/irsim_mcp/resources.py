@@ -59,8 +59,8 @@ def add_resources(server: MCPServer, services: Services) -> None:
 
 def template(name: str) -> str:
     """A complete scenario as YAML, to start from."""
-    from irsim.modeline import without_modeline
-    from irsim.templates import TemplateError, load
+    from irsim.bundled.templates import TemplateError, load
+    from irsim.scenario.yaml.modeline import without_modeline
 
     try:
         return without_modeline(load(name).text)

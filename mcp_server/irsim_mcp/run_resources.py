@@ -8,8 +8,8 @@ from pathlib import PurePosixPath
 from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ResourceNotFoundError, ToolError
 
+from irsim.common.text import clean
 from irsim.runs.store import ARTIFACTS
-from irsim.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 

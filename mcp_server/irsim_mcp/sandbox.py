@@ -6,10 +6,10 @@ import difflib
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
 
+from irsim.common.text import clean
 from irsim.runs.files import RunError
 from irsim.runs.store import find_run, mark_cancelled, run_folders, runs_folder
-from irsim.scenario.confine import why_outside
-from irsim.text import clean
+from irsim.scenario.path_confinement import why_outside
 from irsim_mcp.errors import failure
 
 __all__ = ["Workspace"]

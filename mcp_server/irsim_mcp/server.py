@@ -17,7 +17,7 @@ from mcp.types import INVALID_PARAMS, CallToolResult, GetPromptResult, InputRequ
 from pydantic import AnyUrl
 
 from irsim import __version__
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.completions import add_completions
 from irsim_mcp.docs import add_docs
 from irsim_mcp.errors import failure

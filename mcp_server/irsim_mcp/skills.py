@@ -16,8 +16,8 @@ from mcp.server.extension import Extension, MethodBinding, ResourceBinding
 from mcp.server.mcpserver.resources import FunctionResource
 from mcp.types import INVALID_PARAMS, PaginatedRequestParams, RequestParams
 
-from irsim import resources
-from irsim.text import clean
+from irsim.common import data_files as resources
+from irsim.common.text import clean
 from irsim_mcp.errors import failure
 
 __all__ = ["Skills", "skill_files"]

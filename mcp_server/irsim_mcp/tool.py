@@ -14,8 +14,8 @@ from mcp.server.mcpserver.utilities.func_metadata import FuncMetadata
 from mcp.types import ToolAnnotations
 from pydantic import ValidationError
 
-from irsim.diagnostics import format_path, nearest
-from irsim.text import clean
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import format_path, nearest
 from irsim_mcp.errors import failure
 
 __all__ = ["StrictTool", "strict"]

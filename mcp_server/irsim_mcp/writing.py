@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.errors import failure
 
 __all__ = ["write_file"]

@@ -12,7 +12,7 @@ import pytest
 import irsim
 from irsim import api
 from irsim.benchmarks import BenchmarkError
-from irsim.errors import ArgumentError
+from irsim.diagnostics.errors import ArgumentError
 
 TEXT = """
 world: {width: 10, height: 10, time_limit: 0.5}

@@ -8,9 +8,9 @@ import pytest
 from typer.testing import CliRunner
 
 import irsim
-from irsim import templates
+from irsim.bundled import templates
 from irsim.cli.app import app
-from irsim.text import kinds, pair
+from irsim.common.text import kinds, pair
 
 BASE = """\
 world: {width: 10, height: 8, seed: 3}   # the hall
@@ -30,15 +30,15 @@ obstacle:
 """
 
 
-def diff(before: str, after: str) -> irsim.results.ScenarioDiff:
+def diff(before: str, after: str) -> irsim.results.results.ScenarioDiff:
     return irsim.diff(before_text=before, after_text=after)
 
 
-def keys(found: irsim.results.ScenarioDiff) -> list[tuple[str, str]]:
+def keys(found: irsim.results.results.ScenarioDiff) -> list[tuple[str, str]]:
     return [(change.change, change.path) for change in found.keys]
 
 
-def world(found: irsim.results.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
+def world(found: irsim.results.results.ScenarioDiff) -> list[tuple[str, str | None, str | None]]:
     assert found.world is not None
     return [(change.change, change.object, change.key) for change in found.world]
 
@@ -283,7 +283,7 @@ LED = (
 )
 
 
-def told(found: irsim.results.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
+def told(found: irsim.results.results.ScenarioDiff) -> dict[tuple[str | None, str | None], tuple[object, object]]:
     """What changed in the world, by object and fact; of options their name."""
     facts = found.world or []
     return {(fact.object, fact.key): (_name(fact.before), _name(fact.after)) for fact in facts}

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 import irsim
 from irsim.env import Env
-from irsim.scenario.entry import Entry
-from irsim.scenario.load import load_data
-from irsim.scenario.objects import ResolvedScenario
+from irsim.scenario.model.entry import Entry
+from irsim.scenario.model.world import WorldModel
 from irsim.scenario.read import read
-from irsim.scenario.world import WorldModel
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.document import load_data
 
 DRIVES = ("diff", "omni", "acker")
 SHAPES = ({"name": "circle", "radius": 0.2}, {"name": "rectangle", "length": 0.5, "width": 0.3})

@@ -7,12 +7,12 @@ import time
 import pytest
 
 import irsim
-from irsim.dry_run import dry_run
-from irsim.episode import read_scenario
+from irsim.bundled.templates import scenario_file
+from irsim.common.text import seconds
+from irsim.episodes.episode import read_scenario
 from irsim.scenario.limits import Limits
-from irsim.scenario.objects import ResolvedScenario
-from irsim.templates import scenario_file
-from irsim.text import seconds
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.validation.dry_run import dry_run
 
 ROBOT = """\
   - name: rover
@@ -33,7 +33,7 @@ def tried(
     more: str = "behavior: {name: dash}",
     world: str = "{width: 10, height: 8}",
     obstacle: str = "",
-) -> irsim.results.DryRun:
+) -> irsim.results.results.DryRun:
     text = f"world: {world}\nrobot:\n" + ROBOT.format(state=state, goal=goal, more=more)
     if obstacle:
         text += f"obstacle:\n  - {obstacle}\n"
@@ -134,7 +134,7 @@ def test_what_is_tried_does_not_depend_on_the_clock(monkeypatch: pytest.MonkeyPa
     found = dry_run(scenario, seed=1, budget=30_000)
     assert time.monotonic() - begin < 5
     assert found.ended == "budget"
-    monkeypatch.setattr("irsim.dry_run._CHUNK", 1e-6)  # as on a machine that is far slower
+    monkeypatch.setattr("irsim.validation.dry_run._CHUNK", 1e-6)  # as on a machine that is far slower
     assert dry_run(scenario, seed=1, budget=30_000) == found
 
 
@@ -182,7 +182,7 @@ def test_the_clock_is_the_last_resort_and_told() -> None:
 def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario, _ = read_scenario(scenario_file("circle-swap"), strict=True)
     found = dry_run(scenario)
-    monkeypatch.setattr("irsim.dry_run._CHUNK", 0.0)  # after each step
+    monkeypatch.setattr("irsim.validation.dry_run._CHUNK", 0.0)  # after each step
     assert dry_run(scenario) == found
 
 

@@ -10,13 +10,13 @@ import pytest
 from typer.testing import CliRunner
 
 import irsim
-from irsim import templates
 from irsim.benchmarks import BenchmarkError
+from irsim.bundled import templates
 from irsim.cli.app import app
-from irsim.errors import OverLimitError, ScenarioError
+from irsim.diagnostics.errors import OverLimitError, ScenarioError
 from irsim.runs import open_run
 from irsim.runs.inspection import inspect_run
-from irsim.runs.replaying import replayed
+from irsim.runs.resimulation import replayed
 from irsim.scenario.limits import Limits
 
 ROBOT = """\

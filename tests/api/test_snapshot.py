@@ -10,7 +10,7 @@ from PIL import Image
 
 import irsim
 from irsim.api import snapshot
-from irsim.errors import IrsimError, OverLimitError
+from irsim.diagnostics.errors import IrsimError, OverLimitError
 from irsim.scenario.limits import Limits
 
 SCENE = """\

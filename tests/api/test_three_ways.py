@@ -20,7 +20,7 @@ from irsim_mcp.sandbox import Workspace
 from typer.testing import CliRunner
 
 import irsim
-from irsim import templates
+from irsim.bundled import templates
 from irsim.cli.app import app
 from tests.mcp.conftest import connected, text_of
 

@@ -15,11 +15,11 @@ import irsim
 from irsim.benchmarks import AS_WRITTEN, BenchmarkError
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, Task, scenario_of
-from irsim.benchmarks.variant import behavior_of
 from irsim.cli.app import app
-from irsim.errors import OverLimitError, PlacementError, ScenarioNotFoundError
-from irsim.labels import labels_of, seeds_of
+from irsim.diagnostics.errors import OverLimitError, PlacementError, ScenarioNotFoundError
 from irsim.metrics import wilson
+from irsim.results.labels import labels_of, seeds_of
+from irsim.scenario.behavior_override import behavior_of
 
 CROWD = """
 world: {width: 8, height: 8, time_limit: 12}

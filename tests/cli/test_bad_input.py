@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.codes import CODES, TOOL_CODES
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 from tests.cli.conftest import Run, Spawn
 
 BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(

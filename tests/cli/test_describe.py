@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from irsim import templates
-from irsim.codes import CODES, TOOL_CODES
+from irsim.bundled import templates
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup import lookup
 from irsim.metrics import EPISODE_METRICS, METRICS
-from irsim.registry import REGISTRIES
+from irsim.options.registry import REGISTRIES
 from tests.cli.conftest import Run, parsed
 
 

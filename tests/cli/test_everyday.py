@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from irsim.lookup import Answer, lookup
-from irsim.lookup.everyday import EVERYDAY, named
 from irsim.lookup.full_text import words_of
 from irsim.lookup.guides import GUIDES
-from irsim.scenario.schema import json_schema
+from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.scenario.model.json_schema import json_schema
 
 SCHEMA = json_schema()
 MEANT = {

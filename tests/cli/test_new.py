@@ -9,7 +9,7 @@ import pytest
 import yaml
 from PIL import Image
 
-from irsim import resources
+from irsim.common import data_files as resources
 from tests.cli.conftest import Run, parsed
 
 

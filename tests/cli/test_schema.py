@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from irsim import resources
-from irsim.modeline import schema_reference, with_modeline
+from irsim.common import data_files as resources
+from irsim.scenario.yaml.modeline import schema_reference, with_modeline
 from tests.cli.conftest import ROOM, Run
 
 

@@ -10,9 +10,10 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from irsim import resources, skills
+from irsim.bundled import skills
+from irsim.bundled.skills import PLACES, Skill, find_skills, install, place_of
 from irsim.cli.app import app
-from irsim.skills import PLACES, Skill, find_skills, install, place_of
+from irsim.common import data_files as resources
 
 NAMES = sorted(path.parent.name for path in resources.skills_directory().glob("*/SKILL.md"))
 

@@ -5,8 +5,8 @@ import re
 import pytest
 
 import irsim
-from irsim.compatibility import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, missing_names, reference_names
-from irsim.compatibility.differences import ABSENT
+from irsim.compat import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, missing_names, reference_names
+from irsim.compat.differences import ABSENT
 from irsim.lookup import lookup
 from tests.compat.scripts import SCRIPTS
 from tests.parity import differences as of_traces

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from irsim.compatibility import DIFFERENCES
+from irsim.compat import DIFFERENCES
 from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
 

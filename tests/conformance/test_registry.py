@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from irsim.registry import BEHAVIORS, REGISTRIES, SENSORS, SHAPES, Feature
+from irsim.options.registry import BEHAVIORS, REGISTRIES, SENSORS, SHAPES, Feature
 from irsim.testing import conformance
 
 FEATURES = [(kind, feature) for kind, registry in REGISTRIES.items() for feature in registry.features()]

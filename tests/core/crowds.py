@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core import crowd_oracle as oracle
 from tests.core.oracle import rotation
 from tests.core.worlds import DRIVES, PI, circle, line, obstacle, polygon, rectangle, robot, scene

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from irsim import _core as core
+import irsim._core as core
 
 
 def wrap(a: float) -> float:

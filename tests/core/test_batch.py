@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.test_reset import crowd
 from tests.core.worlds import (
     DRIVES,

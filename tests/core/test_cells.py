@@ -10,7 +10,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.test_intersects import ORIGIN, POSE, placed, shape
 from tests.core.worlds import circle, command, lidar, obstacle, polygon, rectangle, robot, scene
 

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import circle, command, line, obstacle, polygon, rectangle, robot, scene
 
 SHAPES = {

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import PI, circle, fmcw, lidar, obstacle, rectangle, robot, scene
 
 

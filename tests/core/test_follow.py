@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.scenario.opening import or_raise
+from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
-from irsim.simulation import Simulation
+from irsim.simulation.simulation import Simulation
 
 WALLS = """
   - {shape: {name: rectangle, length: 8, width: 0.2}, state: [4, 2.5, 0]}

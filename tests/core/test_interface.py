@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import DRIVES, circle, command, everything, fmcw, lidar, line, obstacle, polygon, robot, scene
 
 OPTIONS = [

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import affinity
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import circle, line, polygon, rectangle
 
 ORIGIN = (0.0, 0.0, 0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.test_reset import crowd
 from tests.core.worlds import robot, scene
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import assert_identical, circle, everything, lidar, obstacle, robot, rows_of, scene
 
 ALL = np.ones(1, np.uint8)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core import crowd_oracle as oracle
 from tests.core.crowds import Crowd
 from tests.core.oracle import rotation

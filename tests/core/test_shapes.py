@@ -10,7 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import circle, line, obstacle, polygon, rectangle, scene
 

@@ -10,7 +10,7 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from irsim import _core as core
+import irsim._core as core
 
 FAR = (-1e6, -1e6, 1e6, 1e6)
 NX, NY, H = 60, 50, 0.2

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim import _core as core
+import irsim._core as core
 
 PI = math.pi
 DRIVES: dict[str, Any] = {

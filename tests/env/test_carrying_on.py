@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import yaml
 
-from irsim.diagnostics import format_path
-from irsim.errors import ScenarioError
+from irsim.diagnostics.diagnostic import format_path
+from irsim.diagnostics.errors import ScenarioError
 from irsim.scenario.read import read
 
 Make = Callable[..., Any]

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import irsim.lib as irsim_lib
 import numpy as np
 import pytest
+from irsim.world.sensors import Contact2D
 
 import irsim
-import irsim.lib as irsim_lib
-from irsim.contacts import contact_step
 from irsim.env import Env
-from irsim.simulation import Simulation
-from irsim.world.sensors import Contact2D
+from irsim.objects.sensors.contact import contact_step
+from irsim.simulation.simulation import Simulation
 
 WORLD = """
 world: {width: 10, height: 10, collision_mode: contact, gravity: 10.0}
@@ -107,7 +107,7 @@ def test_contact_step(env: Env) -> None:
 
 
 def test_what_is_drawn(env: Env) -> None:
-    from irsim.render.builder import SceneBuilder
+    from irsim.objects.drawing.scene_builder import SceneBuilder
 
     env.step([1.0, 0.0])
     scene = SceneBuilder(env.simulation).build()

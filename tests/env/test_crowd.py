@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.crowd import centres, discs
+from irsim.objects.neighbors import centres, discs
 
 Make = Callable[..., Any]
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from irsim.diagnostics.errors import ScenarioError
 from irsim.env import Env
-from irsim.errors import ScenarioError
 
 WORLD = """
 world: {width: 10, height: 10}

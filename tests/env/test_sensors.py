@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.registry import SENSORS
-from irsim.scans import FMCWLidar2D, Lidar2D
-from irsim.sensors._options import SensorOptions
-from irsim.units import Meters
-from irsim.world.fog import FogMap
+from irsim.components.sensors._options import SensorOptions
+from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
+from irsim.options.registry import SENSORS
+from irsim.options.units import Meters
+from irsim.simulation.fog import FogMap
 
 Make = Callable[..., Any]
 
@@ -126,7 +126,7 @@ def test_rollouts_and_batches_measure_alike(make: Make) -> None:
     assert advanced.objects[1].sensors[1].data == alone[-1]
     batch = irsim.batch(env.scenario, 3, seeds=[5, 1, 9], threads=2)
     batch.advance(3)
-    from irsim.views import views
+    from irsim.objects.view import views
 
     assert views(batch.simulation, 1)[1].sensors[1].data == alone[-1]
     assert views(batch.simulation, 0)[1].sensors[1].data != alone[-1]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.hooks import HOOKS
-from irsim.views import ObjectView
+from irsim.objects.extensions.hooks import HOOKS
+from irsim.objects.view import ObjectView
 
 Make = Callable[..., irsim.Env]
 SCENARIO = """

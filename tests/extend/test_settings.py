@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.errors import ScenarioError
-from irsim.registry import CUSTOM_BEHAVIORS
-from irsim.settings import HINTS, SETTINGS
-from irsim.views import ObjectView, views
+from irsim.diagnostics.errors import ScenarioError
+from irsim.objects.setters import HINTS, SETTINGS
+from irsim.objects.view import ObjectView, views
+from irsim.options.registry import CUSTOM_BEHAVIORS
 
 TWO = """
 world: {height: 10, width: 10}

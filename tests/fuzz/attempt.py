@@ -62,7 +62,7 @@ def main() -> None:
 def attempt(text: str, limits: Any) -> tuple[str, str | None]:
     """What a document came to: ``invalid``, ``refused``, ``ran``; and what is wrong with that."""
     import irsim
-    from irsim.errors import IrsimError, PlacementError, ScenarioError
+    from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError
 
     came_to = "invalid"
     try:

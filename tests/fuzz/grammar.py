@@ -13,7 +13,7 @@ from typing import Any
 
 import yaml
 
-from irsim import resources
+from irsim.common import data_files as resources
 
 __all__ = ["document"]
 

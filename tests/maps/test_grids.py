@@ -8,13 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image
-
-import irsim
-from irsim.errors import ScenarioError
-from irsim.maps._bundled import bundled_map, bundled_names
-from irsim.scenario.limits import Limits
-from irsim.scenario.read import read
 from irsim.world.map import (
     GridMapGenerator,
     ImageGridGenerator,
@@ -23,6 +16,13 @@ from irsim.world.map import (
     build_grid_from_generator,
     resolve_obstacle_map,
 )
+from PIL import Image
+
+import irsim
+from irsim.components.maps._bundled import bundled_map, bundled_names
+from irsim.diagnostics.errors import ScenarioError
+from irsim.scenario.limits import Limits
+from irsim.scenario.read import read
 
 HERE = Path(__file__).parent
 RECORDED = dict(np.load(HERE / "recorded" / "grids.npz"))
@@ -267,7 +267,7 @@ def test_maps_are_drawn(tmp_path) -> None:
     env.render()
     picture = np.asarray(Image.open(env.save_figure(tmp_path / "out.png")).convert("L"))
     assert (picture == 0).mean() > 0.2
-    from irsim.render.builder import SceneBuilder
+    from irsim.objects.drawing.scene_builder import SceneBuilder
 
     [grid] = SceneBuilder(env.simulation).build().as_dict()["grids"]
     assert sum(grid["runs"][1::2]) == env.simulation.state.cells(1).count

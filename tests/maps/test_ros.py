@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from irsim import api
-from irsim.files import TargetError
-from irsim.map_files import MapFileError, export_map, import_map
-from irsim.maps._rosmap import MODES, RosMeta, occupancy_of, pixels_of
+from irsim.api.ros_maps import MapFileError, export_map, import_map
+from irsim.common.files import TargetError
+from irsim.components.maps._rosmap import MODES, RosMeta, occupancy_of, pixels_of
 from irsim.scenario.limits import Limits
 from irsim.scenario.read import read
 

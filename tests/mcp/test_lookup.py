@@ -10,8 +10,9 @@ import pytest
 from mcp import Client, MCPError
 from mcp.types import ResourceTemplateReference, TextResourceContents
 
-from irsim import api, templates
-from irsim.registry import REGISTRIES
+from irsim import api
+from irsim.bundled import templates
+from irsim.options.registry import REGISTRIES
 from tests.mcp.conftest import ERAS, connected, error_of, text_of
 
 pytestmark = pytest.mark.anyio

@@ -10,7 +10,7 @@ from irsim_mcp.prompts import drives, template_names
 from mcp import Client, MCPError
 from mcp.types import PromptReference, ResourceTemplateReference, TextContent
 
-from irsim.registry import KINEMATICS
+from irsim.options.registry import KINEMATICS
 from tests.mcp.conftest import CRASH, ERAS, ROOM, connected, data_of
 
 pytestmark = pytest.mark.anyio

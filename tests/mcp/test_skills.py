@@ -15,7 +15,7 @@ from mcp.server import MCPServer
 from mcp.types import BlobResourceContents, Request, TextResourceContents
 from pydantic import BaseModel, ConfigDict
 
-from irsim.resources import skills_directory
+from irsim.common.data_files import skills_directory
 from tests.mcp.conftest import connected
 
 pytestmark = pytest.mark.anyio

@@ -48,7 +48,8 @@ def test_initialize_costs_little_more_than_importing_the_sdk(workspace: Path) ->
 def test_neither_engine_nor_drawing_is_loaded_at_start() -> None:
     code = (
         "import sys\nfrom pathlib import Path\nfrom irsim_mcp.server import build_server\nbuild_server(Path())\n"
-        "heavy = ('numpy', 'yaml', 'shapely', 'matplotlib', 'PIL', 'irsim._core', 'irsim.env', 'irsim.registry')\n"
+        "heavy = ('numpy', 'yaml', 'shapely', 'matplotlib', 'PIL', 'irsim._core', 'irsim.env', "
+        "'irsim.options.registry')\n"
         "print([name for name in heavy if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from irsim.env import Env
-from irsim.episode import read_scenario
+from irsim.episodes.episode import read_scenario
 from irsim.metrics import clearance, closest
-from irsim.metrics.company import HUMAN, NOBODY, ROBOT, STATIC, company_of
-from irsim.observers.trace import record_rollout
+from irsim.metrics.roles import HUMAN, NOBODY, ROBOT, STATIC, company_of
+from irsim.simulation.trace import record_rollout
 
 SCENARIO = """
 world: {width: 10, height: 10, boundary: walls, collision_mode: unobstructed}

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.episode import read_scenario
+from irsim.episodes.episode import read_scenario
 from irsim.metrics import EPISODE_METRICS, METRICS, episode_metrics, robot_metrics
 from irsim.metrics.motion import curvatures, runs_of
-from irsim.observers.events import Event
-from irsim.observers.trace import Trace
+from irsim.simulation.events import Event
+from irsim.simulation.trace import Trace
 
 ROBOT = (
     "  - {{kinematics: {{name: {drive}}}, shape: {{name: circle, radius: 0.2}}, state: {state}, goal: {goal}, "

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from irsim.lib.algorithm.social_force_model import SocialForceModelBatch
 
 import irsim
-from irsim.behaviors.sfm import Sfm
-from irsim.lib.algorithm.social_force_model import SocialForceModelBatch
+from irsim.components.behaviors.sfm import Sfm
 from irsim.metrics import robot_metrics
 from irsim.metrics.social import group_gaps, obstacle_force, social_forces
-from irsim.observers.events import Event
+from irsim.simulation.events import Event
 from tests.core import crowd_oracle
 from tests.metrics.test_robot_metrics import scenario, straight, trace
 

@@ -59,7 +59,7 @@ def test_wheel_holds_the_two_packages_only(wheel_names: set[str]) -> None:
 def test_wheel_holds_data_and_types(wheel_names: set[str]) -> None:
     data = {f"irsim/_bundled/{name}" for name in files_of("templates") | files_of("schema")}
     skills = {f"irsim/.agents/{name}" for name in files_of("skills")}
-    assert sorted((data | skills | files_of("irsim/replay")) - wheel_names) == []
+    assert sorted((data | skills | files_of("irsim/runs/replay")) - wheel_names) == []
     assert {"irsim/py.typed", "irsim/_core.pyi", "irsim_mcp/py.typed"} <= wheel_names
 
 

@@ -1,6 +1,6 @@
 """The intended differences that touch a scenario, and how the trace is compared where one applies.
 
-A scenario names ids under `custom.differs`: those of the published list, `irsim.compatibility.DIFFERENCES`. Without an
+A scenario names ids under `custom.differs`: those of the published list, `irsim.compat.DIFFERENCES`. Without an
 id every field of every step must equal the trace.
 """
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import irsim
-from irsim.world.fog import FogMap
+from irsim.simulation.fog import FogMap
 
 YAML = """
 world: {width: 10, height: 8, offset: [1, 2]}

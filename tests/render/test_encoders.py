@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from irsim.render.gif import GifWriter
-from irsim.render.pixels import changed_box, even, fit
-from irsim.render.png import ApngWriter, png_bytes
+from irsim.graphics.encoding.gif import GifWriter
+from irsim.graphics.encoding.pixels import changed_box, even, fit
+from irsim.graphics.encoding.png import ApngWriter, png_bytes
 
 RNG = np.random.default_rng(7)
 

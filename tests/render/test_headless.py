@@ -13,7 +13,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from irsim.render import window
+from irsim.graphics.figure import window
 
 SCENARIO = "robot: {kinematics: {name: diff}, behavior: {name: dash}, shape: {name: circle}}\n"
 SCREENLESS: list[dict[str, str]] = [{"DISPLAY": ":4711", "MPLBACKEND": "Agg"}]

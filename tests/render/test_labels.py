@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.transforms import Bbox
 
-from irsim.render.labels import free_places
+from irsim.graphics.scene.labels import free_places
 
 Make = Callable[..., Any]
 VIEW = np.array([0.0, 0.0, 600.0, 600.0])

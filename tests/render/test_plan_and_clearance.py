@@ -10,9 +10,9 @@ import pytest
 
 from irsim.api import snapshot
 from irsim.env import make
-from irsim.render import SceneBuilder
-from irsim.render.free_space import FreeSpace, draw_clearance
-from irsim.render.scene import Line, Region, Scene
+from irsim.graphics.scene.scene import Line, Region, Scene
+from irsim.rendering import SceneBuilder
+from irsim.rendering.clearance_map import FreeSpace, draw_clearance
 
 ROOM = """\
 world: {{width: 10, height: 6, boundary: walls}}
@@ -142,7 +142,7 @@ def test_nothing_stands_nothing_is_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("template", ["maze", "perlin-forest", "car-park", "crowd", "mixed-fleet", "shape-gallery"])
 def test_templates(template: str) -> None:
-    from irsim.templates import scenario_file
+    from irsim.bundled.templates import scenario_file
 
     overlays = snapshot(str(scenario_file(template)), seed=1, overlays=["names", "clearance", "plan"], size=400)
     assert overlays.png != snapshot(str(scenario_file(template)), seed=1, overlays=["names"], size=400).png

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import shapely
 
-from irsim.render.bodies import bounds
-from irsim.render.builder import SceneBuilder
-from irsim.render.scene import Circle, Line, Region, Sector
+from irsim.graphics.scene.bodies import bounds
+from irsim.graphics.scene.scene import Circle, Line, Region, Sector
+from irsim.objects.drawing.scene_builder import SceneBuilder
 
 ROBOT = """
 robot: {kinematics: {name: %s}, shape: {name: circle, radius: 0.3}, state: [2, 3, 0], goal: [8, 3, 0],
@@ -215,7 +215,7 @@ def test_shapes_of_the_next_scene_are_seen(make: Callable[..., Any]) -> None:
 
 
 def test_a_world_of_a_batch_can_be_looked_at(make: Callable[..., Any]) -> None:
-    from irsim.simulation import Simulation
+    from irsim.simulation.simulation import Simulation
 
     env = make(
         "robot: {kinematics: {name: diff}, behavior: {name: dash}, distribution: {name: random},"

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
 
-from irsim.registry import SENSORS
-from irsim.render.builder import SceneBuilder
-from irsim.sensors._options import SensorOptions
+from irsim.components.sensors._options import SensorOptions
+from irsim.objects.drawing.scene_builder import SceneBuilder
+from irsim.options.registry import SENSORS
 
 WORLD = """
 world: {width: 10, height: 10%s}

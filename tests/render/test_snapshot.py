@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from irsim.render import Scene, SceneBuilder, render_scene
-from irsim.render.legible import make_legible
-from irsim.render.scene import Line, Region, Sector
+from irsim.graphics.scene.scene import Line, Region, Sector
+from irsim.rendering import Scene, SceneBuilder, render_scene
+from irsim.rendering.readability import make_legible
 
 ROOMS = {
     "square": "world: {width: 10, height: 10}",

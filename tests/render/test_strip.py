@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from irsim.api import snapshot
-from irsim.errors import OverLimitError
-from irsim.render.strip import tiling
+from irsim.api.film_strip import StripError, moments_of
+from irsim.diagnostics.errors import OverLimitError
+from irsim.rendering.strip import tiling
 from irsim.scenario.limits import Limits
-from irsim.strips import StripError, moments_of
 
 SCENE = """\
 world: {width: 8, height: 4, offset: [-1, 0]}

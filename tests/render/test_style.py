@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from irsim.render.style import STYLE_KEYS
-from irsim.scenario.plot import ObjectPlot
+from irsim.graphics.scene.style import STYLE_KEYS
+from irsim.scenario.model.plot import ObjectPlot
 
 EVERYTHING = """
 world: {plot: {figure_pixels: [400, 400], show_title: false, no_axis: true}}

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import irsim.replay.data as packing
+import irsim.runs.replay.data as packing
+from irsim.bundled.templates import names
 from irsim.runs import Run, RunError, open_run
-from irsim.templates import names
 from tests.replay.conftest import HOSTILE, recorded, scene
 from tests.replay.reading import unpacked
 
@@ -131,7 +131,7 @@ def test_a_run_whose_scenario_starts_elsewhere_now_is_refused(run: Run) -> None:
 
 @pytest.mark.parametrize("name", names())
 def test_every_template(workspace: Path, name: str) -> None:
-    from irsim.templates import load
+    from irsim.bundled.templates import load
 
     run = recorded(load(name).text, steps=5)
     head, columns = unpacked(packing.pack_run(run).data)

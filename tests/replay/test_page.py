@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 import irsim
 from irsim.cli.app import app
-from irsim.files import TargetError
-from irsim.replay.page import bundle, page
+from irsim.common.files import TargetError
 from irsim.runs import Run, RunError
+from irsim.runs.replay.page import bundle, page
 from tests.replay.conftest import HOSTILE, recorded, scene
 from tests.replay.reading import data_in, unpacked
 

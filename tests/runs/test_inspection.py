@@ -20,7 +20,7 @@ from irsim.runs import Run, RunError, inspection, open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
 from irsim.runs.recorder import Recorder
-from irsim.runs.replaying import replayed
+from irsim.runs.resimulation import replayed
 from irsim.runs.store import ARTIFACTS
 
 PAIR = """\

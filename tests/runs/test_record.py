@@ -15,11 +15,11 @@ from typer.testing import CliRunner
 import irsim
 from irsim.cli.app import app
 from irsim.env import Env
-from irsim.observers.trace import Trace, record
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import VIEWS, inspect_run
-from irsim.runs.replaying import replayed
+from irsim.runs.resimulation import replayed
+from irsim.simulation.trace import Trace, record
 from tests.runs.test_trace import assert_same
 
 
@@ -101,7 +101,7 @@ def test_texts_are_recorded_too(workspace: Path, room: Path) -> None:
 def test_many_pieces_are_one_trace(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as small:
         small.setattr("irsim.runs.recorder._PIECE", 1)
-        small.setattr("irsim.episode._CHUNK_STEPS", 7)
+        small.setattr("irsim.episodes.episode._CHUNK_STEPS", 7)
         many = open_run(str(irsim.run(room, seed=4, record=True).run_id))
     assert sum(name.startswith("trace-") for name in many.files()) > 5
     one = open_run(str(irsim.run(room, seed=4, record=True).run_id), room.parent)
@@ -135,7 +135,7 @@ def test_scans_are_kept_as_long_as_there_is_room(room: Path, monkeypatch: pytest
 def test_a_record_that_ends_early_says_so_everywhere(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("irsim.runs.recorder._PIECE", 1)
     monkeypatch.setattr("irsim.runs.recorder._MOST_TRACE", 2000)
-    monkeypatch.setattr("irsim.episode._CHUNK_STEPS", 5)
+    monkeypatch.setattr("irsim.episodes.episode._CHUNK_STEPS", 5)
     console = CliRunner()
     shown = console.invoke(app, ["run", str(room), "--seed", "4", "--steps", "30", "--record"]).stdout
     run = open_run("last")

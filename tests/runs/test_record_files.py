@@ -12,11 +12,11 @@ import pytest
 from PIL import Image
 
 import irsim
-from irsim.registry import CUSTOM_BEHAVIORS
-from irsim.replay.data import pack_run
+from irsim.options.registry import CUSTOM_BEHAVIORS
 from irsim.runs import RunError, open_run
 from irsim.runs.inspection import inspect_run
-from irsim.runs.replaying import replayed
+from irsim.runs.replay.data import pack_run
+from irsim.runs.resimulation import replayed
 
 SCENARIO = """\
 world: {width: 10, height: 10, obstacle_map: pictures/rooms.png, time_limit: 12}

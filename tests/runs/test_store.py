@@ -230,7 +230,7 @@ def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any
 def test_a_run_with_a_piece_missing_is_refused(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as small:
         small.setattr("irsim.runs.recorder._PIECE", 1)
-        small.setattr("irsim.episode._CHUNK_STEPS", 7)
+        small.setattr("irsim.episodes.episode._CHUNK_STEPS", 7)
         run_id = str(irsim.run(room, seed=4, record=True).run_id)
     read_all(run_id)
     folder = runs_folder() / run_id

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from irsim.env import Env
-from irsim.observers.trace import Trace, joined, next_rows, present_row, record
-from irsim.scenario.opening import or_raise
+from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
-from irsim.simulation import Simulation
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import Trace, joined, next_rows, present_row, record
 
 TEXT = """\
 world: {width: 10, height: 10, collision_mode: stop}

@@ -215,7 +215,7 @@ def test_tags_construct_nothing(tmp_path: Path) -> None:
 
 
 def test_control_characters_do_not_reach_the_terminal() -> None:
-    from irsim.scenario.report import format_diagnostics
+    from irsim.diagnostics.report import format_diagnostics
 
     text = 'world: {widht: 3, name: "\u009b31m"}  # \x1b[2J\n'
     reading = read(text)

@@ -12,12 +12,12 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from irsim.diagnostics import format_path
-from irsim.scenario.compose import compose
+from irsim.diagnostics.diagnostic import format_path
+from irsim.diagnostics.report import format_diagnostics
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.model.json_schema import INEXPRESSIBLE, json_schema
 from irsim.scenario.read import read
-from irsim.scenario.report import format_diagnostics
-from irsim.scenario.schema import INEXPRESSIBLE, json_schema
+from irsim.scenario.yaml.compose import compose
 
 FILES = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
 LATER = ("not-yet-simulated", "default-state")

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import irsim
-from irsim import registry
+from irsim.options import registry
 from irsim.scenario.read import read
 
 ROOT = Path(__file__).parent.parent.parent

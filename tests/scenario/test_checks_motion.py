@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import irsim
-from irsim import _core as core
-from irsim.scenario.extent import inner_disc, segment_gap, thickness
+import irsim._core as core
+from irsim.components.shapes.polygon import Polygon
+from irsim.components.shapes.rectangle import Rectangle
 from irsim.scenario.read import read
-from irsim.shapes.polygon import Polygon
-from irsim.shapes.rectangle import Rectangle
+from irsim.scenario.resolve.body_size import inner_disc, segment_gap, thickness
 
 BASE = {
     "kinematics": {"name": "diff"},
@@ -169,7 +169,7 @@ def test_finds(data: Any, code: str) -> None:
     assert len(found) == 1, reading.diagnostics
     assert found[0].severity in ("warning", "hint")
     assert found[0].fix
-    assert code in irsim.codes.CODES
+    assert code in irsim.diagnostics.codes.CODES
 
 
 @pytest.mark.parametrize("data", SANE, ids=range(len(SANE)))

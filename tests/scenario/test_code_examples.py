@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 import yaml
 
-from irsim.code_examples import EXAMPLES
-from irsim.codes import CODES
+from irsim.diagnostics.codes import CODES
+from irsim.diagnostics.examples import EXAMPLES
 from irsim.scenario.read import read
-from irsim.survey import survey
+from irsim.validation.feasibility import survey
 
 ROBOT = {
     "kinematics": {"name": "diff"},

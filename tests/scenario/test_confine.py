@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from irsim.diagnostics import format_path
-from irsim.registry import REGISTRIES
-from irsim.scenario.confine import why_outside
+from irsim.diagnostics.diagnostic import format_path
+from irsim.options.registry import REGISTRIES
 from irsim.scenario.limits import Limits
-from irsim.scenario.load import load_path, load_text
+from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.read import read
+from irsim.scenario.yaml.document import load_path, load_text
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes of POSIX")
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from irsim.colors import CYCLE
-from irsim.scenario.objects import ObjectRecord, ResolvedScenario
+from irsim.options.colors import CYCLE
 from irsim.scenario.read import read
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
 DIFF = {"kinematics": {"name": "diff"}}
 

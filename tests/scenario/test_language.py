@@ -12,11 +12,11 @@ from typing import Any
 import pytest
 from pydantic import BaseModel
 
-from irsim import registry
-from irsim._options import field_docs
-from irsim.kinematics._options import CustomKinematics
-from irsim.registry import Registry
-from irsim.scenario.model import Entry, Scenario
+from irsim.components.kinematics._options import CustomKinematics
+from irsim.options import registry
+from irsim.options.base import field_docs
+from irsim.options.registry import Registry
+from irsim.scenario.model.scenario import Entry, Scenario
 from irsim.scenario.read import read
 
 COMPLETE = """

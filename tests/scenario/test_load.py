@@ -12,11 +12,11 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.scenario import compose as compose_module
-from irsim.scenario.compose import compose
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.load import load_data, load_path, load_text
-from irsim.scenario.nodes import Mark
+from irsim.scenario.yaml import compose as compose_module
+from irsim.scenario.yaml.compose import compose
+from irsim.scenario.yaml.document import load_data, load_path, load_text
+from irsim.scenario.yaml.nodes import Mark
 
 SCALARS = [
     "1", "-1", "+3", "0", "1_000", "0x1F", "0b101", "1.5", "-.5", "1.", "1.0e+3", "1.5e-3", "1e3", "1.0e3", ".inf",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.errors import ScenarioNotFoundError
+from irsim.diagnostics.errors import ScenarioNotFoundError
 from irsim.scenario.locate import default_name, locate
 
 

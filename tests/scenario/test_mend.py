@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from irsim.scenario.comments import comments
-from irsim.scenario.mend import mend
+from irsim.scenario.autofix import mend
+from irsim.scenario.yaml.comments import comments
 
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.yaml"))
 

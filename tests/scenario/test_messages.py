@@ -9,16 +9,16 @@ from typing import Any
 import pytest
 
 import irsim
-from irsim.codes import CODES
-from irsim.diagnostics import Diagnostic, format_path
-from irsim.scenario.compose import compose
+from irsim.diagnostics.codes import CODES
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.diagnostics.report import format_diagnostics
+from irsim.scenario.autofix import mend
 from irsim.scenario.limits import DEFAULT_LIMITS
-from irsim.scenario.mend import mend
-from irsim.scenario.numerals import read_number
+from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.read import read
-from irsim.scenario.repair import applied
-from irsim.scenario.report import format_diagnostics
-from irsim.scenario.wording import flow, number, shown
+from irsim.scenario.yaml.compose import compose
+from irsim.scenario.yaml.edits import applied
+from irsim.scenario.yaml.formatting import flow, number, shown
 
 BAD = sorted((Path(__file__).parent.parent / "bad").glob("*.yaml"))
 PACKAGE = Path(irsim.__file__).parent

@@ -8,10 +8,10 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.scenario.model import Entry, Scenario, WorldModel
-from irsim.scenario.plot import ObjectPlot
+from irsim.diagnostics.report import format_diagnostics
+from irsim.scenario.model.plot import ObjectPlot
+from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
 from irsim.scenario.read import Reading, read
-from irsim.scenario.report import format_diagnostics
 
 KEYS = sorted(
     {*Scenario.model_fields, *Entry.model_fields, *WorldModel.model_fields, *list(ObjectPlot.model_fields)[:8]}

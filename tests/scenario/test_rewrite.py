@@ -9,9 +9,9 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.diagnostics import Edit
-from irsim.scenario.repair import applied
-from irsim.scenario.rewrite import rewritten, yaml_flow
+from irsim.diagnostics.diagnostic import Edit
+from irsim.scenario.yaml.edits import applied
+from irsim.scenario.yaml.rewrite import rewritten, yaml_flow
 
 TEXT = """\
 # a scene

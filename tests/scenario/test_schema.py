@@ -14,12 +14,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from irsim.registry import REGISTRIES
-from irsim.scenario import schema as schema_module
-from irsim.scenario.compose import compose
+from irsim.options.registry import REGISTRIES
 from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.model import json_schema as schema_module
+from irsim.scenario.model.json_schema import INEXPRESSIBLE, check, json_schema, schema_text
 from irsim.scenario.read import read
-from irsim.scenario.schema import INEXPRESSIBLE, check, json_schema, schema_text
+from irsim.scenario.yaml.compose import compose
 
 ROOT = Path(__file__).parent.parent.parent
 VALID = sorted(ROOT.glob("templates/*/scenario.yaml")) + sorted(ROOT.glob("tests/parity/scenarios/*.yaml"))
@@ -125,7 +125,7 @@ def test_offers_every_feature() -> None:
 
 
 def test_names_registered_by_user_code_are_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    from irsim import registry
+    from irsim.options import registry
 
     data = {"robot": {"kinematics": {"name": "diff"}, "behavior": {"name": "zigzag", "width": 2}}}
     assert not validator().is_valid(data)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from irsim.scenario.read import read
-from irsim.scenario.spread import is_per_object, kind_of, spread
+from irsim.scenario.resolve.per_object import is_per_object, kind_of, spread
 
 numbers = st.floats(allow_nan=False) | st.integers() | st.booleans()
 vectors = st.lists(numbers, max_size=4)

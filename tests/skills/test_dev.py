@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from irsim import _core as core
-from irsim import codes
-from irsim.registry import REGISTRIES
+import irsim._core as core
+from irsim.diagnostics import codes
+from irsim.options.registry import REGISTRIES
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
 
 SKILL = ROOT / "skills" / "irsim-dev"
@@ -207,14 +207,19 @@ def touched(folder: Path) -> tuple[int, dict[str, list[str]]]:
 
 
 def test_the_script_names_the_steps_a_change_needs(tmp_path: Path) -> None:
-    for name in ("irsim/core/step.cpp", "irsim/behaviors/dash.py", "tests/core/test_dash.py", "CHANGELOG.md"):
+    for name in (
+        "irsim/core/step.cpp",
+        "irsim/components/behaviors/dash.py",
+        "tests/core/test_dash.py",
+        "CHANGELOG.md",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("1\n", encoding="utf-8")
     git(tmp_path, "init", "-q")
     git(tmp_path, "add", "-A")
     git(tmp_path, "commit", "-qm", "x")
     assert touched(tmp_path) == (0, {"changed": [], "steps": [], "missing": []})
-    (tmp_path / "irsim/behaviors/new.py").write_text("1\n", encoding="utf-8")
+    (tmp_path / "irsim/components/behaviors/new.py").write_text("1\n", encoding="utf-8")
     code, told = touched(tmp_path)
     assert code == 1
     assert told["missing"] == ["a test", "a line in CHANGELOG.md"]

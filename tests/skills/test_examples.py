@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 import irsim
-from irsim import templates
+from irsim.bundled import templates
 from tests.skills.conftest import EXAMPLES, SKILL, execute, fences
 
 RESULT = re.compile(r"`irsim run scenario\.yaml --seed (\d+)` ends in \*\*(\w+)\*\* after ([\d.]+) s")

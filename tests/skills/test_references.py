@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from irsim.lookup.gaps import find_gaps
 from irsim.lookup.reference import main, out_of_date
-from irsim.registry import REGISTRIES
-from irsim.scenario.schema import json_schema
+from irsim.lookup.unsupported import find_gaps
+from irsim.options.registry import REGISTRIES
+from irsim.scenario.model.json_schema import json_schema
 
 REFERENCES = Path(__file__).resolve().parents[2] / "skills" / "irsim-scenario" / "references"
 PAGE_OF = {

@@ -172,7 +172,7 @@ def test_the_assumptions_in_the_replies_are_those_of_the_files(name: str) -> Non
 
 def test_what_it_names_exists() -> None:
     from irsim.env import Env
-    from irsim.views import ObjectView
+    from irsim.objects.view import ObjectView
 
     for name in re.findall(r"`env\.(\w+)", BODY):
         assert hasattr(Env, name) or name in ("seed", "scenario"), name

@@ -16,7 +16,7 @@ from irsim_mcp.server import build_server
 from mcp import Client
 
 import irsim
-from irsim.codes import CODES, TOOL_CODES
+from irsim.diagnostics.codes import CODES, TOOL_CODES
 from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
 
 _, BODY = parts()

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim import _core as core
-from irsim.diagnostics import Diagnostic
+import irsim._core as core
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.scenario.read import read
-from irsim.survey import survey
-from irsim.survey.barriers import barriers_of
-from irsim.survey.scenes import FAR, Scene
+from irsim.validation.feasibility import survey
+from irsim.validation.feasibility.gaps import barriers_of
+from irsim.validation.feasibility.scenes import FAR, Scene
 
 ROBOT = {"kinematics": {"name": "diff"}, "behavior": {"name": "follow"}, "state": [5, 5, 0]}
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim.diagnostics import Diagnostic
+from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.env import Env
 from irsim.scenario.read import read
-from irsim.survey import survey
+from irsim.validation.feasibility import survey
 
 ROOT = Path(__file__).parents[2]
 SCENARIOS = [*ROOT.glob("templates/*/scenario.yaml"), *ROOT.glob("tests/parity/scenarios/*.yaml")]

@@ -3,9 +3,9 @@
 import pytest
 import yaml
 
-from irsim.templates import Template, TemplateError, fill, parse_settings
-from irsim.templates.expressions import evaluate
-from irsim.templates.fill import parse_path, replace_values
+from irsim.bundled.templates import Template, TemplateError, fill, parse_settings
+from irsim.bundled.templates.expressions import evaluate
+from irsim.bundled.templates.fill import parse_path, replace_values
 
 TEXT = """\
 # a room

@@ -12,9 +12,10 @@ import yaml
 from PIL import Image
 
 import irsim
-from irsim import resources, templates
-from irsim.templates import Template
-from irsim.templates.expressions import names_in
+from irsim.bundled import templates
+from irsim.bundled.templates import Template
+from irsim.bundled.templates.expressions import names_in
+from irsim.common import data_files as resources
 
 ALL = templates.names()
 MODELINE = "# yaml-language-server: $schema=../../schema/scenario.schema.json"

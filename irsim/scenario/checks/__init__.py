@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from irsim.scenario.checks import (
     behaviors,
-    crowding,
     files,
     goals,
     groups,
-    jumps,
     kinematics,
     magnitude,
     maps,
@@ -18,12 +16,20 @@ from irsim.scenario.checks import (
     placement,
     sensors,
     shapes,
-    simulated,
     units,
     world,
 )
+from irsim.scenario.checks import (
+    random_placement as crowding,
+)
+from irsim.scenario.checks import (
+    tunneling as jumps,
+)
+from irsim.scenario.checks import (
+    unsupported as simulated,
+)
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding
+from irsim.scenario.messages.findings import Finding
 
 __all__ = ["KEY_CODES", "Context", "run_checks"]
 

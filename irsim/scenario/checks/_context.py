@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from irsim.diagnostics import Path
-from irsim.scenario.findings import Finding
-from irsim.scenario.load import Document
-from irsim.scenario.model import Entry, Scenario
-from irsim.scenario.objects import ObjectRecord, ResolvedScenario
-from irsim.scenario.spread import is_per_object, kind_of
-from irsim.scenario.where import at
-from irsim.vectors import is_vector
+from irsim.diagnostics.diagnostic import Path
+from irsim.options.vectors import is_vector
+from irsim.scenario.messages.findings import Finding
+from irsim.scenario.model.lookup import at
+from irsim.scenario.model.scenario import Entry, Scenario
+from irsim.scenario.resolve.per_object import is_per_object, kind_of
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.scenario.yaml.document import Document
 
 __all__ = ["Context"]
 

@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from irsim.behaviors._options import BehaviorOptions, CustomOptions
-from irsim.diagnostics import Edit, nearest, surely
-from irsim.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
+from irsim.components.behaviors._options import BehaviorOptions, CustomOptions
+from irsim.diagnostics.diagnostic import Edit, nearest, surely
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.where import at
-from irsim.scenario.wording import flow
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.model.lookup import at
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.yaml.formatting import flow
 
 _OWN = (
     "one of the names allowed; a behavior of your own is registered in Python before the scenario is read "

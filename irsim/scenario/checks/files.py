@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path as FilePath
 from typing import Any
 
-from irsim.diagnostics import Edit, Path, nearest
+from irsim.diagnostics.diagnostic import Edit, Path, nearest
 from irsim.scenario.checks._context import Context
-from irsim.scenario.confine import why_outside
-from irsim.scenario.findings import Finding, error, warning
-from irsim.scenario.images import BUNDLED, image_places
-from irsim.scenario.wording import shown
+from irsim.scenario.messages.findings import Finding, error, warning
+from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.resolve.images import BUNDLED, image_places
+from irsim.scenario.yaml.formatting import shown
 
 
 def check(context: Context) -> Iterator[Finding]:

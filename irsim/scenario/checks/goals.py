@@ -7,19 +7,19 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.behaviors._options import CustomOptions
-from irsim.diagnostics import Edit, Path
-from irsim.registry import KINEMATICS
+from irsim.components.behaviors._options import CustomOptions
+from irsim.diagnostics.diagnostic import Edit, Path
+from irsim.options.registry import KINEMATICS
+from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
-from irsim.scenario.expand import DEFAULT_GOAL, DEFAULT_STATE, SPREAD_KEYS
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.model import Entry
-from irsim.scenario.numerals import decimal_commas
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.spread import is_per_object, kind_of
-from irsim.scenario.where import at
-from irsim.scenario.wording import flow
-from irsim.vectors import is_vector
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.messages.number_text import decimal_commas
+from irsim.scenario.model.lookup import at
+from irsim.scenario.model.scenario import Entry
+from irsim.scenario.resolve.expand import DEFAULT_GOAL, DEFAULT_STATE, SPREAD_KEYS
+from irsim.scenario.resolve.per_object import is_per_object, kind_of
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.yaml.formatting import flow
 
 _TURN = 6.3
 _OF_GROUND = 0.5

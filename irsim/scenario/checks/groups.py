@@ -6,13 +6,13 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.behaviors._options import CustomOptions
-from irsim.behaviors.sfm import Sfm
-from irsim.diagnostics import Edit
-from irsim.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.components.behaviors._options import CustomOptions
+from irsim.components.behaviors.sfm import Sfm
+from irsim.diagnostics.diagnostic import Edit
+from irsim.options.registry import BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.objects import ObjectRecord
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 
 def check(context: Context) -> Iterator[Finding]:

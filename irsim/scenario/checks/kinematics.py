@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.diagnostics import Edit
+from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.wording import flow
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.yaml.formatting import flow
 
 _CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
 _BROADCAST = ("vel_min", "vel_max")  # IR-SIM takes a single number for all components

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from irsim.diagnostics import Path
+from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.findings import Finding, error
+from irsim.scenario.messages.findings import Finding, error
 
 LARGEST = 1e7
 """Metres, or metres per second."""

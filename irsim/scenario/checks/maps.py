@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding
+from irsim.scenario.messages.findings import Finding
 
 
 def check(context: Context) -> Iterator[Finding]:

@@ -7,14 +7,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.behaviors._options import CustomOptions
-from irsim.diagnostics import Edit, Path
+from irsim.components.behaviors._options import CustomOptions
+from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.magnitude import LARGEST
-from irsim.scenario.extent import top_speed
-from irsim.scenario.findings import Finding, hint, warning
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.wording import flow
+from irsim.scenario.messages.findings import Finding, hint, warning
+from irsim.scenario.resolve.body_size import top_speed
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.yaml.formatting import flow
 
 _PASSABLE = ("unobstructed", "reactive")
 _ROUNDS, _MOST_STEPS = 3, 5000

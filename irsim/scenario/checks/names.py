@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from irsim.diagnostics import Edit, nearest, surely
+from irsim.diagnostics.diagnostic import Edit, nearest, surely
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error
+from irsim.scenario.messages.findings import Finding, error
 
 
 def check(context: Context) -> Iterator[Finding]:

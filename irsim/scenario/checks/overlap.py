@@ -6,15 +6,15 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim import _core as core
-from irsim.maps._grid import MapCells, Walls
-from irsim.registry import SHAPES
+import irsim._core as core
+from irsim.components.maps._grid import MapCells, Walls
+from irsim.options.registry import SHAPES
+from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
-from irsim.scenario.extent import parts_of
-from irsim.scenario.findings import Finding, hint, warning
-from irsim.scenario.model import Entry
-from irsim.scenario.objects import ObjectRecord
-from irsim.vectors import is_vector
+from irsim.scenario.messages.findings import Finding, hint, warning
+from irsim.scenario.model.scenario import Entry
+from irsim.scenario.resolve.body_size import parts_of
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MOST_REPORTED = 20
 _MOST_PAIRS = 300_000

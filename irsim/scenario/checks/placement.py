@@ -7,12 +7,12 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.diagnostics import Path
+from irsim.diagnostics.diagnostic import Path
+from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.model import Entry
-from irsim.scenario.objects import ObjectRecord
-from irsim.vectors import is_vector
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.model.scenario import Entry
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 _NEAR = 1e-9
 _MOST_ALIKE = 50

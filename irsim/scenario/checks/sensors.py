@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.angles import FULL_TURN, is_span
-from irsim.diagnostics import Path
+from irsim.diagnostics.diagnostic import Path
+from irsim.options.angles import FULL_TURN, is_span
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of
-from irsim.scenario.findings import Finding, error, hint, warning
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.where import at
+from irsim.scenario.messages.findings import Finding, error, hint, warning
+from irsim.scenario.model.lookup import at
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
+from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MOST_CELLS = 16_000_000
 _USUAL_CELL = 0.1

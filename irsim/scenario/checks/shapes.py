@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from irsim.diagnostics import Edit, Path
+from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks._outline import crosses_itself, repaired
-from irsim.scenario.expand import DEFAULT_RADIUS
-from irsim.scenario.findings import Finding, error, hint
-from irsim.scenario.wording import flow
+from irsim.scenario.messages.findings import Finding, error, hint
+from irsim.scenario.resolve.expand import DEFAULT_RADIUS
+from irsim.scenario.yaml.formatting import flow
 
 _RANGES = (
     "radius_range",

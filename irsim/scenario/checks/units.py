@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from irsim.diagnostics import Path
+from irsim.diagnostics.diagnostic import Path
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
-from irsim.scenario.extent import has_fixed_shape, inner_disc, parts_of, top_speed
-from irsim.scenario.findings import Finding, hint, warning
-from irsim.scenario.objects import ObjectRecord
-from irsim.scenario.wording import flow
+from irsim.scenario.messages.findings import Finding, hint, warning
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, top_speed
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.scenario.yaml.formatting import flow
 
 _TURN = 6.3
 _FASTEST_TURN = 20.0

@@ -10,9 +10,9 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.labels import labels_of, seeds_of
+from irsim.common.text import clean
+from irsim.results.labels import labels_of, seeds_of
 from irsim.runs.store import RESULT
-from irsim.text import clean
 from irsim_mcp.episodes import again
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import PARTIAL

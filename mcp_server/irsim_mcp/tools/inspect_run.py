@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.episodes import check_finished, episodes_table
 from irsim_mcp.errors import failure
 from irsim_mcp.services import RunId, Services

@@ -8,8 +8,8 @@ from mcp.server.mcpserver import Context
 from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
-from irsim.strips import FEWEST, MOST
-from irsim.text import clean
+from irsim.api.film_strip import FEWEST, MOST
+from irsim.common.text import clean
 from irsim_mcp.errors import failure
 from irsim_mcp.limits import STEPS
 from irsim_mcp.progress import reporter

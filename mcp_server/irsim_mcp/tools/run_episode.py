@@ -8,7 +8,7 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.limits import RUN_SECONDS, STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.replay_page import PAGE

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.changes.keys import place
-from irsim.text import clean, kinds, pair, seconds
+from irsim.common.text import clean, kinds, pair, seconds
+from irsim.validation.diff.keys import place
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.whole import whole

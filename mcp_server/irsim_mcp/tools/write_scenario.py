@@ -8,7 +8,7 @@ import anyio.to_thread
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.text import clean
+from irsim.common.text import clean
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
 from irsim_mcp.writing import write_file

@@ -17,12 +17,15 @@ import subprocess
 import sys
 from pathlib import Path
 
-MODELS = r"irsim/(behaviors|sensors|kinematics|shapes|distributions|maps|planners|scenario)/[^_].*\.py"
+MODELS = r"irsim/(components|scenario/model)/(.*/)?[^_].*\.py"
 MOST = 200  # files told by name
 STEPS = (
     (r"irsim/core/.*\.(cpp|hpp)|.*\.cmake", "pip install -e ."),
     (MODELS, "irsim schema"),
-    (rf"{MODELS}|irsim/codes\.py|irsim/lookup/.*|irsim/env.*|irsim/metrics/.*", "python -m irsim.lookup.reference"),
+    (
+        rf"{MODELS}|irsim/diagnostics/codes\.py|irsim/lookup/.*|irsim/env.*|irsim/metrics/.*",
+        "python -m irsim.lookup.reference",
+    ),
     (r"irsim/cli/.*", "python -m irsim.cli.overview README.md"),
     (r"mcp_server/.*", "python tests/mcp/golden/write.py"),
     (r".*\.py", "ruff format . && ruff check . && mypy"),

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import irsim
-from irsim.episode import default_time_limit
+from irsim.episodes.episode import default_time_limit
 
 MOST = 100  # episodes told one by one, and collisions of an episode
 

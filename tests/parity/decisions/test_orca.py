@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import DRIVES, circle, obstacle, polygon, robot, scene
 
 RECORDED = dict(np.load(Path(__file__).with_name("orca.npz")))

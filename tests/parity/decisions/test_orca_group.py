@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from irsim.scenario.opening import or_raise
+from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
-from irsim.simulation import Simulation
+from irsim.simulation.simulation import Simulation
 from tests.parity.decisions.orca_group_record import FILE, scenario
 
 RECORDED = dict(np.load(FILE))

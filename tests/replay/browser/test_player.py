@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import irsim
-import irsim.replay.data as packing
+import irsim.runs.replay.data as packing
 from irsim.runs import Run, open_run
 from tests.replay.browser.conftest import Watched, until
 from tests.replay.conftest import HOSTILE, recorded, scene
@@ -503,7 +503,7 @@ def test_long_lists_of_events_move_along(crowd: Path, watched: Watched) -> None:
 
 
 def test_an_empty_page_says_so(workspace: Path, watched: Watched) -> None:
-    from irsim.replay.page import page
+    from irsim.runs.replay.page import page
 
     (workspace / "empty.html").write_text(page())
     watched.page.goto((workspace / "empty.html").as_uri())

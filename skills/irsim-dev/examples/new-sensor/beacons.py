@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from irsim.registry import SENSORS
-from irsim.sensors._options import SensorOptions
-from irsim.units import Meters
+from irsim.components.sensors._options import SensorOptions
+from irsim.options.registry import SENSORS
+from irsim.options.units import Meters
 
 
 class Beacons(SensorOptions):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import irsim
-from irsim import _core as core
+import irsim._core as core
 from tests.core.worlds import DRIVES, robot, scene
 
 EASE = core.EaseOptions(slow_radius=2.0)

@@ -1,0 +1,114 @@
+"""What a snapshot shows besides bodies: plot keys, free space, and the ways that robots would take."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import TYPE_CHECKING, Literal
+
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.graphics.scene.scene import Floats
+    from irsim.rendering.planned_paths import Planned
+    from irsim.rendering.snapshot import Extra
+    from irsim.results.results import RobotPlan
+
+__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
+
+Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
+OVERLAYS: dict[Overlay, tuple[str, ...]] = {
+    "names": ("show_text", "show_goal_text"),
+    "goals": ("show_goal",),
+    "paths": ("show_trajectory",),
+    "sensors": ("show_sensor",),
+    "clearance": (),
+    "plan": (),
+}
+"""What a snapshot may show besides bodies, and the plot keys that switch it."""
+
+
+def overlays_from(words: Iterable[str]) -> list[Overlay]:
+    """Overlays by name.
+
+    Raises:
+        ArgumentError: One has no such name.
+    """
+    known: dict[str, Overlay] = {name: name for name in OVERLAYS}
+    asked = [word.strip() for word in words if word.strip()]
+    unknown = next((word for word in asked if word not in known), None)
+    if unknown is not None:
+        near = nearest(unknown, OVERLAYS)
+        fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
+        raise ArgumentError(f"there is no overlay {clean(unknown, 40)!r}", fix)
+    return [known[word] for word in asked]
+
+
+def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
+    """Plot keys over those of objects; none if nothing is said about overlays."""
+    if overlays is None:
+        return {}
+    shown = set(overlays)
+    return {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
+
+
+def planned(env: Env, overlays: Collection[Overlay] | None) -> list[Planned]:
+    """The ways of the robots of an environment, if they are asked for."""
+    if not overlays or "plan" not in overlays:
+        return []
+    from irsim.rendering.planned_paths import plans
+
+    return plans(env.simulation, routes=_routes(env))
+
+
+def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned]) -> Extra:
+    """Draws what no plot key switches."""
+    from irsim.graphics.scene.scene import Scene
+    from irsim.rendering.clearance_map import draw_clearance
+    from irsim.rendering.planned_paths import draw_plans
+
+    def add(scene: Scene) -> None:
+        if overlays and "clearance" in overlays:
+            draw_clearance(scene, env.simulation)
+        draw_plans(scene, ways)
+
+    return add
+
+
+def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
+    """The ways in numbers."""
+    from irsim.results.results import RobotPlan
+
+    labels = {view.id: view.abbr for view in env.robot_list}
+    return [
+        RobotPlan(
+            name=way.name,
+            label=labels[way.robot],
+            own=way.own,
+            length=way.length,
+            margin=None if way.margin == float("inf") else way.margin,
+            tightest=way.tightest,
+            lost=way.lost,
+        )
+        for way in ways
+    ]
+
+
+def _routes(env: Env) -> dict[int, Floats | None]:
+    """What robots that plan for themselves have planned, or will in their first step, by id."""
+    following = [record for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"]
+    if not following:
+        return {}
+    ahead = env
+    if int(env.simulation.count[0]) == 0:
+        from irsim.env import Env
+
+        ahead = Env(env.scenario, seed=env.seed, headless=True, log_level="ERROR")
+        ahead.step()
+    places = {view.id: view.row for view in ahead.robot_list}
+    routes = {record.id: ahead.simulation.state.route(places[record.id]) for record in following if record.id in places}
+    if ahead is not env:
+        ahead.end(ending_time=0.0)
+    return routes

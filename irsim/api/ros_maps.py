@@ -1,0 +1,163 @@
+"""Maps of the ROS map server, to scenarios and back."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from irsim.common.files import check_suffix, write_new
+from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of, ros_raster
+from irsim.components.maps._site import MapProblem, MapSite
+from irsim.diagnostics.errors import IrsimError
+from irsim.objects.obstacle_map import grid_values
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.modeline import with_modeline
+from irsim.simulation.random_streams import fresh_seed
+from irsim.simulation.simulation import Simulation
+
+__all__ = ["MODES", "MapFileError", "MapFiles", "export_map", "import_map"]
+
+Floats = NDArray[np.float64]
+_SQUARE = 1e-6
+
+
+class MapFileError(IrsimError, ValueError):
+    """A map that cannot be read or written.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
+    """
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = code
+
+
+@dataclass(frozen=True)
+class MapFiles:
+    """What was written.
+
+    Attributes:
+        files: The files.
+        columns, rows: Cells along x and y.
+        resolution: Side of a cell [m].
+        origin: Lower left corner [m].
+        occupied: Number of occupied cells.
+    """
+
+    files: list[str]
+    columns: int
+    rows: int
+    resolution: float
+    origin: tuple[float, float]
+    occupied: int
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return dict(self.__dict__)
+
+
+def import_map(file: str | Path, out: str | Path, *, unknown: str = "free", overwrite: bool = False) -> MapFiles:
+    """Write a scenario, and a picture beside it, from a map of the ROS map server.
+
+    Args:
+        file: The map's YAML file.
+        out: Scenario file to write; the picture has its name with ``.png``.
+        unknown: What cells count as that are neither: ``free`` or ``occupied``.
+        overwrite: Replace files that exist.
+
+    Raises:
+        MapFileError: The map cannot be read; TargetError: a file is in the way.
+    """
+    source, target = Path(file), Path(out)
+    check_suffix(target, (".yaml", ".yml"))
+    try:
+        site = MapSite(folders=[Path()])
+        raster = ros_raster(site.find(str(source)), source.name, site, 100.0 if unknown == "occupied" else 0.0)
+    except MapProblem as problem:
+        raise MapFileError(problem.code, problem.message) from None
+    assert raster.width is not None
+    assert raster.height is not None
+    assert raster.origin is not None
+    values, picture = raster.values(), target.with_suffix(".png")
+    nx, ny = values.shape
+    text = (
+        "world:\n"
+        f"  width: {raster.width!r}\n  height: {raster.height!r}\n"
+        f"  offset: [{raster.origin[0]!r}, {raster.origin[1]!r}]\n"
+        f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}\n"
+    )
+    _refuse(picture, overwrite)
+    write_new(target, with_modeline(text, target), overwrite=overwrite)
+    grey = np.round(255 * (1 - values / 100)).astype(np.uint8)
+    Image.fromarray(np.ascontiguousarray(grey[:, ::-1].T)).save(picture, optimize=True)
+    occupied = int((values > 50).sum())
+    return MapFiles([str(target), str(picture)], nx, ny, raster.width / nx, raster.origin, occupied)
+
+
+def export_map(
+    scenario: ResolvedScenario,
+    out: str | Path,
+    *,
+    mode: str = "trinary",
+    image: str = "pgm",
+    seed: int | None = None,
+    overwrite: bool = False,
+) -> MapFiles:
+    """Write the map of a scenario for the ROS map server.
+
+    Args:
+        scenario: With a map.
+        out: YAML file to write; the picture has its name.
+        mode: ``trinary``, ``scale`` or ``raw``.
+        image: ``pgm`` or ``png``.
+        seed: Of a map that is drawn per scene; default: the scenario's.
+        overwrite: Replace files that exist.
+
+    Raises:
+        MapFileError: There is no map; TargetError: a file is in the way.
+    """
+    target = Path(out)
+    check_suffix(target, (".yaml", ".yml"))
+    if scenario.grid is None:
+        raise MapFileError("no-map", "this scenario has no 'world.obstacle_map' to export")
+    if scenario.grid.raster is None:
+        chosen = seed if seed is not None else scenario.world.seed
+        values = grid_values(Simulation(scenario, [fresh_seed() if chosen is None else chosen]))
+        assert values is not None
+    else:
+        values = scenario.grid.values()
+    values, side = _square(values, scenario.grid.cell)
+    picture = target.with_suffix(f".{image}")
+    meta = RosMeta(picture.name, side, (*scenario.grid.origin, 0.0), mode=mode)
+    _refuse(picture, overwrite)
+    write_new(target, meta.as_yaml(), overwrite=overwrite)
+    Image.fromarray(np.ascontiguousarray(pixels_of(values, meta))).save(picture)
+    nx, ny = values.shape
+    occupied = int((values > 50).sum())
+    return MapFiles([str(target), str(picture)], nx, ny, side, scenario.grid.origin, occupied)
+
+
+def _square(values: Floats, cell: tuple[float, float]) -> tuple[Floats, float]:
+    """The grid with square cells as small as the smaller side, which the map server wants."""
+    side = min(cell)
+    if max(cell) <= side * (1 + _SQUARE):
+        return values, side
+    size = [max(1, round(n * c / side)) for n, c in zip(values.shape, cell, strict=True)]
+    i, j = (
+        np.minimum(((np.arange(n) + 0.5) * side / c).astype(np.int64), have - 1)
+        for n, c, have in zip(size, cell, values.shape, strict=True)
+    )
+    return values[np.ix_(i, j)], side
+
+
+def _refuse(picture: Path, overwrite: bool) -> None:
+    if not overwrite and os.path.lexists(picture):
+        raise MapFileError("file-exists", f"{picture} exists; --force overwrites it, -o names another file")

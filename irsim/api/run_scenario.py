@@ -1,0 +1,260 @@
+"""``irsim.validate``, ``irsim.run`` and ``irsim.render``: what the CLI, Python and MCP share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from irsim.api.take_snapshot import snapshot, snapshot_of
+from irsim.common.arguments import whole
+from irsim.common.files import check_suffix
+from irsim.env import Env
+from irsim.episodes.episode import (
+    Progress,
+    advance,
+    default_time_limit,
+    horizon_of,
+    import_modules,
+    read_scenario,
+    seed_of,
+)
+from irsim.episodes.run_report import command, region_words, run_result
+from irsim.results.results import RenderResult, RunResult, SnapshotResult
+from irsim.runs.recorder import Recorder, recording
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.validation.validate import diff, fix, validate
+
+__all__ = [
+    "default_time_limit",
+    "diff",
+    "fix",
+    "import_modules",
+    "read_scenario",
+    "render",
+    "run",
+    "snapshot",
+    "validate",
+]
+
+VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
+
+
+def run(
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    seed: int | None = None,
+    steps: int | None = None,
+    strict: bool = False,
+    behavior: str | Mapping[str, Any] | None = None,
+    imports: Sequence[str] = (),
+    save: str | Path | None = None,
+    show: bool = False,
+    record: bool | str | Path = False,
+    recorded: Callable[[str], None] | None = None,
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> RunResult:
+    """Simulate one episode, until every robot has arrived or stopped, or the horizon is reached.
+
+    Args:
+        path: Scenario file.
+        text: Or its text.
+        seed: Over the file's; with neither, fresh entropy (reported), or 0 where nothing is random.
+        steps: Horizon in steps, over ``world.time_limit``.
+        strict: Refuse what IR-SIM would ignore.
+        behavior: What every robot follows instead of its own: a name, or a mapping with options (in Python or as YAML
+            text, such as ``{name: orca, timeHorizon: 5}``).
+        imports: Modules to import first, for behaviors they register.
+        save: Also write an animation here (gif, mp4, apng, …).
+        show: Also show it live in a window.
+        record: Also keep everything that happens: True for a folder below ``.irsim/runs`` of the current directory,
+            where it is let go 24 hours after its last use; or a new folder to keep it in. :func:`irsim.runs.open_run`
+            reads it.
+        recorded: Told the id of the record as soon as that has begun.
+        limits: Limits of the loader and of the run.
+        progress: Told how far it is.
+
+    Raises:
+        ScenarioError: The file cannot be used; ScenarioNotFoundError: there is none.
+        OverLimitError: More steps are asked for than the limits allow.
+        BenchmarkError: There is no such behavior.
+        ArgumentError: The steps are no whole number.
+        RunError: The folder to record into holds something already.
+        ValueError: Neither or both of ``path`` and ``text``.
+    """
+    import_modules(imports)
+    told = _as_text(behavior)
+    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=told)
+    chosen = seed_of(scenario, seed)
+    env = Env(scenario, seed=chosen, display=show, headless=save is None and not show, log_level="ERROR")
+    horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+    options = {"strict": strict, "imports": list(imports), **({} if told is None else {"behavior": told})}
+    with recording(env, path, record, horizon=horizon, options=options) as recorder:
+        if recorder is not None and recorded is not None:
+            recorded(recorder.run_id)
+        if save is None and not show:
+            advance(env, horizon, progress, recorder=recorder)
+            files: list[str] = []
+        else:
+            files = _animate(env, horizon, Path(save) if save is not None else None, progress, recorder)
+        result = run_result(
+            env,
+            path,
+            horizon=horizon,
+            source=source,
+            warnings=warnings,
+            files=files,
+            imports=imports,
+            strict=strict,
+            behavior=told,
+        )
+        if recorder is not None:
+            recorder.finish(result)
+    env.end(ending_time=0.0)
+    return result
+
+
+def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
+    """A behavior for all robots as a command line has it; None for their own."""
+    if behavior is None:
+        return None
+    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, text_of
+
+    try:
+        text = text_of(behavior)
+    except BenchmarkError as error:
+        error.where = "behavior"
+        raise
+    return None if text == AS_WRITTEN else text
+
+
+def render(
+    path: str | Path,
+    out: str | Path,
+    *,
+    seed: int | None = None,
+    steps: int | None = None,
+    size: int | None = None,
+    region: Sequence[float] | None = None,
+    strip: int | None = None,
+    overlays: Iterable[str] | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> RenderResult:
+    """Draw a scenario: a picture (png, svg, pdf, jpg) after ``steps``, or an animation (gif, mp4, apng) of an episode.
+
+    Args:
+        path: Scenario file.
+        out: File to write; its suffix says what.
+        seed: Over the file's.
+        steps: Steps before the picture (default 0: the start), or the longest an animation goes on.
+        size: Longer side of the picture [px]; default from ``world.plot``.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
+        strip: So many moments on one sheet (png), labelled as snapshots are, evenly from the start to ``steps``
+            (default: of a whole episode).
+        overlays: What to show besides bodies, in a picture (png) labelled as snapshots are: see
+            :data:`irsim.api.overlays.OVERLAYS`.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first.
+        limits: Limits of the loader.
+        progress: Told how far it is.
+
+    Raises:
+        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes, a region that is none, too
+            few or too many moments.
+    """
+    target = Path(out)
+    steps = None if steps is None else whole("steps", steps)
+    import_modules(imports)
+    as_snapshot = strip is not None or overlays is not None
+    if as_snapshot:
+        check_suffix(target, ["png"])
+    scenario, warnings = read_scenario(path, strict=strict, limits=limits)
+    if as_snapshot:
+        sheet = snapshot_of(
+            scenario,
+            path,
+            warnings=warnings,
+            seed=seed,
+            steps=steps or 0 if strip is None else steps,
+            strip=strip,
+            overlays=overlays,
+            size=600 if size is None else size,
+            region=region,
+            strict=strict,
+            limits=limits,
+            progress=progress,
+            imports=imports,
+            out=out,
+        )
+        return _written(sheet, target)
+    animated = target.suffix.lower() in VIDEO_SUFFIXES
+    env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
+    if region is not None:
+        env._env_plot.set_region(region)
+    if size is not None:
+        env._env_plot.set_size(size)
+    if animated:
+        horizon, _ = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
+        files = _animate(env, horizon, target, progress)
+        frames = env._env_plot.frames_written
+    else:
+        advance(env, steps or 0, progress, until_done=False)
+        files, frames = [str(env.save_figure(target.absolute()))], 1
+    sized = [*([] if size is None else ["--size", str(size)]), *region_words(region)]
+    result = RenderResult(
+        scenario=str(path),
+        seed=env.seed,
+        steps=int(env.simulation.count[0]),
+        frames=frames,
+        size=env._env_plot.size,
+        files=files,
+        warnings=warnings,
+        reproduce=command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+    )
+    env.end(ending_time=0.0)
+    return result
+
+
+def _written(sheet: SnapshotResult, target: Path) -> RenderResult:
+    """Write a picture of several moments."""
+    from irsim.graphics.encoding.picture_files import replacing
+
+    with replacing(target) as temporary:
+        temporary.write_bytes(sheet.png)
+    return RenderResult(
+        scenario=sheet.scenario,
+        seed=sheet.seed,
+        steps=sheet.steps,
+        frames=len(sheet.moments),
+        size=sheet.size,
+        files=[str(target.absolute())],
+        warnings=sheet.warnings,
+        reproduce=sheet.reproduce,
+    )
+
+
+def _animate(
+    env: Env, steps: int, save: Path | None, progress: Progress | None, recorder: Recorder | None = None
+) -> list[str]:
+    env.save_ani = save is not None
+    if save is not None:
+        env.ani_kwargs["suffix"] = save.suffix  # how many colours a kept frame needs
+    env.render()
+    for step in range(steps):
+        if env.done():
+            break
+        env.step()
+        if recorder is not None:
+            recorder.look()
+        env.render(env.step_time)
+        if progress is not None:
+            progress(step + 1, steps)
+    if save is None:
+        return []
+    env.save_ani = False
+    return [str(env._env_plot.save_animation(path=save))]

@@ -1,0 +1,1 @@
+"""What ships with the package: the scenario templates and the agent skills."""

@@ -1,0 +1,23 @@
+"""Scenario templates: ready-made files with named parameters.
+
+A template is a folder with two files. ``scenario.yaml`` is a complete scenario, usable as it is; ``template.yaml`` says
+what it is for, which parameters it has, and which values of the scenario follow from them (see :mod:`.metadata`).
+Filling a template replaces those values in the text and nothing else, so comments and layout survive.
+"""
+
+from irsim.bundled.templates.fill import fill, parse_settings
+from irsim.bundled.templates.metadata import Parameter, Template, TemplateError
+from irsim.bundled.templates.store import find, load, load_all, names, scenario_file
+
+__all__ = [
+    "Parameter",
+    "Template",
+    "TemplateError",
+    "fill",
+    "find",
+    "load",
+    "load_all",
+    "names",
+    "parse_settings",
+    "scenario_file",
+]

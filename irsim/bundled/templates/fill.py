@@ -1,0 +1,123 @@
+"""Put parameter values into the text of a template, leaving every other character as it is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import yaml
+
+from irsim.bundled.templates.expressions import evaluate
+from irsim.bundled.templates.metadata import Template, TemplateError
+from irsim.diagnostics.diagnostic import Path
+
+__all__ = ["fill", "format_value", "parse_path", "parse_settings", "replace_values"]
+
+
+def fill(template: Template, given: Mapping[str, Any] | None = None) -> str:
+    """The scenario text of a template with the given parameters.
+
+    Args:
+        template: From :func:`irsim.bundled.templates.load`.
+        given: Some or all parameters; text values are converted.
+
+    Raises:
+        TemplateError: A parameter is unknown or out of range.
+    """
+    values = template.values(dict(given or {}))
+    changes = {parse_path(path): evaluate(expression, values) for path, expression in template.sets.items()}
+    return replace_values(template.text, changes)
+
+
+def replace_values(text: str, changes: Mapping[Path, Any]) -> str:
+    """Replace the values at some paths of a YAML text; values that already equal the new ones keep their spelling.
+
+    Raises:
+        KeyError: A path leads nowhere.
+    """
+    root = yaml.compose(text, Loader=yaml.SafeLoader)
+    pieces: list[tuple[int, int, str]] = []
+    for path, value in changes.items():
+        node = _node_at(root, path)
+        if not _same(_plain(node), value):
+            pieces.append((node.start_mark.index, node.end_mark.index, format_value(value)))
+    for start, end, new in sorted(pieces, reverse=True):
+        text = _splice(text, start, end, new)
+    return text
+
+
+def parse_settings(settings: Iterable[str]) -> dict[str, str]:
+    """``["width=1.6"]`` as ``{"width": "1.6"}``.
+
+    Raises:
+        TemplateError: One of them is not of the form ``KEY=VALUE``.
+    """
+    given = {}
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not (key.strip() and equals and value.strip()):
+            raise TemplateError("bad-parameter", f"{setting!r} is not a setting.", "write KEY=VALUE, as in width=1.6.")
+        given[key.strip()] = value.strip()
+    return given
+
+
+def parse_path(path: str) -> Path:
+    """``robot[0].state[1]`` as ``("robot", 0, "state", 1)``."""
+    return tuple(int(index) if index else name for name, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path))
+
+
+def format_value(value: Any) -> str:
+    """A value as YAML flow text; numbers to 6 decimals, without trailing zeros."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        short = f"{value:.6f}".rstrip("0").rstrip(".")
+        return "0" if short == "-0" else short
+    if isinstance(value, list):
+        return "[" + ", ".join(format_value(item) for item in value) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {format_value(item)}" for key, item in value.items()) + "}"
+    return str(value)
+
+
+def _splice(text: str, start: int, end: int, new: str) -> str:
+    """Replace a span and keep a comment behind it in its column where there is room."""
+    grown = len(new) - (end - start)
+    tail = re.match(r"([^\n#]*?)( +)(?=#)", text[end:])
+    if tail and (grown < 0 or len(tail[2]) > grown + 1):
+        rest = tail[1] + " " * (len(tail[2]) - grown) + text[end + tail.end() :]
+    else:
+        rest = text[end:]
+    return text[:start] + new + rest
+
+
+def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
+    for part in path:
+        if isinstance(node, yaml.MappingNode):
+            node = {key.value: child for key, child in node.value}[str(part)]
+        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
+            node = node.value[part]
+        else:
+            raise KeyError(part)
+    if node is None:
+        raise KeyError(path)
+    return node
+
+
+def _plain(node: yaml.Node) -> Any:
+    constructor = yaml.SafeLoader("")
+    try:
+        return constructor.construct_document(node)
+    finally:
+        constructor.dispose()
+
+
+def _same(old: Any, new: Any) -> bool:
+    if isinstance(old, list) and isinstance(new, list):
+        return len(old) == len(new) and all(_same(a, b) for a, b in zip(old, new, strict=True))
+    if isinstance(old, dict) and isinstance(new, dict):
+        return old.keys() == new.keys() and all(_same(old[key], new[key]) for key in old)
+    if isinstance(old, bool) or isinstance(new, bool) or isinstance(old, str) or isinstance(new, str):
+        return type(old) is type(new) and bool(old == new)
+    return isinstance(old, (int, float)) and isinstance(new, (int, float)) and abs(old - new) < 1e-6

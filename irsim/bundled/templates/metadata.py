@@ -1,0 +1,147 @@
+"""What ``template.yaml`` may say.
+
+::
+
+    title: Corridor passing
+    purpose: Two robots meet head-on between two walls and each keeps to its right.
+    tags: [corridor, hallway, head-on]
+    outcomes: [success]                 # how a run with the default parameters may end
+    parameters:
+      width: {type: number, default: 1.6, min: 1.2, max: 3, unit: m, description: Free width between the walls.}
+    sets:                               # path in scenario.yaml: expression over the parameters
+      obstacle[0].state[1]: 2.5 + width / 2 + 0.15
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import IrsimError
+
+__all__ = ["Outcome", "Parameter", "Template", "TemplateError", "Value"]
+
+Value = bool | int | float | str
+Outcome = Literal["success", "collision", "timeout"]
+
+
+class TemplateError(IrsimError, ValueError):
+    """A template or parameter that cannot be used.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
+        fix: What to write instead, or None.
+    """
+
+    def __init__(self, code: str, message: str, fix: str | None = None) -> None:
+        super().__init__(f"{code}: {message}" + (f" Fix: {fix}" if fix else ""))
+        self.code, self.message, self.fix = code, message, fix
+
+
+class _Metadata(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Parameter(_Metadata):
+    """One named parameter of a template."""
+
+    type: Literal["number", "integer", "boolean", "choice"]
+    default: Value
+    description: str
+    unit: str | None = None
+    min: float | None = None
+    max: float | None = None
+    choices: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Parameter:
+        if (self.type == "choice") != bool(self.choices):
+            raise ValueError("choices belong to parameters of type choice, and those need them")
+        self.check("default", self.default)
+        return self
+
+    def allowed(self) -> str:
+        """What is accepted, in words: ``0.5 to 3 m``."""
+        if self.type == "choice":
+            return ", ".join(self.choices)
+        if self.type == "boolean":
+            return "true, false"
+        unit = f" {self.unit}" if self.unit and self.unit != "1" else ""
+        kind = "an integer" if self.type == "integer" else "a number"
+        if self.min is not None and self.max is not None:
+            return f"{kind} from {self.min:g} to {self.max:g}{unit}"
+        if self.min is not None:
+            return f"{kind}, at least {self.min:g}{unit}"
+        if self.max is not None:
+            return f"{kind}, at most {self.max:g}{unit}"
+        return kind + unit
+
+    def check(self, name: str, value: object) -> Value:
+        """The value in the parameter's own type; text is read as YAML would read it.
+
+        Raises:
+            TemplateError: It is of another type or out of range.
+        """
+        found = self._convert(value)
+        if found is None:
+            raise TemplateError("bad-parameter", f"{name} cannot be {value!r}.", f"give {self.allowed()}.")
+        if isinstance(found, (int, float)) and not isinstance(found, bool):
+            low, high = -math.inf if self.min is None else self.min, math.inf if self.max is None else self.max
+            if not low <= found <= high:
+                raise TemplateError("bad-parameter", f"{name} = {found:g} is out of range.", f"give {self.allowed()}.")
+        return found
+
+    def _convert(self, value: object) -> Value | None:
+        if self.type == "choice":
+            return str(value) if str(value) in self.choices else None
+        if self.type == "boolean":
+            words = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
+            return value if isinstance(value, bool) else words.get(str(value).lower())
+        if isinstance(value, bool):
+            return None
+        try:
+            number = float(str(value))
+        except ValueError:
+            return None
+        if not math.isfinite(number):
+            return None
+        whole = int(number)
+        if self.type == "integer":
+            return whole if whole == number else None
+        return number
+
+
+class Template(_Metadata):
+    """A template and its default text."""
+
+    name: str
+    title: str
+    purpose: str
+    tags: tuple[str, ...]
+    outcomes: Annotated[tuple[Outcome, ...], Field(min_length=1)]
+    parameters: dict[str, Parameter] = {}
+    sets: dict[str, str] = {}
+    text: str = Field(repr=False)
+
+    def values(self, given: dict[str, Any]) -> dict[str, Value]:
+        """All parameters: the given ones checked, the others at their defaults.
+
+        Raises:
+            TemplateError: A name is unknown or a value is not allowed.
+        """
+        for name in given:
+            if name not in self.parameters:
+                near = nearest(name, self.parameters)
+                known = ", ".join(self.parameters) or "none"
+                raise TemplateError(
+                    "unknown-parameter",
+                    f"{self.name} has no parameter {name!r}; it has {known}.",
+                    f"did you mean {near}?" if near else None,
+                )
+        return {
+            name: parameter.check(name, given.get(name, parameter.default))
+            for name, parameter in self.parameters.items()
+        }

@@ -1,0 +1,67 @@
+"""Find and read the bundled templates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from irsim.bundled.templates.metadata import Template, TemplateError
+from irsim.common import data_files as resources
+from irsim.diagnostics.diagnostic import nearest
+
+__all__ = ["find", "load", "load_all", "names", "scenario_file"]
+
+
+def names() -> list[str]:
+    """Names of all templates, sorted."""
+    return sorted(path.parent.name for path in resources.templates_directory().glob("*/template.yaml"))
+
+
+def load(name: str) -> Template:
+    """One template.
+
+    Raises:
+        TemplateError: There is none of that name.
+    """
+    known = names()
+    if name not in known:
+        near = nearest(name, known)
+        raise TemplateError(
+            "unknown-template",
+            f"there is no template {name!r}; there are {', '.join(known)}.",
+            f"did you mean {near}?" if near else None,
+        )
+    file = scenario_file(name)
+    described = resources.read_yaml(file.with_name("template.yaml").read_text(encoding="utf-8"))
+    text = file.read_text(encoding="utf-8")
+    return Template.model_validate({"name": name, "text": text, **described})
+
+
+def load_all() -> list[Template]:
+    """All templates, by name."""
+    return [load(name) for name in names()]
+
+
+def find(words: Iterable[str], *, every: bool = False) -> list[Template]:
+    """The templates that are about some words: those whose name, title, purpose or tags hold the most of them.
+
+    Args:
+        words: What to look for; without words all templates are found.
+        every: Only templates that hold every word.
+    """
+    wanted = [word.lower() for phrase in words for word in phrase.split()]
+    templates = load_all()
+    if not wanted:
+        return templates
+    scores = {template.name: sum(word in _searched(template) for word in wanted) for template in templates}
+    best = len(wanted) if every else max(scores.values(), default=0)
+    return [template for template in templates if best and scores[template.name] == best]
+
+
+def scenario_file(name: str) -> Path:
+    """Path of a template's scenario."""
+    return resources.templates_directory() / name / "scenario.yaml"
+
+
+def _searched(template: Template) -> str:
+    return " ".join((template.name, template.title, template.purpose, *template.tags)).lower()

@@ -1,0 +1,1 @@
+"""Helpers that know nothing of robots: logging, files, text, arguments, lazy names."""

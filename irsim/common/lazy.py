@@ -1,0 +1,38 @@
+"""Packages whose names are imported when they are first used."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from typing import Any
+
+__all__ = ["lazy_names"]
+
+
+def lazy_names(
+    package: str, homes: Mapping[str, str], modules: Iterable[str] = ()
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """The ``__getattr__`` and ``__dir__`` of a package that imports its names when they are first used.
+
+    Args:
+        package: Its name.
+        homes: Name -> the module that has it; ``module:name`` where it is called otherwise there.
+        modules: Modules of the package that are attributes of it, whether somebody has imported them or not.
+    """
+    own_modules = frozenset(modules)
+
+    def get(name: str) -> Any:
+        if name in own_modules:
+            return import_module(f"{package}.{name}")
+        if name not in homes:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        home, _, name_there = homes[name].partition(":")
+        value = getattr(import_module(home), name_there or name)
+        setattr(sys.modules[package], name, value)
+        return value
+
+    def listing() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *homes, *own_modules})
+
+    return get, listing

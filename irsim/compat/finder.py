@@ -1,0 +1,114 @@
+"""Finds the modules of IR-SIM 2.12 under their old paths, from the table in :mod:`irsim.compat.paths`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from importlib.abc import InspectLoader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
+
+from irsim.compat.paths import NAMES, SAME
+
+__all__ = ["OldPathFinder", "install"]
+
+
+def install() -> None:
+    """Put the finder first in ``sys.meta_path``, once.
+
+    It must come before Python's own finder: that one would look below the folder of an old package's new home, and
+    load a second copy of what it finds there.
+    """
+    if not any(isinstance(finder, OldPathFinder) for finder in sys.meta_path):
+        sys.meta_path.insert(0, OldPathFinder())
+
+
+class OldPathFinder(MetaPathFinder):
+    """Answers for the listed paths and for nothing else."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The spec of an old path, or None."""
+        if not fullname.startswith("irsim."):
+            return None
+        if fullname in SAME:
+            return ModuleSpec(fullname, _AnotherName(SAME[fullname]), is_package=_is_package(fullname))
+        if fullname in NAMES:
+            return ModuleSpec(fullname, _ReExports(NAMES[fullname]), is_package=_is_package(fullname))
+        return None
+
+
+class _AnotherName(InspectLoader):
+    """Gives an existing module a second name, so that both paths lead to one object."""
+
+    def __init__(self, home: str) -> None:
+        self._home = home
+        self._spec: ModuleSpec | None = None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        module = import_module(self._home)
+        self._spec = module.__spec__
+        return module
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__spec__ = self._spec  # the import system has just replaced it with that of the old path
+
+    def get_source(self, fullname: str) -> str:
+        """One line, which ``python -m`` runs."""
+        return f"from {self._home} import *\n"
+
+    def is_package(self, fullname: str) -> bool:
+        return _is_package(fullname)
+
+
+class _ReExports(InspectLoader):
+    """Makes a module whose names are imported from their homes when they are first used."""
+
+    def __init__(self, homes: dict[str, str]) -> None:
+        self._homes = homes
+
+    def exec_module(self, module: ModuleType) -> None:
+        homes, own = self._homes, module.__name__
+
+        def get(name: str) -> Any:
+            if name in homes:
+                home, _, name_there = homes[name].partition(":")
+                value = getattr(import_module(home), name_there or name)
+            elif f"{own}.{name}" in SAME or f"{own}.{name}" in NAMES:
+                value = import_module(f"{own}.{name}")
+            else:
+                raise AttributeError(f"module {own!r} has no attribute {name!r}")
+            setattr(module, name, value)
+            return value
+
+        public = {*homes, *_submodules(own)}
+        vars(module).update(
+            __doc__=f"The names of IR-SIM's ``{own}``; their homes are in ``irsim.compat.paths``.",
+            __all__=sorted(homes),
+            __getattr__=get,
+            __dir__=lambda: sorted({*vars(module), *public}),
+        )
+        for name in _submodules(own):
+            if name in homes:  # importing the module later would replace the function of the same name
+                import_module(f"{own}.{name}")
+                get(name)
+
+    def get_source(self, fullname: str) -> str:
+        """One line for each name, which ``python -m`` runs."""
+        homes = ((home.partition(":"), name) for name, home in sorted(self._homes.items()))
+        return "".join(f"from {home} import {there or name} as {name}\n" for (home, _, there), name in homes)
+
+    def is_package(self, fullname: str) -> bool:
+        return _is_package(fullname)
+
+
+def _submodules(package: str) -> list[str]:
+    """Names of the old modules directly below an old package."""
+    return sorted({path.rpartition(".")[2] for path in {*SAME, *NAMES} if path.rpartition(".")[0] == package})
+
+
+def _is_package(path: str) -> bool:
+    return bool(_submodules(path))

@@ -1,0 +1,252 @@
+"""Where the modules of IR-SIM 2.12 are found today: one table, read by the finder, the stubs and the freezing hooks.
+
+This file imports nothing of irsim, so that a build can read it before there is anything to import.
+"""
+
+from __future__ import annotations
+
+__all__ = ["NAMES", "SAME", "old_paths"]
+
+SAME: dict[str, str] = {
+    "irsim.config": "irsim.compat.config",
+    "irsim.config.env_param": "irsim.compat.config.env_param",
+    "irsim.config.palette_param": "irsim.compat.config.palette_param",
+    "irsim.config.path_param": "irsim.compat.config.path_param",
+    "irsim.config.world_param": "irsim.compat.config.world_param",
+    "irsim.lib.algorithm.generation": "irsim.functions.polygons",
+    "irsim.lib.algorithm.kinematics": "irsim.functions.drives",
+    "irsim.lib.algorithm.ray_casting_2d": "irsim.functions.ray_casting",
+    "irsim.lib.algorithm.rvo": "irsim.functions.rvo",
+    "irsim.lib.algorithm.social_force_model": "irsim.functions.social_force",
+    "irsim.lib.behavior.behavior": "irsim.objects.handlers.behavior",
+    "irsim.lib.behavior.behavior_methods": "irsim.objects.handlers.built_in",
+    "irsim.lib.behavior.behavior_registry": "irsim.objects.handlers.registration",
+    "irsim.lib.behavior.group_behavior": "irsim.objects.handlers.group_behavior",
+    "irsim.lib.behavior.group_behavior_methods": "irsim.objects.handlers.group_built_in",
+    "irsim.lib.handler.geometry_handler": "irsim.objects.handlers.geometry",
+    "irsim.lib.handler.kinematics_handler": "irsim.objects.handlers.kinematics",
+    "irsim.util": "irsim.compat.util",
+    "irsim.util.angles": "irsim.functions.frames",
+    "irsim.util.random": "irsim.compat.util.random",
+    "irsim.util.shapes": "irsim.compat.util.shapes",
+    "irsim.util.util": "irsim.compat.util.util",
+    "irsim.util.values": "irsim.compat.util.values",
+}
+"""Old path -> the module that it is another name of."""
+
+NAMES: dict[str, dict[str, str]] = {
+    "irsim.env.env_config": {
+        "EnvConfig": "irsim.env.factory",
+    },
+    "irsim.env.env_logger": {
+        "EnvLogger": "irsim.common.log:Logger",
+    },
+    "irsim.env.env_plot": {
+        "EnvPlot": "irsim.rendering.env_plot",
+        "draw_patch": "irsim.graphics.figure.patches",
+        "geometry_to_path": "irsim.graphics.figure.patches",
+        "linewidth_from_data_units": "irsim.graphics.figure.patches",
+        "set_patch_property": "irsim.graphics.figure.patches",
+    },
+    "irsim.env.env_plot3d": {
+        "EnvPlot3D": "irsim.rendering.env_plot3d",
+    },
+    "irsim.lib": {
+        "AStarPlanner": "irsim.navigation.planners",
+        "Behavior": "irsim.objects.handlers.behavior",
+        "GeometryFactory": "irsim.objects.handlers.geometry",
+        "GroupBehavior": "irsim.objects.handlers.group_behavior",
+        "InformedRRTStar": "irsim.navigation.planners",
+        "JPSPlanner": "irsim.navigation.planners",
+        "KinematicsFactory": "irsim.objects.handlers.kinematics",
+        "KinematicsHandler": "irsim.components.kinematics._handler",
+        "PRMPlanner": "irsim.navigation.planners",
+        "RRT": "irsim.navigation.planners",
+        "RRTStar": "irsim.navigation.planners",
+        "SocialForceModelBatch": "irsim.functions.social_force",
+        "ackermann_kinematics": "irsim.functions.drives",
+        "contact_step": "irsim.objects.sensors.contact",
+        "differential_kinematics": "irsim.functions.drives",
+        "generate_polygon": "irsim.functions.polygons",
+        "kinematics_factory": "irsim.functions.drives",
+        "omni_kinematics": "irsim.functions.drives",
+        "random_generate_polygon": "irsim.functions.polygons",
+        "reciprocal_vel_obs": "irsim.functions.rvo",
+        "register_behavior": "irsim.objects.handlers.registration",
+        "register_behavior_class": "irsim.objects.handlers.registration",
+        "register_group_behavior": "irsim.objects.handlers.registration",
+        "register_group_behavior_class": "irsim.objects.handlers.registration",
+        "register_kinematics": "irsim.components.kinematics._handler",
+        "social_force_model": "irsim.functions.social_force",
+    },
+    "irsim.lib.algorithm": {
+        "SocialForceModelBatch": "irsim.functions.social_force",
+        "ackermann_kinematics": "irsim.functions.drives",
+        "cast_rays": "irsim.functions.ray_casting",
+        "differential_kinematics": "irsim.functions.drives",
+        "generate_polygon": "irsim.functions.polygons",
+        "omni_angular_kinematics": "irsim.functions.drives",
+        "omni_kinematics": "irsim.functions.drives",
+        "random_generate_polygon": "irsim.functions.polygons",
+        "reciprocal_vel_obs": "irsim.functions.rvo",
+        "social_force_model": "irsim.functions.social_force",
+    },
+    "irsim.lib.behavior": {
+        "Behavior": "irsim.objects.handlers.behavior",
+        "register_behavior": "irsim.objects.handlers.registration",
+        "register_behavior_class": "irsim.objects.handlers.registration",
+        "register_group_behavior": "irsim.objects.handlers.registration",
+        "register_group_behavior_class": "irsim.objects.handlers.registration",
+    },
+    "irsim.lib.handler": {
+        "GeometryFactory": "irsim.objects.handlers.geometry",
+        "KinematicsFactory": "irsim.objects.handlers.kinematics",
+        "KinematicsHandler": "irsim.objects.handlers.kinematics",
+        "register_kinematics": "irsim.objects.handlers.kinematics",
+    },
+    "irsim.lib.path_planners": {
+        "AStarPlanner": "irsim.navigation.planners",
+        "InformedRRTStar": "irsim.navigation.planners",
+        "JPSPlanner": "irsim.navigation.planners",
+        "PRMPlanner": "irsim.navigation.planners",
+        "RRT": "irsim.navigation.planners",
+        "RRTStar": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.a_star": {
+        "AStarPlanner": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.informed_rrt_star": {
+        "InformedRRTStar": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.jps": {
+        "JPSPlanner": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.probabilistic_road_map": {
+        "PRMPlanner": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.rrt": {
+        "RRT": "irsim.navigation.planners",
+    },
+    "irsim.lib.path_planners.rrt_star": {
+        "RRTStar": "irsim.navigation.planners",
+    },
+    "irsim.version": {
+        "__version__": "irsim",
+    },
+    "irsim.world": {
+        "ObjectBase": "irsim.env.construct",
+        "ObjectFactory": "irsim.env.factory",
+        "ObjectGroup": "irsim.env.construct",
+        "ObjectStatic": "irsim.env.construct",
+        "ObstacleAcker": "irsim.env.construct",
+        "ObstacleDiff": "irsim.env.construct",
+        "ObstacleMap": "irsim.objects.obstacle_map",
+        "ObstacleOmni": "irsim.env.construct",
+        "RobotAcker": "irsim.env.construct",
+        "RobotDiff": "irsim.env.construct",
+        "RobotOmni": "irsim.env.construct",
+        "SensorFactory": "irsim.env.sensor_factory",
+        "World": "irsim.env.construct",
+    },
+    "irsim.world.map": {
+        "EnvGridMap": "irsim.navigation.map",
+        "FogMap": "irsim.simulation.fog",
+        "GridMapGenerator": "irsim.components.maps._generators",
+        "ImageGridGenerator": "irsim.components.maps._generators",
+        "Map": "irsim.navigation.map",
+        "ObstacleMap": "irsim.objects.obstacle_map",
+        "PerlinGridGenerator": "irsim.components.maps._generators",
+        "build_grid_from_generator": "irsim.components.maps._generators",
+        "grid_collision_geometry": "irsim.simulation.occupancy",
+        "resolve_obstacle_map": "irsim.components.maps._generators",
+    },
+    "irsim.world.map.fog_map": {
+        "FogMap": "irsim.simulation.fog",
+    },
+    "irsim.world.map.grid_map_generator_base": {
+        "GridMapGenerator": "irsim.components.maps._generators",
+    },
+    "irsim.world.map.image_map_generator": {
+        "ImageGridGenerator": "irsim.components.maps._generators",
+    },
+    "irsim.world.map.obstacle_map": {
+        "ObstacleMap": "irsim.objects.obstacle_map",
+        "grid_collision_geometry": "irsim.simulation.occupancy",
+    },
+    "irsim.world.map.perlin_map_generator": {
+        "PerlinGridGenerator": "irsim.components.maps._generators",
+    },
+    "irsim.world.object_base": {
+        "ObjectBase": "irsim.env.construct",
+        "ObjectInfo": "irsim.objects.info",
+        "ObstacleInfo": "irsim.objects.info",
+    },
+    "irsim.world.object_factory": {
+        "ObjectFactory": "irsim.env.factory",
+    },
+    "irsim.world.object_group": {
+        "ObjectGroup": "irsim.env.construct",
+    },
+    "irsim.world.obstacles": {
+        "ObjectStatic": "irsim.env.construct",
+        "ObstacleAcker": "irsim.env.construct",
+        "ObstacleDiff": "irsim.env.construct",
+        "ObstacleOmni": "irsim.env.construct",
+    },
+    "irsim.world.obstacles.obstacle_acker": {
+        "ObstacleAcker": "irsim.env.construct",
+    },
+    "irsim.world.obstacles.obstacle_diff": {
+        "ObstacleDiff": "irsim.env.construct",
+    },
+    "irsim.world.obstacles.obstacle_omni": {
+        "ObstacleOmni": "irsim.env.construct",
+    },
+    "irsim.world.obstacles.obstacle_static": {
+        "ObjectStatic": "irsim.env.construct",
+    },
+    "irsim.world.robots": {
+        "RobotAcker": "irsim.env.construct",
+        "RobotDiff": "irsim.env.construct",
+        "RobotOmni": "irsim.env.construct",
+    },
+    "irsim.world.robots.robot_acker": {
+        "RobotAcker": "irsim.env.construct",
+    },
+    "irsim.world.robots.robot_diff": {
+        "RobotDiff": "irsim.env.construct",
+    },
+    "irsim.world.robots.robot_omni": {
+        "RobotOmni": "irsim.env.construct",
+    },
+    "irsim.world.sensors": {
+        "Contact2D": "irsim.objects.sensors.contact",
+        "FMCWLidar2D": "irsim.objects.sensors.lidar",
+        "Lidar2D": "irsim.objects.sensors.lidar",
+        "SensorFactory": "irsim.env.sensor_factory",
+    },
+    "irsim.world.sensors.contact2d": {
+        "Contact2D": "irsim.objects.sensors.contact",
+    },
+    "irsim.world.sensors.fmcw_lidar2d": {
+        "FMCWLidar2D": "irsim.objects.sensors.lidar",
+    },
+    "irsim.world.sensors.lidar2d": {
+        "Lidar2D": "irsim.objects.sensors.lidar",
+    },
+    "irsim.world.sensors.sensor_factory": {
+        "SensorFactory": "irsim.env.sensor_factory",
+    },
+    "irsim.world.world": {
+        "World": "irsim.env.construct",
+    },
+    "irsim.world.world3d": {
+        "World3D": "irsim.env.env_base3d",
+    },
+}
+"""Old path of a module that only re-exports -> each of its names -> the module that has it (``module:name`` there)."""
+
+
+def old_paths() -> list[str]:
+    """Every module path of 2.12 that the finder answers for, sorted."""
+    return sorted({*SAME, *NAMES})

@@ -1,0 +1,79 @@
+"""Polygons, as scripts of IR-SIM call them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.compat.util.random import rng
+from irsim.functions.frames import get_affine_transform
+
+__all__ = [
+    "cross_product",
+    "gen_inequal_from_vertex",
+    "geometry_transform",
+    "is_convex_and_ordered",
+    "is_convex_polygon",
+    "random_point_range",
+]
+
+Floats = NDArray[np.float64]
+
+
+def cross_product(o: Any, a: Any, b: Any) -> float:
+    """Of o -> a and o -> b: positive where b lies to the left of o -> a."""
+    result: float = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+    return result
+
+
+def is_convex_and_ordered(points: Any) -> tuple[bool, str | None]:
+    """Whether (2, N) points are the corners of a convex polygon, and how they are ordered: ``CW``, ``CCW`` or None."""
+    corners = np.asarray(points, dtype=np.float64).T
+    if len(corners) < 3:
+        return False, None
+    turns = [cross_product(corners[k - 2], corners[k - 1], corners[k]) for k in range(len(corners))]
+    if all(turn > 0 for turn in turns):
+        return True, "CCW"
+    return (True, "CW") if all(turn < 0 for turn in turns) else (False, None)
+
+
+def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
+    """``G p <= h`` for the convex polygon with these corners.
+
+    Args:
+        vertex: (2, N) corners in either order.
+
+    Returns:
+        G (N, 2) outward normals, not normalised, and h (N, 1); None, None where the polygon is not convex.
+    """
+    convex, order = is_convex_and_ordered(vertex)
+    if not convex:
+        return None, None
+    points = np.asarray(vertex, dtype=np.float64).T
+    if order == "CW":
+        points = points[::-1]
+    edges = np.roll(points, -1, axis=0) - points
+    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
+    return normals, (normals * points).sum(axis=1, keepdims=True)
+
+
+def geometry_transform(geometry: Any, state: Any) -> Any:
+    """A shapely geometry of the body frame at a pose."""
+    from shapely.affinity import affine_transform
+
+    return affine_transform(geometry, get_affine_transform(state))
+
+
+def is_convex_polygon(polygon: Any, tolerance: float = 1e-9) -> bool:
+    """Whether a shapely polygon is convex."""
+    return bool(polygon.convex_hull.area - polygon.area <= tolerance)
+
+
+def random_point_range(range_low: Any = None, range_high: Any = None) -> Floats:
+    """(3, 1) point drawn evenly from a box, by default [0, 0, -pi] to [10, 10, pi]."""
+    low = np.array([0.0, 0.0, -np.pi] if range_low is None else range_low, dtype=np.float64).reshape(-1, 1)
+    high = np.array([10.0, 10.0, np.pi] if range_high is None else range_high, dtype=np.float64).reshape(-1, 1)
+    point: Floats = rng.uniform(low, high)
+    return point

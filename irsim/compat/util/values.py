@@ -1,0 +1,399 @@
+"""Lists, arrays and checks of values, as scripts of IR-SIM call them."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+import math
+import os
+import time
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.log import Logger
+from irsim.simulation.active_env import last_used, use
+
+__all__ = [
+    "bind_env",
+    "check_choice",
+    "check_number",
+    "check_unknown_kwargs",
+    "convert_list_length",
+    "convert_list_length_dict",
+    "ensure_column_vector",
+    "ensure_numpy",
+    "file_check",
+    "find_duplicates",
+    "find_file",
+    "find_object_by_identity",
+    "fit_length",
+    "is_2d_list",
+    "is_list_not_list_of_lists",
+    "is_list_of_dicts",
+    "is_list_of_lists",
+    "is_list_of_numbers",
+    "log_error",
+    "log_warning",
+    "log_warning_once",
+    "normalize_actions",
+    "plot_only",
+    "points_to_xy_list",
+    "time_it",
+    "time_it2",
+    "to_numpy",
+    "traj_to_xy_list",
+    "validate_length",
+    "validate_shape",
+]
+
+Function = Callable[..., Any]
+
+
+# lists ---------------------------------------------------------------------------------------------------------------
+def is_list_of_dicts(lst: Any) -> bool:
+    """Whether it is a list of mappings (or empty)."""
+    return isinstance(lst, list) and all(isinstance(item, dict) for item in lst)
+
+
+def is_list_of_numbers(lst: Any) -> bool:
+    """Whether it is a list of numbers (or empty)."""
+    return isinstance(lst, list) and all(isinstance(item, (int, float, np.number)) for item in lst)
+
+
+def is_list_of_lists(lst: Any) -> bool:
+    """Whether it is a list with at least one list in it."""
+    return isinstance(lst, list) and any(isinstance(item, list) for item in lst)
+
+
+def is_list_not_list_of_lists(lst: Any) -> bool:
+    """Whether it is a list without lists in it."""
+    return isinstance(lst, list) and not is_list_of_lists(lst)
+
+
+def is_2d_list(data: Any) -> bool:
+    """Whether a list or queue begins with a list."""
+    return not isinstance(data, str) and len(data) > 0 and isinstance(data[0], (list, tuple, np.ndarray))
+
+
+def convert_list_length(input_data: Any, number: int = 0, per_object: bool = False) -> list[Any]:
+    """A value for each of ``number`` objects: one for all, or a list with one each, whose last element is repeated.
+
+    Args:
+        input_data: A list of numbers is one value unless ``per_object``.
+        number: How many objects.
+        per_object: Any list has one value each.
+    """
+    if number <= 0:
+        return []
+    several = isinstance(input_data, list) and bool(input_data)
+    if not several or (is_list_of_numbers(input_data) and not per_object):
+        return [input_data] * number
+    if len(input_data) == 1 and is_list_of_lists(input_data):
+        return [input_data[0]] * number
+    return fit_length(input_data, number, input_data[-1])
+
+
+def convert_list_length_dict(input_data: Any, number: int = 0) -> list[Any]:
+    """A mapping, or a list of them, for each of ``number`` objects."""
+    if number <= 0:
+        return []
+    if is_list_of_lists(input_data):
+        return fit_length(input_data, number, input_data[-1])
+    return [input_data] * number
+
+
+def fit_length(values: Iterable[Any], length: int, fill: Any = 0) -> list[Any]:
+    """``values`` cut, or filled up, to ``length``."""
+    listed = list(values)[:length]
+    return listed + [fill] * (length - len(listed))
+
+
+def find_duplicates(values: Iterable[Any]) -> list[Any]:
+    """What occurs more than once, in the order of first occurrence."""
+    listed = list(values)
+    return [value for value in dict.fromkeys(listed) if listed.count(value) > 1]
+
+
+def find_object_by_identity(objects: Iterable[Any], name: str | None = None, object_id: int | None = None) -> Any:
+    """The object of a name, else that of an id, else None."""
+    listed = list(objects)
+    by_name = (o for o in listed if name is not None and o.name == name)
+    by_id = (o for o in listed if object_id is not None and o.id == object_id)
+    return next(by_name, next(by_id, None))
+
+
+# arrays --------------------------------------------------------------------------------------------------------------
+def to_numpy(
+    data: Any, default: NDArray[Any] | None = None, expected_shape: tuple[int, ...] | None = None
+) -> NDArray[Any] | None:
+    """A list as a column (or in ``expected_shape``); None becomes ``default``.
+
+    Raises:
+        ValueError: Not as many numbers as ``expected_shape`` has.
+    """
+    if data is None:
+        return default
+    array = np.asarray(data)
+    if expected_shape is not None:
+        return array.reshape(expected_shape)
+    return array.reshape(-1, 1) if array.ndim == 1 else array
+
+
+def traj_to_xy_list(traj: Any, three_d: bool = False) -> Any:
+    """Coordinates of a path: a list of columns, or (2 or more, N). Lists x, y and, if wanted, z."""
+    columns = np.asarray(traj) if isinstance(traj, np.ndarray) else np.hstack([np.reshape(p, (-1, 1)) for p in traj])
+    return tuple(list(columns[row]) for row in range(3 if three_d else 2))
+
+
+def points_to_xy_list(points: Any, three_d: bool = False) -> Any:
+    """Coordinates of points: a list of points, or (2 or more, N). Lists x, y and, if wanted, z."""
+    if isinstance(points, np.ndarray):
+        return traj_to_xy_list(points, three_d)
+    return tuple([point[row] for point in points] for row in range(3 if three_d else 2))
+
+
+# checks --------------------------------------------------------------------------------------------------------------
+def check_number(
+    value: Any,
+    name: str,
+    low: float | None = None,
+    high: float | None = None,
+    *,
+    strict_low: bool = False,
+    allow_inf: bool = False,
+    context: str | None = None,
+    default: Any = None,
+) -> float:
+    """``value`` as a number within bounds; None becomes ``default``.
+
+    Raises:
+        ValueError: Not a number, or out of bounds.
+    """
+    what = name if context is None else f"{context}: {name}"
+    if value is None and default is not None:
+        value = default
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what} must be a number, got {value!r}") from None
+    if math.isnan(number) or (math.isinf(number) and not allow_inf):
+        raise ValueError(f"{what} must be a finite number, got {value!r}")
+    if low is not None and (number <= low if strict_low else number < low):
+        raise ValueError(f"{what} must be {'greater than' if strict_low else 'at least'} {low}, got {value!r}")
+    if high is not None and number > high:
+        raise ValueError(f"{what} must be at most {high}, got {value!r}")
+    return number
+
+
+def check_choice(value: Any, name: str, choices: Iterable[str], *, context: str | None = None) -> str:
+    """``value``, in lower case, if it is one of ``choices``.
+
+    Raises:
+        ValueError: It is none.
+    """
+    known = list(choices)
+    word = str(value).strip().lower()
+    if word in known:
+        return word
+    what = name if context is None else f"{context}: {name}"
+    raise ValueError(f"{what} {value!r} is none of {', '.join(map(repr, known))}")
+
+
+def check_unknown_kwargs(
+    kwargs: Mapping[str, Any], valid_keys: set[str], context: str = "", logger: Any = None
+) -> list[str]:
+    """A warning for each key that is not valid, with the nearest that is; all are logged and returned."""
+    messages = []
+    for key in kwargs:
+        if key not in valid_keys:
+            near = difflib.get_close_matches(key, sorted(valid_keys), 1)
+            hint = f" Did you mean: {near[0]}?" if near else ""
+            messages.append(f"Unknown parameter {key!r}{context}.{hint}")
+    for message in messages:
+        (logger or _logger()).warning(message)
+    return messages
+
+
+def _arguments(function: Function, args: Any, kwargs: Any) -> inspect.BoundArguments:
+    bound = inspect.signature(function).bind(*args, **kwargs)
+    bound.apply_defaults()
+    return bound
+
+
+def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
+    """A decorator that checks shapes of array arguments: rows at least, or a whole shape."""
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def checked(*args: Any, **kwargs: Any) -> Any:
+            given = _arguments(function, args, kwargs).arguments
+            for name, wanted in shape_requirements.items():
+                value = given.get(name)
+                if not isinstance(value, np.ndarray):
+                    raise TypeError(f"Parameter {name!r} must be a numpy array, got {type(value).__name__}")
+                fits = value.shape == wanted if isinstance(wanted, tuple) else value.shape[0] >= wanted
+                if not fits:
+                    raise ValueError(f"Parameter {name!r} must have shape {wanted}, got {value.shape}")
+            return function(*args, **kwargs)
+
+        return checked
+
+    return decorate
+
+
+def validate_length(**length_requirements: int) -> Callable[[Function], Function]:
+    """A decorator that checks that arguments are at least so long."""
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def checked(*args: Any, **kwargs: Any) -> Any:
+            given = _arguments(function, args, kwargs).arguments
+            for name, least in length_requirements.items():
+                if len(given[name]) < least:
+                    raise ValueError(f"Parameter {name!r} must have length >= {least}, got {len(given[name])}")
+            return function(*args, **kwargs)
+
+        return checked
+
+    return decorate
+
+
+def _converted(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callable[[Function], Function]:
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def called(*args: Any, **kwargs: Any) -> Any:
+            bound = _arguments(function, args, kwargs)
+            for name in names:
+                if bound.arguments.get(name) is not None:
+                    bound.arguments[name] = convert(bound.arguments[name])
+            return function(*bound.args, **bound.kwargs)
+
+        return called
+
+    return decorate
+
+
+def ensure_numpy(*param_names: str) -> Callable[[Function], Function]:
+    """A decorator that hands these arguments on as arrays."""
+    return _converted(param_names, np.asarray)
+
+
+def ensure_column_vector(*param_names: str) -> Callable[[Function], Function]:
+    """A decorator that hands these arguments on as columns where they are flat."""
+    return _converted(param_names, to_numpy)
+
+
+def normalize_actions(func: Function) -> Function:
+    """A decorator of ``step(self, action, action_id)``: one slot for each of ``self.objects`` is handed on."""
+
+    @functools.wraps(func)
+    def step(self: Any, action: Any = None, action_id: Any = 0) -> Any:
+        slots: list[Any] = [None] * len(self.objects)
+        if action is not None:
+            many = isinstance(action, (list, tuple)) and not is_list_of_numbers(list(action))
+            several_ids = isinstance(action_id, (list, tuple))
+            ids = list(action_id) if several_ids else [action_id + k for k in range(len(action) if many else 1)]
+            for number, one in zip(ids, action if many else [action] * len(ids), strict=False):
+                slots[number] = one
+        return func(self, slots)
+
+    return step
+
+
+def bind_env(method: Function) -> Function:
+    """A decorator of methods of an environment: it is then the one used last."""
+
+    @functools.wraps(method)
+    def bound(self: Any, *args: Any, **kwargs: Any) -> Any:
+        use(self)
+        return method(self, *args, **kwargs)
+
+    return bound
+
+
+def plot_only(method: Function) -> Function:
+    """A decorator of methods of an environment that do nothing in headless mode."""
+
+    @functools.wraps(method)
+    def drawn(self: Any, *args: Any, **kwargs: Any) -> Any:
+        return None if self.headless else method(self, *args, **kwargs)
+
+    return drawn
+
+
+# files, time, log ----------------------------------------------------------------------------------------------------
+def file_check(file_name: str | None, root_path: str | None = None) -> str | None:
+    """The absolute path of a file as named, below ``root_path`` or anywhere below it; None if there is none."""
+    if file_name is None:
+        return None
+    if os.path.isfile(file_name):
+        return os.path.abspath(file_name)
+    if root_path is not None and os.path.isfile(os.path.join(root_path, file_name)):
+        return os.path.abspath(os.path.join(root_path, file_name))
+    return find_file(root_path, file_name)
+
+
+def find_file(root_path: str | None, target_filename: str) -> str | None:
+    """The absolute path of the first file of that name below a folder; None if there is none."""
+    if root_path is None:
+        return None
+    for folder, folders, files in os.walk(root_path):
+        folders.sort()
+        if target_filename in files:
+            return os.path.abspath(os.path.join(folder, target_filename))
+    return None
+
+
+def time_it(name: str = "Function") -> Callable[[Function], Function]:
+    """A decorator that prints how long each call took."""
+
+    def decorate(function: Function) -> Function:
+        @functools.wraps(function)
+        def timed(*args: Any, **kwargs: Any) -> Any:
+            begin = time.perf_counter()
+            result = function(*args, **kwargs)
+            print(f"{name} execute time {time.perf_counter() - begin:.6f} seconds")
+            return result
+
+        return timed
+
+    return decorate
+
+
+def time_it2(name: str = "Function") -> Callable[[Function], Function]:
+    """Like :func:`time_it`, for methods; prints only where ``self.time_print`` is true."""
+
+    def decorate(function: Function) -> Function:
+        loud = time_it(name)(function)
+
+        @functools.wraps(function)
+        def timed(self: Any, *args: Any, **kwargs: Any) -> Any:
+            return (loud if getattr(self, "time_print", False) else function)(self, *args, **kwargs)
+
+        return timed
+
+    return decorate
+
+
+def _logger() -> Logger:
+    env = last_used()
+    return Logger() if env is None else env.logger
+
+
+def log_warning(msg: str) -> None:
+    """Log at WARNING, in the environment used last."""
+    _logger().warning(msg)
+
+
+def log_warning_once(msg: str) -> None:
+    """Log at WARNING the first time."""
+    _logger().warning_once(msg)
+
+
+def log_error(msg: str) -> None:
+    """Log at ERROR, in the environment used last."""
+    _logger().error(msg)

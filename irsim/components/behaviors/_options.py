@@ -1,0 +1,59 @@
+"""What every behavior's options have in common."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Literal
+
+from pydantic import ConfigDict
+
+from irsim.options.base import Options
+from irsim.options.units import Bool
+from irsim.options.vectors import Pose
+
+__all__ = ["BehaviorOptions", "CustomOptions", "behavior_fields"]
+
+
+class BehaviorOptions(Options):
+    """Keys that every behavior takes."""
+
+    in_group: ClassVar[bool] = False
+    """Whether it may be named under `group_behavior`: it decides for all members at once."""
+
+    name: str
+    """Which behavior."""
+    wander: Bool = False
+    """Start with, and after each arrival draw, a random goal between `range_low` and `range_high`."""
+    loop: Bool = False
+    """After the last goal start over; with one goal, shuttle between it and the start. `wander` wins over it."""
+    range_low: Pose | None = None
+    """Lower corner of random goals; null is the world's own. Two numbers leave the heading free."""
+    range_high: Pose | None = None
+    """Upper corner of random goals; null is the world's own. Two numbers leave the heading free."""
+    target_roles: Literal["all", "robot", "obstacle"] = "all"
+    """Which other objects the behavior is shown."""
+
+
+class CustomOptions(BehaviorOptions):
+    """A behavior registered by user code: its own keys reach the registered function as they are."""
+
+    model_config = ConfigDict(extra="allow")
+
+
+def behavior_fields(options: Any, bounds: tuple[float, float, float, float]) -> dict[str, Any]:
+    """What an object takes over from the options of its behavior, or of none.
+
+    Args:
+        options: The options, or None.
+        bounds: x0, y0, x1, y1 of the world [m]: where wanderers go by default.
+    """
+    x0, y0, x1, y1 = bounds
+    low = getattr(options, "range_low", None) or [x0, y0]
+    high = getattr(options, "range_high", None) or [x1, y1]
+    return {
+        "wander": getattr(options, "wander", False),
+        "loop": getattr(options, "loop", False),
+        "range_low": [*low, -math.pi][:3],
+        "range_high": [*high, math.pi][:3],
+        "target_roles": getattr(options, "target_roles", "all"),
+    }

@@ -1,0 +1,42 @@
+"""``rvo``: reciprocal velocity obstacles."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.options.registry import BEHAVIORS
+from irsim.options.units import Meters, MetersPerSecond, Number
+
+
+class Rvo(BehaviorOptions):
+    """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
+
+    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. Turns
+    no faster than 1.5 rad/s, whatever `vel_max` allows, and does not know `acce` of the object. It stays caught in dead
+    ends.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "rvo", "vxmax": 1.5, "vymax": 1.5, "acce": 1.0, "factor": 1.0}]
+    }
+
+    name: Literal["rvo"] = "rvo"
+    vxmax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
+    """Largest speed along world x that is considered."""
+    vymax: Annotated[MetersPerSecond, Field(gt=0)] = 1.5
+    """Largest speed along world y that is considered."""
+    acce: Annotated[MetersPerSecond, Field(gt=0)] = 1.0
+    """Largest change of velocity in one step: half the width of the search window, not multiplied by the period."""
+    factor: Annotated[Number, Field(ge=0)] = 1.0
+    """Weight of the time to collision when no velocity is free."""
+    mode: Literal["rvo", "hrvo", "vo"] = "rvo"
+    """Whose share of the avoidance each side takes."""
+    neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
+    """Others, and walls, farther away than this are ignored; linestrings never are."""
+
+
+BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

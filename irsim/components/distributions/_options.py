@@ -1,0 +1,14 @@
+"""What every distribution's options have in common."""
+
+from __future__ import annotations
+
+from irsim.options.base import Options
+
+__all__ = ["DistributionOptions"]
+
+
+class DistributionOptions(Options):
+    """How the objects of one entry are placed."""
+
+    name: str
+    """Which distribution."""

@@ -1,0 +1,45 @@
+"""``circle``: evenly on a circle, everyone facing its middle."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.distributions._options import DistributionOptions
+from irsim.options.angles import wrap
+from irsim.options.registry import DISTRIBUTIONS
+from irsim.options.units import Meters
+from irsim.options.vectors import Pose
+
+if TYPE_CHECKING:
+    from irsim.scenario.model.scenario import WorldModel
+
+
+class CircleDistribution(DistributionOptions):
+    """Evenly on a circle, facing its middle; goals are the opposite points unless the entry has a `goal`."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "circle", "center": [5, 5], "radius": 4.0}]}
+
+    name: Literal["circle"] = "circle"
+    center: Pose | None = None
+    """Middle of the circle; null is the middle of the world. A third number is accepted and ignored."""
+    radius: Annotated[Meters, Field(gt=0)] | None = None
+    """Radius of the circle; null is half the shorter side of the world less half a metre."""
+
+
+@DISTRIBUTIONS.register(CircleDistribution)
+def place(options: CircleDistribution, count: int, world: WorldModel) -> list[tuple[list[float], list[float]]]:
+    """Pose and goal of each of ``count`` objects: (x, y, theta), world frame, heading in [-pi, pi)."""
+    center, radius = options.center or world.center, options.radius
+    if radius is None:
+        radius = max(min(world.width, world.height) / 2 - 0.5, 0.0)
+    placed = []
+    for i in range(count):
+        angle = 2 * math.pi * i / count
+        dx, dy = radius * math.cos(angle), radius * math.sin(angle)
+        heading = wrap(angle - math.pi)
+        start = [center[0] + dx, center[1] + dy, heading]
+        placed.append((start, [center[0] - dx, center[1] - dy, heading]))
+    return placed

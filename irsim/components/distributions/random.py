@@ -1,0 +1,36 @@
+"""``random``: free places drawn anew for every scene."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.distributions._options import DistributionOptions
+from irsim.options.registry import DISTRIBUTIONS
+from irsim.options.units import Meters
+from irsim.options.vectors import Offset
+
+
+class RandomDistribution(DistributionOptions):
+    """Uniform draws of poses and then goals, anew for every scene.
+
+    Everything with a fixed place comes first, then such entries in file order; footprints of starts, and of goals,
+    keep clear of all that. Goals may lie on starts. `state` and `goal` of the entry are ignored.
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "random", "range_low": [1, 1, -3.14159], "range_high": [9, 9, 3.14159]}]
+    }
+
+    name: Literal["random"] = "random"
+    range_low: Offset | None = None
+    """Lower bounds [x, y, theta]; null is half a metre inside the world, heading -π."""
+    range_high: Offset | None = None
+    """Upper bounds [x, y, theta]; null is half a metre inside the world, heading π."""
+    min_distance: Annotated[Meters, Field(ge=0)] = 1.0
+    """Smallest distance between the positions of this entry's objects, and between their goals."""
+
+
+DISTRIBUTIONS.register(RandomDistribution, kernel=core.RandomPlacement)

@@ -1,0 +1,51 @@
+"""What every drive's options have in common."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import ConfigDict, Field
+
+from irsim.options.base import Options
+from irsim.options.units import Bool, Meters, Seconds
+
+__all__ = ["CustomKinematics", "KinematicsOptions"]
+
+
+class KinematicsOptions(Options):
+    """Keys that every drive takes."""
+
+    any_case: ClassVar[bool] = True
+
+    state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta")
+    """Names of the state rows."""
+    control_rows: ClassVar[tuple[str, ...]] = ("linear", "angular")
+    """Names of the control components, in the order of ``vel_max``, ``velocity`` and actions."""
+    control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad/s")
+    usual_vel_max: ClassVar[tuple[float, ...]] = ()
+    usual_vel_min: ClassVar[tuple[float, ...]] = ()
+    usual_acce: ClassVar[tuple[float, ...]] = ()
+    """Limits where a scenario gives none; empty: 1, -1 and infinity for each control component."""
+    usual_colors: ClassVar[tuple[str, str] | None] = None
+    """Colours of robots and obstacles where a scenario gives none; None: those of every drive."""
+    picture: ClassVar[str | None] = None
+    """What robots are drawn as where a scenario does not say."""
+    arrow: ClassVar[bool] = True
+    """Whether its heading is drawn where a scenario does not say."""
+
+    name: str
+    """Which drive: the motion model."""
+    noise: Bool = False
+    """Add Gaussian noise to the executed velocity."""
+    mode: str | None = None
+    """Only `acker` uses it; the other drives accept and ignore it."""
+    tau: Annotated[Seconds, Field(ge=0)] | None = None
+    """Lag of the drive in `collision_mode: contact`; null takes `world.drive_tau`."""
+    wheelbase: Annotated[Meters, Field(ge=0)] | None = None
+    """Distance between the axles for the motion model; null takes the shape's `wheelbase`."""
+
+
+class CustomKinematics(KinematicsOptions):
+    """A drive registered by user code: its own keys reach the registered function as they are."""
+
+    model_config = ConfigDict(extra="allow")

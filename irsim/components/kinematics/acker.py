@@ -1,0 +1,38 @@
+"""``acker``: car-like steering."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.kinematics._options import KinematicsOptions
+from irsim.options.registry import KINEMATICS
+from irsim.options.units import Number, Radians
+
+
+class Acker(KinematicsOptions):
+    """Ackermann steering: controls are forward speed and steering angle, or its rate.
+
+    The fourth state row is the steering angle. The reference point is the middle of the rear axle; a missing wheelbase
+    counts as 1 m.
+    """
+
+    state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "steer")
+    control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
+    control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
+    picture: ClassVar[str | None] = "car_green.png"
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "acker", "wheelbase": 3.0}]}
+
+    name: Literal["acker"] = "acker"
+    alpha: Annotated[list[Annotated[Number, Field(ge=0)]], Field(min_length=4, max_length=4)] = [0.03, 0.0, 0.0, 0.03]
+    """Noise variances: linear from v², linear from the second control², second control from v², from itself²."""
+    mode: Literal["steer", "angular"] = "steer"
+    """Second control: `steer` is the steering angle, `angular` the rate at which it changes."""
+    psi_max: Annotated[Radians, Field(gt=0)] | None = None
+    """Largest steering angle; null leaves it to `vel_max` in `steer` mode and unlimited in `angular` mode."""
+
+
+KINEMATICS.register(Acker, kernel=core.AckerOptions)

@@ -1,0 +1,25 @@
+"""``static``: no drive at all."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from irsim.components.kinematics._options import KinematicsOptions
+from irsim.options.registry import KINEMATICS
+from irsim.options.units import Number
+
+
+class Static(KinematicsOptions):
+    """The object never moves by itself, the same as no `kinematics` at all."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "static"}]}
+
+    name: Literal["static"] = "static"
+    alpha: list[Number] = []
+    """Accepted and ignored: what does not move has no noise."""
+
+
+@KINEMATICS.register(Static)
+def stay(pose: Any, control: Any, dt: float) -> Any:
+    """The pose after one period: the same."""
+    return pose

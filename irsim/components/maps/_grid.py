@@ -1,0 +1,136 @@
+"""The map of a world: its cells for the core, its occupancies for scripts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import irsim._core as core
+from irsim.components.maps._site import Noise, Raster
+
+if TYPE_CHECKING:
+    from irsim.components.maps._site import Floats
+
+__all__ = ["MapCells", "MapGrid", "Walls", "map_grid"]
+
+_MOST_CELLS = 2**31 - 1
+"""Along one side of a map."""
+
+
+@dataclass(frozen=True)
+class MapCells:
+    """Shape of the object that a map is; the name is what scripts see.
+
+    Attributes:
+        grid: The map.
+    """
+
+    grid: MapGrid
+    name: str = "map"
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the cells are the same in every scene."""
+        return self.grid.cells is not None
+
+    def parts(self) -> list[core.Part]:
+        """Geometry for the core, world frame."""
+        return [self.grid.part]
+
+    def model_dump(self) -> dict[str, str]:
+        """The shape as it would be written."""
+        return {"name": self.name}
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Shape of the walls round the world.
+
+    Attributes:
+        bounds: xmin, ymin, xmax, ymax [m].
+    """
+
+    bounds: tuple[float, float, float, float]
+    name: str = "walls"
+    fixed: bool = True
+
+    def parts(self) -> list[core.Part]:
+        """Geometry for the core, world frame."""
+        x0, y0, x1, y1 = self.bounds
+        return [core.Room(vertices=[[x0, y0], [x0, y1], [x1, y1], [x1, y0]])]
+
+    def model_dump(self) -> dict[str, str]:
+        """The shape as it would be written."""
+        return {"name": self.name}
+
+
+@dataclass(frozen=True)
+class MapGrid:
+    """An occupancy grid over a rectangle of the world.
+
+    Attributes:
+        size: Cells along x and y.
+        cell: Extent of a cell along x and y [m].
+        origin: Lower left corner, world frame [m].
+        part: Shape for the core: fixed cells, or noise that is drawn per scene.
+        raster: The occupancies; None where they are drawn per scene.
+        cells: Occupied cells; None where they are drawn per scene.
+    """
+
+    size: tuple[int, int]
+    cell: tuple[float, float]
+    origin: tuple[float, float]
+    part: core.Part
+    raster: Raster | None
+    cells: core.OccupancyGrid | None
+
+    @property
+    def occupied(self) -> int:
+        """Number of occupied cells; -1 where it differs from scene to scene."""
+        return self.cells.count if self.cells is not None else -1
+
+    def values(self) -> Floats:
+        """(nx, ny) occupancies, 0 to 100.
+
+        Raises:
+            ValueError: They are drawn per scene.
+        """
+        if self.raster is None:
+            raise ValueError("this map is drawn per scene")
+        return self.raster.values()
+
+
+def map_grid(
+    source: Raster | Noise, width: float, height: float, origin: tuple[float, float], downsample: int = 1
+) -> MapGrid:
+    """Lay a raster or noise over a rectangle.
+
+    Args:
+        source: What a generator gave.
+        width: Of the rectangle [m].
+        height: Of the rectangle [m].
+        origin: Its lower left corner, world frame [m].
+        downsample: Keep every so many rows and columns.
+    """
+    downsample = min(downsample, _MOST_CELLS)  # that leaves one cell of any map
+    if isinstance(source, Noise):
+        nx, ny = (-(-n // downsample) for n in source.size)
+        cell = (width / nx, height / ny)
+        part: core.Part = core.PerlinCells(
+            size=source.size,
+            every=downsample,
+            origin=origin,
+            cell_size=cell,
+            complexity=source.complexity,
+            fill=source.fill,
+            fractal=source.fractal,
+            attenuation=source.attenuation,
+        )
+        return MapGrid((nx, ny), cell, origin, part, None, None)
+    raster = source
+    if downsample > 1:
+        raster = Raster(source.levels[::downsample, ::downsample], source.table)
+    nx, ny = raster.levels.shape
+    cell = (width / nx, height / ny)
+    cells = core.OccupancyGrid(raster.occupied(), origin, cell)
+    return MapGrid((nx, ny), cell, origin, core.GridCells(grid=cells), raster, cells)

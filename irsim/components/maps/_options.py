@@ -1,0 +1,14 @@
+"""What every map generator's options have in common."""
+
+from __future__ import annotations
+
+from irsim.options.base import Options
+
+__all__ = ["MapOptions"]
+
+
+class MapOptions(Options):
+    """Where the occupancy grid of the world comes from."""
+
+    name: str
+    """Which generator."""

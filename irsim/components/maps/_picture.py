@@ -1,0 +1,112 @@
+"""Picture files as grey levels."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from irsim.components.maps._site import MapProblem, MapSite, Raster
+
+if TYPE_CHECKING:
+    from irsim.components.maps._site import Floats
+
+__all__ = ["image_raster", "open_picture", "upright"]
+
+_WEIGHTS = (0.2989, 0.5870, 0.1140)
+"""Of red, green and blue in grey (ITU-R BT.601, rounded as in MATLAB's rgb2gray)."""
+
+
+def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bool]:
+    """Pixels of a picture.
+
+    Args:
+        path: The file.
+        name: What to call it in messages.
+        site: Limits.
+
+    Returns:
+        (H, W) or (H, W, channels) pixels, and whether the file is a PNG.
+
+    Raises:
+        MapProblem: It cannot be read, or has too many pixels.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Pillow's own limit is lower than ours
+            image = Image.open(path)
+        with image:
+            site.check_cells(*image.size)
+            if image.mode in ("P", "PA", "1", "CMYK", "YCbCr", "LAB", "HSV"):
+                has_alpha = image.mode == "PA" or "transparency" in image.info
+                converted = image.convert("RGBA" if has_alpha else "L" if image.mode == "1" else "RGB")
+            else:
+                converted = image
+            return np.asarray(converted), image.format == "PNG"
+    except (OSError, ValueError, SyntaxError, EOFError, Image.DecompressionBombError) as error:
+        raise MapProblem(
+            "map-unreadable",
+            f"'{name}' cannot be read as a picture: {_reason(error)}",
+            given=name,
+            fix="save it as a grey PNG: black is occupied, white is free",
+        ) from None
+
+
+def upright(pixels: NDArray[Any]) -> NDArray[Any]:
+    """(H, W) rows from the top → (nx, ny), i along +x, j along +y from the bottom."""
+    return pixels.T[:, ::-1]
+
+
+def image_raster(pixels: NDArray[Any], is_png: bool) -> Raster:
+    """Occupancy of a picture: black is 100, white 0; colours count by their brightness, opacity not at all.
+
+    Args:
+        pixels: (H, W) or (H, W, channels).
+        is_png: Levels are scaled to [0, 1] in single precision, as Matplotlib reads PNG files.
+    """
+    full = _full_scale(pixels)
+    plain = pixels if pixels.ndim == 2 else _one_channel(pixels)
+    if plain is not None and plain.dtype == np.uint8:
+        levels = np.arange(256, dtype=np.uint8)[None]
+        greys = levels if pixels.ndim == 2 else np.stack([levels] * 3, axis=-1)
+        return Raster(upright(plain), _occupancy(greys, is_png, full, int(plain.max()))[0])
+    return Raster(np.ascontiguousarray(upright(_occupancy(pixels, is_png, full, None))))
+
+
+def _occupancy(pixels: NDArray[Any], is_png: bool, full: float, peak: int | None) -> Floats:
+    """100 (1 - grey). ``peak``: the brightest level that occurs; None looks it up."""
+    values: Any = pixels
+    if is_png:
+        values = (pixels / full).astype(np.float32) if pixels.dtype != np.bool_ else pixels.astype(np.float32)
+    if values.ndim > 2:
+        red, green, blue = (
+            values[..., c].astype(np.float64) for c in (range(3) if values.shape[-1] > 2 else (0, 0, 0))
+        )
+        values = _WEIGHTS[0] * red + _WEIGHTS[1] * green + _WEIGHTS[2] * blue
+    elif not is_png and full > 1:
+        return np.asarray(100.0 * (1.0 - values / full), dtype=np.float64)
+    if not is_png:
+        top = float(values.max()) if peak is None else float(sum(_WEIGHTS) * peak)
+        values = values / top if top > 1 else values
+    return np.asarray(100.0 * (1.0 - values.astype(np.float64)), dtype=np.float64)
+
+
+def _one_channel(pixels: NDArray[Any]) -> NDArray[Any] | None:
+    """The channel that all colours share."""
+    if pixels.shape[-1] < 3:
+        return pixels[..., 0]
+    same = bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())
+    return pixels[..., 0] if same else None
+
+
+def _full_scale(pixels: NDArray[Any]) -> float:
+    return float(np.iinfo(pixels.dtype).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
+
+
+def _reason(error: Exception) -> str:
+    text = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return text.splitlines()[0] if text.splitlines() else type(error).__name__

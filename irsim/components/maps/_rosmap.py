@@ -1,0 +1,243 @@
+"""Maps as the ROS map server stores them: a YAML file and a picture.
+
+The meaning of the keys follows http://wiki.ros.org/map_server (modes trinary, scale and raw).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from irsim.components.maps._picture import open_picture, upright
+from irsim.components.maps._site import MapProblem, MapSite, Raster, cells_along
+
+__all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
+
+Floats = NDArray[np.float64]
+MODES = ("trinary", "scale", "raw")
+UNKNOWN = -1.0
+_MOST_YAML = 64 * 1024
+_SAMPLES = 3  # per cell and axis, so that thin walls survive a turn
+_SQUARE = 1e-9
+_FREE_PIXEL, _UNKNOWN_PIXEL = 254, 205  # as the map server's own saver writes them
+
+
+@dataclass(frozen=True)
+class RosMeta:
+    """The YAML file.
+
+    Attributes:
+        image: Name of the picture.
+        resolution: Side of a pixel [m].
+        origin: x, y [m] and yaw [rad] of the lower left corner.
+        negate: White is occupied.
+        occupied_thresh, free_thresh: Occupancies (0 to 1) above and below which a pixel is occupied and free.
+        mode: ``trinary``, ``scale`` or ``raw``.
+    """
+
+    image: str
+    resolution: float
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    negate: bool = False
+    occupied_thresh: float = 0.65
+    free_thresh: float = 0.196
+    mode: str = "trinary"
+
+    def as_yaml(self) -> str:
+        """The file's text."""
+        x, y, yaw = self.origin
+        return (
+            f"image: {self.image}\nmode: {self.mode}\nresolution: {self.resolution!r}\n"
+            f"origin: [{x!r}, {y!r}, {yaw!r}]\nnegate: {int(self.negate)}\n"
+            f"occupied_thresh: {self.occupied_thresh!r}\nfree_thresh: {self.free_thresh!r}\n"
+        )
+
+
+def read_meta(path: Path, name: str) -> RosMeta:
+    """The YAML file of a map.
+
+    Raises:
+        MapProblem: It is none, or has a wrong value; names the key.
+    """
+    try:
+        with path.open("rb") as file:
+            content = file.read(_MOST_YAML + 1)
+        if len(content) > _MOST_YAML:
+            raise _wrong(name, "it is too large for the YAML file of a map (is it the picture?)")
+        data = yaml.safe_load(content.decode("utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError) as error:
+        text = str(error).splitlines()[0] if str(error) else type(error).__name__
+        raise _wrong(name, f"it cannot be read as YAML: {text}") from None
+    if not isinstance(data, dict):
+        raise _wrong(name, "it is no mapping with the keys image, resolution and origin")
+    for key in ("image", "resolution"):
+        if key not in data:
+            raise _wrong(name, f"'{key}' is missing")
+    resolution = _number(data["resolution"], name, "resolution")
+    if not 0 < resolution < math.inf:
+        raise _wrong(name, f"'resolution' must be positive, not {resolution:g}")
+    origin = data.get("origin", [0.0, 0.0, 0.0])
+    if not isinstance(origin, list) or len(origin) not in (2, 3):
+        raise _wrong(name, "'origin' is [x, y, yaw]")
+    x, y, yaw = (_number(value, name, "origin") for value in [*origin, 0.0][:3])
+    occupied, free = (
+        _number(data.get(key, standard), name, key)
+        for key, standard in (("occupied_thresh", 0.65), ("free_thresh", 0.196))
+    )
+    if not 0 <= free <= occupied <= 1:
+        raise _wrong(name, f"0 <= free_thresh <= occupied_thresh <= 1 does not hold ({free:g}, {occupied:g})")
+    mode = data.get("mode", "trinary")
+    if mode not in MODES:
+        raise _wrong(name, f"'mode' is one of {', '.join(MODES)}, not '{mode}'")
+    if not isinstance(data["image"], str):
+        raise _wrong(name, "'image' is the name of a picture")
+    negate = bool(_number(data.get("negate", 0), name, "negate"))
+    return RosMeta(data["image"], resolution, (x, y, yaw), negate, occupied, free, mode)
+
+
+def occupancy_of(pixels: NDArray[Any], meta: RosMeta) -> Floats:
+    """Occupancy of each pixel.
+
+    Args:
+        pixels: (H, W) or (H, W, channels), 8 or 16 bits or floats.
+        meta: Thresholds and mode.
+
+    Returns:
+        (H, W) 0 to 100, -1 where it is unknown.
+    """
+    values = pixels.astype(np.float64)
+    scale = float(np.iinfo(pixels.dtype).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
+    alpha: Floats | None = None
+    if values.ndim > 2:
+        channels = values.shape[-1]
+        if channels in (2, 4):
+            alpha = values[..., -1] / scale
+        values = values[..., : 1 if channels < 3 else 3].mean(axis=-1)
+    if meta.mode == "raw":
+        level = values * (255.0 / scale)
+        return np.where(level <= 100, level, UNKNOWN)
+    part = values / scale if meta.negate else 1.0 - values / scale
+    between: Any = UNKNOWN
+    if meta.mode == "scale":
+        between = np.round(99 * (part - meta.free_thresh) / max(meta.occupied_thresh - meta.free_thresh, 1e-12))
+    out = np.where(part > meta.occupied_thresh, 100.0, np.where(part < meta.free_thresh, 0.0, between))
+    if meta.mode == "scale" and alpha is not None:
+        out = np.where(alpha < 1.0, UNKNOWN, out)
+    return out
+
+
+def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
+    """What :func:`occupancy_of` reads back.
+
+    Args:
+        values: (nx, ny) occupancies 0 to 100, -1 where unknown.
+        meta: Thresholds and mode.
+
+    Returns:
+        (H, W) grey levels, or in mode ``scale`` with unknown cells (H, W, 2) with opacity.
+    """
+    rows = values[:, ::-1].T
+    if meta.mode == "raw":
+        return np.where(rows < 0, 255, np.clip(np.round(rows), 0, 100)).astype(np.uint8)
+    if meta.mode == "trinary":
+        unknown = round(255 * (1 - (meta.occupied_thresh + meta.free_thresh) / 2))
+        unknown = _UNKNOWN_PIXEL if meta.free_thresh < 1 - _UNKNOWN_PIXEL / 255 < meta.occupied_thresh else unknown
+        grey = np.where(rows < 0, unknown, np.where(rows > 50, 0, _FREE_PIXEL))
+    else:
+        part = meta.free_thresh + np.clip(rows, 0, 100) / 99 * (meta.occupied_thresh - meta.free_thresh)
+        part = np.where(rows <= 0, 0.0, np.where(rows > 99, 1.0, part))
+        grey = np.round(255 * (1 - part))
+    if meta.negate:
+        grey = 255 - grey
+    grey = grey.astype(np.uint8)
+    if meta.mode == "scale" and (rows < 0).any():
+        return np.stack([grey, np.where(rows < 0, 0, 255).astype(np.uint8)], axis=-1)
+    return grey
+
+
+def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
+    """A map over the rectangle that the world wants, or over its own.
+
+    Args:
+        path: The YAML file.
+        name: What to call it in messages.
+        site: The world, and where files may be.
+        unknown: Occupancy of unknown cells.
+
+    Raises:
+        MapProblem: The file or its picture cannot be used.
+    """
+    meta = read_meta(path, name)
+    picture = site.find(meta.image, beside=path.parent)
+    pixels, _ = open_picture(picture, meta.image, site)
+    values = np.ascontiguousarray(upright(occupancy_of(pixels, meta)))
+    width, height, origin = _extent(values.shape, meta)
+    wanted = (
+        site.width if site.width is not None else width,
+        site.height if site.height is not None else height,
+        site.origin if site.origin is not None else origin,
+    )
+    size = cells_along(wanted[0], meta.resolution), cells_along(wanted[1], meta.resolution)
+    site.check_cells(*size)
+    plain = meta.origin[2] == 0.0 and size == values.shape and wanted[2] == origin
+    if not (plain and abs(wanted[0] - width) <= _SQUARE * width and abs(wanted[1] - height) <= _SQUARE * height):
+        values = _resampled(values, meta, size, wanted, unknown)
+    values = np.where(values < 0, unknown, values)
+    return Raster(values, None, wanted[0], wanted[1], wanted[2])
+
+
+def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[float, float]]:
+    """Width, height and lower left corner of the box around the (turned) picture, in whole cells."""
+    r, (x, y, yaw) = meta.resolution, meta.origin
+    if yaw == 0.0:
+        return shape[0] * r, shape[1] * r, (x, y)
+    c, s = math.cos(yaw), math.sin(yaw)
+    corners = np.array([(0, 0), (shape[0], 0), (0, shape[1]), shape[:2]]) * r @ np.array([[c, s], [-s, c]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    cells = np.ceil((high - low) / r - 1e-6)
+    return float(cells[0] * r), float(cells[1] * r), (x + float(low[0]), y + float(low[1]))
+
+
+def _resampled(
+    values: Floats,
+    meta: RosMeta,
+    size: tuple[int, int],
+    wanted: tuple[float, float, tuple[float, float]],
+    unknown: float,
+) -> Floats:
+    """The highest occupancy that samples of each wanted cell find in the picture; what is outside it is unknown."""
+    (nx, ny), (x, y, yaw) = size, meta.origin
+    c, s = math.cos(yaw), math.sin(yaw)
+    best = np.full(size, -math.inf)
+    offsets = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    for a in offsets:
+        for b in offsets:
+            px = wanted[2][0] + (np.arange(nx)[:, None] + a) * (wanted[0] / nx) - x
+            py = wanted[2][1] + (np.arange(ny)[None, :] + b) * (wanted[1] / ny) - y
+            i = np.floor((c * px + s * py) / meta.resolution).astype(np.int64)
+            j = np.floor((-s * px + c * py) / meta.resolution).astype(np.int64)
+            known = (i >= 0) & (j >= 0) & (i < values.shape[0]) & (j < values.shape[1])
+            found = values[np.where(known, i, 0), np.where(known, j, 0)]
+            best = np.maximum(best, np.where(known & (found >= 0), found, UNKNOWN))
+    return best
+
+
+def _number(value: Any, name: str, key: str) -> float:
+    if isinstance(value, (int, float)) and math.isfinite(value):
+        return float(value)
+    raise _wrong(name, f"'{key}' is a number, not {value!r}")
+
+
+def _wrong(name: str, why: str) -> MapProblem:
+    return MapProblem(
+        "map-unreadable",
+        f"'{name}' is no ROS map: {why}",
+        given=name,
+        fix="give the YAML file with the keys image, resolution, origin, negate, occupied_thresh and free_thresh",
+    )

@@ -1,0 +1,38 @@
+"""``image``: dark pixels are occupied."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.maps._bundled import stand_in
+from irsim.components.maps._options import MapOptions
+from irsim.components.maps._site import MapSite, Raster
+from irsim.options.registry import MAPS
+
+
+class ImageMap(MapOptions):
+    """A grey-scale picture stretched over the world: black is occupied, white is free."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "image", "path": "cave.png"}]}
+
+    name: Literal["image"] = "image"
+    path: Annotated[str, Field(strict=True, min_length=1)]
+    """Picture file: as written, beside the scenario, or one of the bundled maps."""
+
+
+@MAPS.register(ImageMap)
+def image(options: ImageMap, site: MapSite) -> Raster:
+    """The picture as it is; pixels need not be square.
+
+    Raises:
+        MapProblem: There is no such picture, or it cannot be read.
+    """
+    from irsim.components.maps._picture import image_raster, open_picture
+
+    path = site.find(options.path)
+    own = stand_in(options.path)
+    if own is not None and path.name == own:
+        site.notes.append(("map-stand-in", f"'{options.path}' does not come along: '{own}' is used in its place"))
+    return image_raster(*open_picture(path, options.path, site))

@@ -1,0 +1,39 @@
+"""``ros``: maps as the ROS map server stores them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.maps._options import MapOptions
+from irsim.components.maps._site import MapSite, Raster
+from irsim.options.registry import MAPS
+
+
+class RosMap(MapOptions):
+    """A picture with a YAML file that gives resolution, origin and thresholds, as the ROS map server reads them."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros", "path": "map.yaml"}]}
+
+    sets_extent: ClassVar[bool] = True
+    """The world takes its extent and offset from the map where the scenario gives none."""
+
+    name: Literal["ros"] = "ros"
+    path: Annotated[str, Field(strict=True, min_length=1)]
+    """The map's YAML file."""
+    unknown: Literal["free", "occupied"] = "free"
+    """What cells count as that are neither."""
+
+
+@MAPS.register(RosMap)
+def ros(options: RosMap, site: MapSite) -> Raster:
+    """The map where it says it is; turned ones are sampled anew.
+
+    Raises:
+        MapProblem: A file is missing or wrong.
+    """
+    from irsim.components.maps._rosmap import ros_raster
+
+    path = site.find(options.path)
+    return ros_raster(path, options.path, site, 100.0 if options.unknown == "occupied" else 0.0)

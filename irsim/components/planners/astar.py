@@ -1,0 +1,20 @@
+"""``astar``: A* on a grid."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import irsim._core as core
+from irsim.components.planners._options import GridPlanner
+from irsim.options.registry import PLANNERS
+
+
+class AStar(GridPlanner):
+    """Shortest path over the eight neighbours of each cell (A*)."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "astar"}]}
+
+    name: Literal["astar"] = "astar"
+
+
+PLANNERS.register(AStar, kernel=core.AstarOptions)

@@ -1,0 +1,20 @@
+"""``jps``: jump point search on a grid."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+import irsim._core as core
+from irsim.components.planners._options import GridPlanner
+from irsim.options.registry import PLANNERS
+
+
+class Jps(GridPlanner):
+    """The paths of A*, found by jumping over cells that need no decision."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "jps"}]}
+
+    name: Literal["jps"] = "jps"
+
+
+PLANNERS.register(Jps, kernel=core.JpsOptions)

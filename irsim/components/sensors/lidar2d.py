@@ -1,0 +1,97 @@
+"""``lidar2d``: a planar range scanner."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.sensors._options import SensorOptions
+from irsim.options.angles import SpanAngle
+from irsim.options.base import Options
+from irsim.options.colors import Color
+from irsim.options.registry import SENSORS
+from irsim.options.units import Bool, Fraction, Integer, Meters, Radians, Seconds
+from irsim.options.vectors import Offset
+
+
+class BeamPlot(Options):
+    """How a lidar's beams are drawn."""
+
+    alpha: Fraction | None = None
+    """Opacity of the beams; null takes the sensor's own `alpha`."""
+    color: Color | None = None
+    """Colour of the beams; null takes the sensor's own `color`."""
+
+
+class Lidar2d(SensorOptions):
+    """Planar lidar: `number` beams spread over `angle_range`, both ends included; index 0 is the rightmost."""
+
+    is_lidar: ClassVar[bool] = True
+
+    also_called: ClassVar[dict[str, str]] = {
+        "range": "range_max",
+        "max_range": "range_max",
+        "reach": "range_max",
+        "min_range": "range_min",
+        "beams": "number",
+        "num_beams": "number",
+        "n_beams": "number",
+        "rays": "number",
+        "samples": "number",
+        "resolution": "number",
+        "angle": "angle_range",
+        "fov": "angle_range",
+        "opening": "angle_range",
+        "pose": "offset",
+        "position": "offset",
+        "noise_std": "std",
+        "sigma": "std",
+    }
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "examples": [{"name": "lidar2d", "number": 180, "range_max": 8.0, "angle_range": 6.28318}]
+    }
+
+    name: Literal["lidar2d"] = "lidar2d"
+    range_min: Annotated[Meters, Field(ge=0)] = 0.0
+    """Shortest range; nearer hits read this value and are not valid."""
+    range_max: Annotated[Meters, Field(gt=0)] = 10.0
+    """Length of the beams; a beam that hits nothing reads this value."""
+    angle_range: SpanAngle = 3.141592653589793
+    """Total opening angle, symmetric about the sensor's x axis; 6.28318 is a full turn."""
+    number: Annotated[Integer, Field(ge=1, le=1_000_000)] = 100
+    """How many beams, both ends included; over a full turn the first and the last look the same way: 361 beams are 360
+    directions, for exactly 360 use `angle_range` 6.26573."""
+    scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
+    """Time of one scan, reported in messages only."""
+    noise: Bool = False
+    """Add Gaussian noise to the ranges of beams that hit something."""
+    std: Annotated[Meters, Field(ge=0)] = 0.2
+    """Standard deviation of the range noise."""
+    angle_std: Annotated[Radians, Field(ge=0)] = 0.0
+    """Standard deviation of each beam's direction, with `noise`."""
+    offset: Offset = [0.0, 0.0, 0.0]
+    """Mounting pose in the body frame: [x, y, theta]."""
+    has_velocity: Bool = False
+    """Also record the world velocity of what each beam hits."""
+    plot: BeamPlot = BeamPlot()
+    """Drawing options; they win over `alpha` and `color` beside them."""
+    alpha: Fraction = 0.3
+    """Opacity of the drawn beams."""
+    color: Color = "#CC3311"
+    """Colour of the drawn beams."""
+
+    @property
+    def drawn_alpha(self) -> float:
+        """Opacity to draw with."""
+        return self.alpha if self.plot.alpha is None else self.plot.alpha
+
+    @property
+    def drawn_color(self) -> str | tuple[float, ...]:
+        """Colour to draw with."""
+        color: str | tuple[float, ...] = self.color if self.plot.color is None else self.plot.color
+        return color
+
+
+SENSORS.register(Lidar2d, kernel=core.Lidar2dOptions)

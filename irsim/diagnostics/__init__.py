@@ -1,0 +1,1 @@
+"""Errors as data: codes, findings, exceptions and their text."""

@@ -1,0 +1,102 @@
+"""Findings about a scenario, as data: one :class:`Diagnostic` per problem, codes from one closed list."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+from irsim.diagnostics.codes import CODES
+
+__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "nearest", "surely"]
+
+Severity = Literal["error", "warning", "hint"]
+Path = tuple[str | int, ...]
+_ORDER = {"error": 0, "warning": 1, "hint": 2}
+_SLIP = 0.75
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A machine-applicable repair: what to do with the node at ``path``.
+
+    ``safe``: it does what was surely meant; otherwise it is one way out, and nobody but the author can choose it.
+    """
+
+    action: Literal["remove", "replace", "rename", "add"]
+    path: Path
+    value: Any = None
+    safe: bool = True
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One finding.
+
+    Attributes:
+        code: Kebab-case name from :data:`irsim.diagnostics.codes.CODES`.
+        severity: ``error`` (will not run as asked), ``warning`` (runs, but likely not what was meant), ``hint``.
+        path: Where in the document, e.g. ``("robot", 0, "behavior", "name")``.
+        message: One sentence, without the location.
+        line, column: Position of the node in the text, counted from 1; None when the source has no text.
+        length: Characters to underline.
+        given: The offending value, as written.
+        allowed: What would be accepted: names, a range, a type.
+        fix: What to write instead, in words a person or agent can act on.
+        edit: The best repair as a machine-applicable edit, where that is safe.
+        tolerated: True for errors that IR-SIM 2.12 carries on with: ``irsim.make`` and ``irsim run`` do what it does
+            (which may be to ignore the key that ``edit`` would rename) and show a warning unless asked to be strict.
+        file: Name of the document.
+    """
+
+    code: str
+    severity: Severity
+    path: Path
+    message: str
+    line: int | None = None
+    column: int | None = None
+    length: int = 1
+    given: Any = None
+    allowed: Sequence[str] | str | None = None
+    fix: str | None = None
+    edit: Edit | None = None
+    tolerated: bool = False
+    file: str | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if self.code not in CODES:
+            raise ValueError(f"undocumented diagnostic code {self.code!r}: add it to irsim/diagnostics/codes.py")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON: stable keys, path as text."""
+        data = asdict(self)
+        data["path"] = format_path(self.path)
+        if self.edit is not None:
+            data["edit"] = {"action": self.edit.action, "path": format_path(self.edit.path), "value": self.edit.value}
+        return data
+
+
+def format_path(path: Path) -> str:
+    """``("robot", 0, "shape")`` as ``robot[0].shape``; the document itself is ``(document)``."""
+    text = ""
+    for part in path:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else str(part)
+    return text or "(document)"
+
+
+def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | None:
+    """The choice most like ``word``, or None when nothing is close."""
+    lowered = {str(choice).lower(): str(choice) for choice in choices}
+    found = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
+    return lowered[found[0]] if found else None
+
+
+def surely(word: object, meant: str) -> bool:
+    """Whether ``word`` can hardly mean anything but ``meant``: a slip of a letter or two."""
+    return nearest(word, [meant], _SLIP) is not None
+
+
+def by_severity(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Errors first, then warnings, then hints; each in document order."""
+    return sorted(diagnostics, key=lambda d: (_ORDER[d.severity], d.line or 0, d.column or 0))

@@ -1,0 +1,188 @@
+"""Many worlds of one scenario, stepped together; each is bit-identical to the same world alone.
+
+``irsim.batch(…)``, the function, and this module have the same name: calling the module calls the function.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.objects.extensions.attach import attach_python
+from irsim.scenario.open import open_scenario
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.random_streams import check_seed, fresh_seed
+from irsim.simulation.simulation import Simulation
+
+__all__ = ["Batch", "batch"]
+
+Floats = NDArray[np.float64]
+_MAX_ROWS = 10_000_000
+"""Objects of a batch; each takes about a kilobyte."""
+
+
+class Batch:
+    """``n`` worlds of N objects each.
+
+    World i equals ``irsim.make(scenario, seed=seeds[i])`` bit for bit, whatever the number of threads; its k-th masked
+    reset equals that environment's k-th ``reset(random=True)``. Arrays are views of the engine's memory: they show
+    the present state and change with the next step; copy what you keep.
+
+    Attributes:
+        pose: (n, N, 3) x, y [m], heading [rad], world frame.
+        extra: (n, N, E) extra state rows (steering angle of Ackermann drives first).
+        velocity: (n, N, 3) executed controls, command frame, zero padded.
+        twist: (n, N, 3) true velocity [m/s], world frame, and yaw rate [rad/s].
+        goal: (n, N, 3) present goals; NaN where there is none (or no goal heading).
+        arrived, collided, stopped: (n, N) uint8 flags.
+        infeasible: (n, N) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
+        ranges: (n, B) ranges of all lidars of a world, one after another [m].
+        explored: (n, nx, ny) uint8, cells of the fog map that robots have seen; no cells without ``fog_map``.
+        count: (n,) executed steps of each episode.
+        seeds: The seeds.
+        names: Names of the N objects.
+        robots: Ids of the robots.
+    """
+
+    def __init__(self, scenario: ResolvedScenario, seeds: Sequence[int], threads: int) -> None:
+        self.scenario = scenario
+        self.seeds = [check_seed(seed) for seed in seeds]
+        self._simulation = Simulation(scenario, self.seeds, threads=threads)
+        attach_python(self._simulation)
+        simulation, n, objects = self._simulation, len(self.seeds), self._simulation.objects
+        self.n = n
+        self.names = tuple(record.name for record in scenario.objects)
+        self.robots = np.flatnonzero(simulation.robots)
+        self.pose = simulation.pose.reshape(n, objects, 3)
+        self.extra = simulation.extra.reshape(n, objects, -1)
+        self.velocity = simulation.control.reshape(n, objects, 3)
+        self.twist = simulation.twist.reshape(n, objects, 3)
+        self.goal = simulation.goal.reshape(n, objects, 3)
+        self.arrived = simulation.arrived.reshape(n, objects)
+        self.collided = simulation.collided.reshape(n, objects)
+        self.stopped = simulation.stopped.reshape(n, objects)
+        self.infeasible = simulation.infeasible.reshape(n, objects)
+        self.ranges = simulation.ranges.reshape(n, simulation.world.beams_per_world)
+        self.explored = simulation.state.explored
+        self.count = simulation.count
+        self._command = simulation.command.reshape(n, objects, 3)
+        self._given = simulation.given.reshape(n, objects)
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation behind the batch."""
+        return self._simulation
+
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """(n,) whether every robot of a world has arrived or stopped."""
+        return self._simulation.done()
+
+    def step(self, actions: Any = None) -> None:
+        """Advance every world by one period.
+
+        Args:
+            actions: None lets behaviors drive; (n, k, c) controls of the first k robots, c at least the number of
+                control components of each (surplus columns are ignored). NaN in the first component leaves a robot
+                to its behavior.
+
+        Raises:
+            ValueError: Another shape.
+        """
+        if actions is not None:
+            self._impose(np.asarray(actions, dtype=np.float64))
+        self._simulation.step()
+
+    def _impose(self, actions: Floats) -> None:
+        robots = len(self.robots)
+        if actions.ndim != 3 or actions.shape[0] != self.n or not 1 <= actions.shape[1] <= robots:
+            raise ValueError(f"actions are ({self.n}, up to {robots}, controls), not {actions.shape}")
+        if actions.shape[2] > 3 or actions.shape[2] < max(
+            self.scenario.objects[i].vel_dim for i in range(actions.shape[1])
+        ):
+            raise ValueError(f"actions have {actions.shape[2]} numbers each; these drives take another number")
+        acting, width = actions.shape[1], actions.shape[2]
+        given = ~np.isnan(actions[:, :, 0])
+        if not np.isfinite(actions[given]).all():
+            raise ValueError("an action is not finite; only NaN in its first component (no action) has a meaning")
+        self._command[:, :acting, :width] = np.where(given[:, :, None], actions, 0.0)
+        self._given[:, :acting] = given
+
+    def advance(self, steps: int, *, until_done: bool = False) -> int:
+        """Let behaviors drive for ``steps`` periods in one go.
+
+        Returns:
+            Periods executed by the world that went on longest.
+        """
+        return self._simulation.advance(steps, until_done=until_done)
+
+    def reset(self, mask: Any = None, *, random: bool | None = None) -> None:
+        """Start new episodes.
+
+        Args:
+            mask: (n,) worlds that start their next scene; None puts every world back to the start of its present one.
+            random: Says it explicitly: draw the next scene or keep the present one.
+
+        Raises:
+            ValueError: ``mask`` is not (n,).
+            PlacementError: A scene has no room for a random object.
+        """
+        chosen = None if mask is None else np.asarray(mask, dtype=bool)
+        if chosen is not None and chosen.shape != (self.n,):
+            raise ValueError(f"mask is ({self.n},), not {chosen.shape}")
+        self._simulation.reset(chosen, next_scene=mask is not None if random is None else random)
+
+
+def batch(
+    scenario: str | Path | ResolvedScenario,
+    n: int,
+    *,
+    seeds: Sequence[int] | None = None,
+    threads: int | None = None,
+    strict: bool = False,
+) -> Batch:
+    """Open ``n`` worlds of a scenario.
+
+    Args:
+        scenario: YAML file or resolved scenario.
+        n: How many worlds.
+        seeds: One per world; default: consecutive ones from the scenario's seed, or from fresh entropy.
+        threads: Default: one per core.
+        strict: As for ``irsim.make``.
+
+    Raises:
+        ValueError: ``n`` below 1 or not as many seeds.
+        ScenarioError: The file cannot be used.
+    """
+    if n < 1:
+        raise ValueError(f"a batch has at least one world, not {n}")
+    if isinstance(scenario, ResolvedScenario):
+        resolved = scenario
+    else:
+        resolved, _ = open_scenario(scenario, strict=strict)
+    if n * len(resolved.objects) > _MAX_ROWS:
+        raise ValueError(
+            f"{n:,} worlds of {len(resolved.objects):,} objects are more than {_MAX_ROWS:,} objects in all"
+        )
+    if seeds is None:
+        first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()
+        seeds = [first + i for i in range(n)]
+    if len(seeds) != n:
+        raise ValueError(f"{len(seeds)} seeds for {n} worlds")
+    return Batch(resolved, list(seeds), threads or os.cpu_count() or 1)
+
+
+class _CallableModule(ModuleType):
+    def __call__(self, *args: Any, **kwargs: Any) -> Batch:
+        """Open worlds: ``irsim.batch(…)`` after something has imported this module, which then has that name."""
+        return batch(*args, **kwargs)
+
+
+sys.modules[__name__].__class__ = _CallableModule

@@ -1,0 +1,259 @@
+"""Objects and worlds that scripts construct by themselves, with keywords."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Literal
+
+from irsim.env.parameters import WorldView
+from irsim.objects.lifecycle import alone
+from irsim.objects.view import ObjectView, set_views
+from irsim.scenario.model.scenario import Scenario, WorldModel
+from irsim.scenario.open import or_raise
+from irsim.scenario.read import read
+from irsim.scenario.resolve.expand import resolve
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.single_object import read_object
+from irsim.simulation.active_env import last_used
+from irsim.simulation.simulation import Simulation
+
+__all__ = [
+    "ObjectBase",
+    "ObjectGroup",
+    "ObjectStatic",
+    "ObstacleAcker",
+    "ObstacleDiff",
+    "ObstacleOmni",
+    "RobotAcker",
+    "RobotDiff",
+    "RobotOmni",
+    "World",
+]
+
+
+class _AnyObject(type):
+    """Every object of an environment is an ``ObjectBase``, whoever made it."""
+
+    def __instancecheck__(cls, instance: Any) -> bool:
+        return isinstance(instance, ObjectView) if cls.__name__ == "ObjectBase" else super().__instancecheck__(instance)
+
+
+class ObjectBase(ObjectView, metaclass=_AnyObject):
+    """An object made with the keys of a scenario entry; ``env.add_object`` puts it into a world.
+
+    Subclasses may override ``pre_process``, ``mid_process``, ``post_process``, ``gen_behavior_vel`` and ``step``.
+
+    Args:
+        shape: ``{"name": "circle", "radius": 0.2}``, …; by default a circle of 1 m.
+        kinematics: ``{"name": "diff"}``, …; None never moves.
+        state: Initial state, by default zeros.
+        velocity: Initial control.
+        goal: A goal, or a list of goals; None has none.
+        role: ``robot`` or ``obstacle``.
+        color: By default black.
+        **keys: The other keys of an entry.
+
+    Raises:
+        ScenarioError: The keys cannot be used.
+    """
+
+    def __init__(
+        self,
+        shape: Any = None,
+        kinematics: Any = None,
+        state: Any = None,
+        velocity: Any = None,
+        goal: Any = None,
+        role: Literal["robot", "obstacle"] = "obstacle",
+        color: Any = "k",
+        **keys: Any,
+    ) -> None:
+        env = last_used()
+        given = dict(shape=shape, kinematics=kinematics, state=state, velocity=velocity, goal=goal, color=color, **keys)
+        scenario = _empty() if env is None else env.simulation.scenario
+        number = 0 if env is None else next(env.env_param.id_iter)
+        record, found = read_object(role, given, scenario.world, number)
+        for item in found:
+            if env is not None:
+                env.logger.warning(f"{record.name}: {item.message} [{item.code}]")
+        simulation = alone(scenario, record, 0 if env is None else env.simulation.key()[0])
+        super().__init__(simulation, 0)
+        set_views(simulation, [self])
+        if env is not None:
+            self.surroundings = env._objects
+
+
+def _empty(**keys: Any) -> ResolvedScenario:
+    return resolve(Scenario(world=WorldModel(**keys)))
+
+
+class World(WorldView):
+    """A world by itself, without objects.
+
+    Args:
+        name: Its name.
+        height: Extent along y [m].
+        width: Extent along x [m].
+        step_time: Period of a step [s].
+        sample_time: Period of the drawn frames [s]; None: that of the steps.
+        offset: [x, y] of the lower left corner [m]; None: the origin.
+        step_mode, control_mode, collision_mode: As in a scenario.
+        gravity, friction, restitution, drive_tau: For ``collision_mode: contact``.
+        obstacle_map: An array (nx, ny) of occupancies, a picture file, or the mapping of a generator.
+        mdownsample: Keep every so many rows and columns of it.
+        fog_map, fog_map_resolution: Cells that robots have seen, and their size [m].
+        plot: Keys of the figure.
+        status: Word for titles.
+        world_param_instance: Accepted as it was before; a world has parameters of its own.
+        **keys: Other keys of the ``world`` section.
+
+    Raises:
+        ScenarioError: A key or value cannot be used.
+    """
+
+    def __init__(
+        self,
+        name: str | None = "world",
+        height: float = 10,
+        width: float = 10,
+        step_time: float = 0.1,
+        sample_time: float | None = None,
+        offset: Sequence[float] | None = None,
+        step_mode: str = "internal",
+        control_mode: str = "auto",
+        collision_mode: str = "stop",
+        gravity: float = 9.81,
+        friction: float = 0.5,
+        restitution: float = 0.0,
+        drive_tau: float = 0.0,
+        obstacle_map: Any = None,
+        mdownsample: int = 1,
+        fog_map: bool = False,
+        fog_map_resolution: float | None = None,
+        plot: dict[str, Any] | None = None,
+        status: str | None = None,
+        world_param_instance: Any = None,
+        **keys: Any,
+    ) -> None:
+        given = {key: value for key, value in locals().items() if key in WorldModel.model_fields and value is not None}
+        scenario, _ = or_raise(read({"world": {**given, **keys}}, strict=True, name="World"))
+        super().__init__(Simulation(scenario, [0]))
+
+
+class ObjectGroup(Sequence[ObjectView]):
+    """Objects that belong together; settings are those of the first.
+
+    Args:
+        members: The objects.
+        group_id: Number of the group; default: that of the first.
+    """
+
+    def __init__(self, members: Iterable[ObjectView], group_id: int | None = None) -> None:
+        self.members = list(members)
+        self.group_id = group_id if group_id is not None or not self.members else self.members[0].group
+
+    def __len__(self) -> int:
+        return len(self.members)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.members[index]
+
+    def __iter__(self) -> Iterator[ObjectView]:
+        return iter(self.members)
+
+    @property
+    def number(self) -> int:
+        """How many members."""
+        return len(self.members)
+
+    @property
+    def role(self) -> str | None:
+        """Role of the first member."""
+        return self.members[0].role if self.members else None
+
+    @property
+    def kinematics(self) -> str | None:
+        """Drive of the first member."""
+        return self.members[0].kinematics if self.members else None
+
+    @property
+    def group_behavior(self) -> dict[str, Any]:
+        """Keys of the group behavior of the first member; empty without one."""
+        return self.members[0].group_behavior_dict if self.members else {}
+
+    @property
+    def logger(self) -> Any:
+        """The logger of the environment of the first member; None without one."""
+        return self.members[0].logger if self.members else None
+
+    def gen_group_vel(self) -> list[Any]:
+        """The control each member would choose now, (vel_dim, 1) each; None for those that never move."""
+        return [None if view.static else view.gen_behavior_vel() for view in self.members]
+
+    def step(self, actions: Sequence[Any] | None = None, sensor_step: bool = True) -> None:
+        """Move each member alone by one period.
+
+        Args:
+            actions: A control for each; None, or None inside, lets behaviors choose.
+            sensor_step: Also read the sensors anew.
+        """
+        wanted = [None] * len(self.members) if actions is None else list(actions)
+        for view, action in zip(self.members, wanted, strict=True):
+            view.step(action, sensor_step=sensor_step)
+
+
+class _Old(ObjectBase):
+    """Classes that IR-SIM has deprecated."""
+
+    _fixed: tuple[Literal["robot", "obstacle"], str | None, Any] = ("obstacle", None, "k")
+
+    def __init__(self, color: Any = None, state_dim: int | None = None, **keys: Any) -> None:
+        role, drive, own_color = self._fixed
+        warnings.warn(
+            f"{type(self).__name__} is deprecated: use ObjectFactory or ObjectBase", DeprecationWarning, stacklevel=2
+        )
+        keys.pop("role", None)
+        kinematics = keys.pop("kinematics", None) or (None if drive is None else {"name": drive})
+        chosen = own_color if color is None else color
+        super().__init__(kinematics=kinematics, role=role, color=chosen, state_dim=state_dim, **keys)
+
+
+class ObjectStatic(_Old):
+    """An obstacle that never moves."""
+
+
+class ObstacleDiff(_Old):
+    """An obstacle with a differential drive."""
+
+    _fixed = ("obstacle", "diff", "k")
+
+
+class ObstacleOmni(_Old):
+    """An obstacle with an omnidirectional drive."""
+
+    _fixed = ("obstacle", "omni", "k")
+
+
+class ObstacleAcker(_Old):
+    """An obstacle with an Ackermann drive."""
+
+    _fixed = ("obstacle", "acker", "k")
+
+
+class RobotDiff(_Old):
+    """A robot with a differential drive."""
+
+    _fixed = ("robot", "diff", "g")
+
+
+class RobotOmni(_Old):
+    """A robot with an omnidirectional drive."""
+
+    _fixed = ("robot", "omni", "g")
+
+
+class RobotAcker(_Old):
+    """A robot with an Ackermann drive."""
+
+    _fixed = ("robot", "acker", "y")

@@ -1,0 +1,205 @@
+"""Objects from the entries of a scenario, and the configuration of an environment, under the names of IR-SIM."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import count
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from irsim.env.construct import ObjectBase, ObjectGroup
+from irsim.objects.lifecycle import alone
+from irsim.objects.view import ObjectView, views
+from irsim.scenario.open import open_scenario, or_raise
+from irsim.scenario.read import read
+from irsim.simulation.active_env import last_used
+from irsim.simulation.occupancy import OCCUPIED
+from irsim.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+
+__all__ = ["EnvConfig", "ObjectFactory"]
+
+Role = Literal["robot", "obstacle"]
+
+
+class ObjectFactory:
+    """Makes objects that are in no world yet.
+
+    Args:
+        world: The world they are for; default: that of the environment used last.
+    """
+
+    def __init__(self, world: Any = None) -> None:
+        self.world = world
+
+    def create_robot(self, kinematics: Any = None, **keys: Any) -> ObjectView:
+        """A robot with the keys of a scenario entry."""
+        return ObjectBase(kinematics=kinematics, role="robot", **{"color": None, **keys})
+
+    def create_obstacle(self, kinematics: Any = None, **keys: Any) -> ObjectView:
+        """An obstacle with the keys of a scenario entry."""
+        return ObjectBase(kinematics=kinematics, role="obstacle", **{"color": None, **keys})
+
+    def create_object(self, obj_type: str = "robot", number: int = 1, **keys: Any) -> list[ObjectView]:
+        """The objects that one entry makes, with ``number``, ``distribution`` and spreading as in a file."""
+        return self.create_from_parse({"number": number, **keys}, obj_type)
+
+    def create_from_parse(
+        self,
+        parse: Sequence[Mapping[str, Any]] | Mapping[str, Any],
+        obj_type: str = "robot",
+        group_start_index: int = 0,
+    ) -> list[ObjectView]:
+        """The objects that an entry, or a list of entries, makes.
+
+        Args:
+            parse: As in a file.
+            obj_type: ``robot`` or ``obstacle``.
+            group_start_index: Number of the group of the first entry.
+
+        Raises:
+            ScenarioError: The entries cannot be used.
+        """
+        entries = [dict(parse)] if isinstance(parse, Mapping) else [dict(entry) for entry in parse]
+        env = last_used()
+        document = {"world": self._extent(), obj_type: entries}
+        scenario, _ = or_raise(read(document, name=f"create_{obj_type}"))
+        seed = 0 if env is None else int(env.rng.integers(2**32))
+        together = Simulation(scenario, [seed], history=True)
+        numbers = count() if env is None else env.env_param.id_iter
+        made = []
+        for view in views(together):
+            own = alone(scenario, view.record, seed)
+            own.exchange(own.scenario, [(together, view.row)])
+            single = views(own)[0]
+            single.group += group_start_index
+            single.renumber(next(numbers))
+            made.append(single)
+        return made
+
+    def generate_state_list(
+        self,
+        number: int = 1,
+        distribution: Mapping[str, Any] | None = None,
+        state: Sequence[Any] | None = None,
+        goal: Sequence[Any] | None = None,
+    ) -> tuple[list[list[float]], list[list[float]]]:
+        """States and goals of ``number`` objects by a distribution."""
+        entry = {"number": number, "distribution": distribution, "state": state, "goal": goal}
+        given = {key: value for key, value in entry.items() if value is not None}
+        made = self.create_from_parse({**given, "shape": {"name": "circle", "radius": 0.01}}, "robot")
+        goals = [[] if view.goal is None else view.goal[:, 0].tolist() for view in made]
+        return [view.state[:, 0].tolist() for view in made], goals
+
+    def create_from_map(
+        self, points: Any, reso: Any, grid_map: Any = None, world_offset: Sequence[float] | None = None
+    ) -> list[ObjectView]:
+        """The obstacle that the occupied cells of a map make together.
+
+        Args:
+            points: (2, M) centres of the occupied cells [m]; without any there is no obstacle.
+            reso: Extent of a cell along x and y [m].
+            grid_map: (nx, ny) occupancies; default: ``points`` on a grid over the world.
+            world_offset: Lower left corner [m]; default: that of the world.
+
+        Returns:
+            One :class:`irsim.objects.obstacle_map.ObstacleMap`, or nothing.
+        """
+        centres = np.empty((2, 0)) if points is None else np.asarray(points, dtype=np.float64)
+        if not centres.size:
+            return []
+        cell = np.broadcast_to(np.asarray(reso, dtype=np.float64).reshape(-1), (2,))
+        extent = self._extent() or {"width": 10.0, "height": 10.0, "offset": [0.0, 0.0]}
+        corner = np.asarray(extent["offset"] if world_offset is None else world_offset, dtype=np.float64)[:2]
+        grid = None if grid_map is None else np.asarray(grid_map, dtype=np.float64)
+        if grid is None or not (grid > OCCUPIED).any():
+            wide = extent["width"] / cell[0], extent["height"] / cell[1]
+            size = grid.shape if grid is not None else (max(1, round(wide[0])), max(1, round(wide[1])))
+            grid = np.zeros(size)
+            i, j = np.floor((centres - corner[:, None]) / cell[:, None]).astype(int)
+            inside = (i >= 0) & (j >= 0) & (i < size[0]) & (j < size[1])
+            grid[i[inside], j[inside]] = 100.0
+        width, height = (float(v) for v in grid.shape * cell)
+        world = {"width": width, "height": height, "offset": corner.tolist(), "obstacle_map": grid}
+        scenario, _ = or_raise(read({"world": world}, name="create_from_map"))
+        made = views(Simulation(scenario, [0], history=True))[-1:]
+        for view in made:
+            env = last_used()
+            number = 0 if env is None else next(env.env_param.id_iter)
+            view.__dict__.update(id=number, name=f"obstacle_{number}")
+        return made
+
+    def _extent(self) -> dict[str, Any]:
+        env = last_used()
+        world = self.world if self.world is not None else None if env is None else env._world
+        return {} if world is None else {"width": world.width, "height": world.height, "offset": list(world.offset)}
+
+
+class EnvConfig:
+    """The scenario of an environment as parsed.
+
+    Args:
+        env: Whose.
+    """
+
+    def __init__(self, env: Env) -> None:
+        self._env = env
+        self.object_factory = ObjectFactory(env._world)
+
+    @property
+    def parse(self) -> dict[str, Any]:
+        """Sections of the file: ``world``, ``gui``, ``robot``, ``obstacle``, ``custom``; see ``env.config``."""
+        return self._env.config
+
+    @property
+    def world_name(self) -> str:
+        """Name of the file as it was given, or of the world."""
+        given = self._env.world_name
+        return self._env.scenario.name if given is None else str(given)
+
+    @property
+    def world_file_path(self) -> str | None:
+        """Path of the file."""
+        return self._env.scenario.source
+
+    @property
+    def logger(self) -> Any:
+        """The logger of the environment."""
+        return self._env.logger
+
+    def load_yaml(self, world_name: str | None = None) -> None:
+        """Read the scenario again, or another one, from the next ``reload`` on."""
+        name = self.world_name if world_name is None else world_name
+        open_scenario(name)
+        self._env.world_name = name
+
+    def initialize_objects(self) -> tuple[Any, ...]:
+        """Begin the next scene with the objects of the file.
+
+        Returns:
+            (world, objects, plot or None in headless mode, robots, obstacles, maps, groups).
+        """
+        env = self._env
+        env.reset(random=True)
+        maps = [view for view in env.obstacle_list if view.shape == "map"]
+        obstacles = [view for view in env.obstacle_list if view.shape != "map"]
+        members: dict[Any, list[ObjectView]] = {}
+        for view in env.objects:
+            if view.shape != "map":
+                members.setdefault(view.group, []).append(view)
+        groups = [ObjectGroup(views, number) for number, views in members.items()]
+        plot = None if env.headless else env._env_plot
+        return env._world, env.objects, plot, env.robot_list, obstacles, maps, groups
+
+    def reload_objects(self) -> list[ObjectView]:
+        """Begin the next scene with the objects of the file; returns them."""
+        self._env.reset(random=True)
+        return self._env.objects
+
+    def reload_yaml_objects(self, world_name: str | None = None) -> list[ObjectView]:
+        """Read the scenario again, or another one, and begin it; returns its objects."""
+        self._env.reload(world_name)
+        return self._env.objects

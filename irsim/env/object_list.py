@@ -1,0 +1,72 @@
+"""The objects of an environment as a list whose changes are those of the world."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NoReturn
+
+if TYPE_CHECKING:
+    from irsim.env.objects import EnvObjects
+    from irsim.objects.view import ObjectView
+
+__all__ = ["ObjectList"]
+
+
+class ObjectList(list["ObjectView"]):
+    """All objects of an environment now; ``append`` and ``remove`` are ``env.add_object`` and ``env.delete_object``.
+
+    Args:
+        env: The environment.
+        objects: Its objects.
+    """
+
+    def __init__(self, env: EnvObjects, objects: Iterable[ObjectView]) -> None:
+        super().__init__(objects)
+        self._env = env
+
+    def _look(self) -> None:
+        super().__init__(self._env._objects)
+
+    def append(self, obj: ObjectView) -> None:
+        """Put an object into the world."""
+        self.extend([obj])
+
+    def extend(self, objs: Iterable[ObjectView]) -> None:
+        """Put objects into the world; all or none."""
+        self._env.add_objects(objs)
+        self._look()
+
+    def __iadd__(self, objs: Iterable[ObjectView]) -> ObjectList:  # type: ignore[misc,override]
+        self.extend(objs)
+        return self
+
+    def remove(self, obj: ObjectView) -> None:
+        """Take an object out of the world.
+
+        Raises:
+            ValueError: It is not in it.
+        """
+        del self[self.index(obj)]
+
+    def pop(self, index: Any = -1) -> ObjectView:
+        """Take the object at a place out of the world; it stays usable."""
+        found: ObjectView = self[index]
+        del self[index]
+        return found
+
+    def clear(self) -> None:
+        """Take all objects out of the world."""
+        del self[:]
+
+    def __delitem__(self, index: Any) -> None:
+        chosen = self[index] if isinstance(index, slice) else [self[index]]
+        self._env.delete_objects([view.id for view in chosen])
+        self._look()
+
+    def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:
+        raise TypeError("the order of `env.objects` is that of the world: append and remove are all it takes")
+
+    insert = sort = reverse = __setitem__ = __imul__ = _refused
+
+    def __reduce__(self) -> Any:
+        return list, (list(self),)

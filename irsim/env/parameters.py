@@ -1,0 +1,356 @@
+"""Parameter objects that belong to one environment: world, engine and paths, under the names scripts know."""
+
+from __future__ import annotations
+
+import math
+import platform
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.objects.geometry import column
+from irsim.objects.obstacle_map import grid_values
+from irsim.objects.setters import refuse
+from irsim.simulation.active_env import last_used
+from irsim.simulation.build import COLLISION_MODES
+from irsim.simulation.fog import FogMap, fog_resolution
+
+if TYPE_CHECKING:
+    from irsim.common.log import Logger
+    from irsim.objects.view import ObjectView
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
+
+_OCCUPIED = 50
+_CONTROL_MODES = ("auto", "keyboard")
+_OF_CONTACT = ("gravity", "friction", "restitution", "drive_tau")
+_OF_SCENARIO = ("name", "width", "height", "offset", "plot_parse", "depth")
+_IN_SCENARIO = "set it in the section `world` of the scenario"
+
+
+def checked_step_mode(mode: str) -> str:
+    """``internal`` or ``external``, of any case.
+
+    Raises:
+        ValueError: Neither.
+    """
+    chosen = str(mode).strip().lower()
+    if chosen not in ("internal", "external"):
+        raise ValueError(f"unknown step_mode {mode!r}: choose internal or external")
+    return chosen
+
+
+def set_step_time(simulation: Simulation, seconds: float) -> None:
+    """Another period of a step.
+
+    Raises:
+        ValueError: Not positive.
+        AttributeError: Steps have been executed: the clock counts them.
+    """
+    value = float(seconds)
+    if value == simulation.scenario.world.step_time:
+        return
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"the period of a step is a positive number of seconds, not {seconds!r}")
+    if simulation.count.any():
+        refuse("the world", "step_time", "the clock counts steps of one length; `reset()` first, or " + _IN_SCENARIO)
+    from irsim.objects.lifecycle import amend_world
+
+    amend_world(simulation, step_time=value)
+
+
+class WorldParam:
+    """Time and modes of one environment.
+
+    ``control_mode``, ``collision_mode``, ``step_mode`` and ``count`` may be changed at run time, ``step_time`` before
+    the first step of an episode; the rest is what the scenario says.
+    """
+
+    gravity: float
+    friction: float
+    restitution: float
+    drive_tau: float
+
+    def __init__(self, simulation: Simulation, step_mode: str) -> None:
+        world = simulation.scenario.world
+        self._simulation = simulation
+        self._step_mode = checked_step_mode(step_mode)
+        self._control_mode: str = world.control_mode
+        self._collision_mode: str = world.collision_mode
+        self.__dict__.update({name: getattr(world, name) for name in _OF_CONTACT})
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in (*_OF_CONTACT, "time"):
+            refuse("the world", name, _IN_SCENARIO)
+        object.__setattr__(self, name, value)
+
+    @property
+    def step_mode(self) -> str:
+        """``internal`` (irsim moves the objects) or ``external`` (the caller does)."""
+        return self._step_mode
+
+    @step_mode.setter
+    def step_mode(self, mode: str) -> None:
+        self._step_mode = checked_step_mode(mode)
+
+    @property
+    def control_mode(self) -> str:
+        """``auto`` or ``keyboard``."""
+        return self._control_mode
+
+    @control_mode.setter
+    def control_mode(self, mode: str) -> None:
+        if mode not in _CONTROL_MODES:
+            raise ValueError(f"unknown control mode {mode!r}: choose {' or '.join(_CONTROL_MODES)}")
+        self._control_mode = mode
+
+    @property
+    def step_time(self) -> float:
+        """Period of a step [s]."""
+        return float(self._simulation.scenario.world.step_time)
+
+    @step_time.setter
+    def step_time(self, seconds: float) -> None:
+        set_step_time(self._simulation, seconds)
+
+    @property
+    def count(self) -> int:
+        """Executed steps; the clock is this times ``step_time``."""
+        return int(self._simulation.count[0])
+
+    @count.setter
+    def count(self, steps: int) -> None:
+        self._simulation.count[0] = int(steps)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(self.count * self.step_time, 2)
+
+    @property
+    def collision_mode(self) -> str:
+        """What happens to objects that touch."""
+        return self._collision_mode
+
+    @collision_mode.setter
+    def collision_mode(self, mode: str) -> None:
+        if mode not in COLLISION_MODES:
+            raise ValueError(f"unknown collision mode {mode!r}: choose one of {', '.join(COLLISION_MODES)}")
+        self._collision_mode = mode
+        self._simulation.world.collision_mode = COLLISION_MODES[mode]
+
+
+class EnvParam:
+    """What belongs to the environment as a whole.
+
+    Args:
+        objects: Gives its objects.
+        logger: Its logger.
+    """
+
+    def __init__(self, objects: Callable[[], list[ObjectView]], logger: Logger) -> None:
+        self._objects, self.logger = objects, logger
+        self.platform_name = platform.system()
+        self.id_iter: Iterator[int] = count(len(objects()))
+
+    @property
+    def objects(self) -> list[ObjectView]:
+        """``env.objects``."""
+        return self._objects()
+
+
+class PathParam:
+    """Where files go: folders beside the running script."""
+
+    def __init__(self) -> None:
+        self.root_path = sys.path[0] or str(Path.cwd())
+        self.ani_buffer_path = self.root_path + "/animation_buffer"
+        self.ani_path = self.root_path + "/animation"
+        self.fig_path = self.root_path + "/figure"
+
+
+class WorldView:
+    """The world of one environment: extent, time, sampling.
+
+    ``count`` and ``sample_time`` may be set, ``step_time`` before the first step; the rest is what the scenario says.
+    """
+
+    name: str
+    width: float
+    height: float
+    offset: list[float]
+    plot_parse: Any
+
+    def __init__(self, simulation: Simulation) -> None:
+        world = simulation.scenario.world
+        self._simulation = simulation
+        self.__dict__.update(
+            name=simulation.scenario.name,
+            width=world.width,
+            height=world.height,
+            offset=[float(v) for v in world.offset],
+            plot_parse=world.plot,
+        )
+        self._sample_time: float | None = world.sample_time
+        self._logger: Logger | None = None
+        self._fog: FogMap | None = None
+        if world.fog_map:
+            resolution = fog_resolution(simulation.scenario)
+            self._fog = FogMap(world.width, world.height, resolution, self.offset)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        kind = getattr(type(self), name, None)
+        if name in _OF_SCENARIO or (isinstance(kind, property) and kind.fset is None):
+            refuse("the world", name, _IN_SCENARIO)
+        object.__setattr__(self, name, value)
+
+    @property
+    def step_time(self) -> float:
+        """Period of a step [s]."""
+        return float(self._simulation.scenario.world.step_time)
+
+    @step_time.setter
+    def step_time(self, seconds: float) -> None:
+        set_step_time(self._simulation, seconds)
+
+    @property
+    def sample_time(self) -> float:
+        """Period of the drawn frames [s]; that of the steps unless it is given."""
+        return self.step_time if self._sample_time is None else self._sample_time
+
+    @sample_time.setter
+    def sample_time(self, seconds: float) -> None:
+        value = float(seconds)
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"the period of the frames is a positive number of seconds, not {seconds!r}")
+        self._sample_time = value
+
+    @property
+    def steps_per_sample(self) -> int:
+        """Steps from one drawn frame to the next."""
+        return max(1, int(round(self.sample_time / self.step_time, 9)))
+
+    @property
+    def x_range(self) -> list[float]:
+        """[xmin, xmax] of the world [m]."""
+        return [self.offset[0], self.offset[0] + self.width]
+
+    @property
+    def y_range(self) -> list[float]:
+        """[ymin, ymax] of the world [m]."""
+        return [self.offset[1], self.offset[1] + self.height]
+
+    @property
+    def count(self) -> int:
+        """Executed steps; the clock is this times ``step_time``."""
+        return int(self._simulation.count[0])
+
+    @count.setter
+    def count(self, steps: int) -> None:
+        self._simulation.count[0] = int(steps)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(self.count * self.step_time, 2)
+
+    @property
+    def sampling(self) -> bool:
+        """Whether this step is one that is drawn."""
+        return self.count % self.steps_per_sample == 0
+
+    # a world by itself -----------------------------------------------------------------------------------------------
+    def step(self, objects: Any = None) -> None:
+        """Let one period pass in which nothing moves by itself; environments do this in their own ``step``.
+
+        Args:
+            objects: Accepted as it was before; the world knows what is in it.
+        """
+        self._simulation.step_external()
+
+    def reset(self) -> None:
+        """Time 0, and fog everywhere; objects stay where they are."""
+        self._simulation.count[0] = 0
+        if self._fog is not None:
+            self._simulation.state.explored[0] = 0
+
+    def gen_grid_map(self, obstacle_map: Any, mdownsample: int = 1) -> tuple[Any, Any, Any]:
+        """The grid that a value of ``obstacle_map`` stands for in this world.
+
+        Args:
+            obstacle_map: None, an array, a picture file name, or a mapping with the name of a generator.
+            mdownsample: Keep every so many rows and columns.
+
+        Returns:
+            (nx, ny) occupancies, (2, M) indices of the occupied cells, (2, M) their centres [m]; None each for None.
+        """
+        from irsim.components.maps._generators import resolve_obstacle_map
+
+        values = resolve_obstacle_map(obstacle_map, self.width, self.height)
+        if values is None:
+            return None, None, None
+        values = values[::mdownsample, ::mdownsample]
+        index = np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+        cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
+        return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell
+
+    def get_map(self, resolution: float = 0.1, obstacle_list: Sequence[Any] | None = None) -> Any:
+        """The world as a map to plan on; see :meth:`irsim.env.env_base.Env.get_map`.
+
+        Args:
+            resolution: Size of the cells [m].
+            obstacle_list: What stands in it besides the grid.
+        """
+        from irsim.navigation.map import world_map
+
+        low = float(self.offset[0]), float(self.offset[1])
+        return world_map(self.width, self.height, low, self.grid_map, resolution, obstacle_list)
+
+    @property
+    def logger(self) -> Logger:
+        """The logger of its environment, or of the one used last, or one of its own."""
+        owner = self._simulation.owner() or last_used()
+        if owner is not None:
+            found: Logger = owner.logger
+            return found
+        if self._logger is None:
+            from irsim.common.log import Logger as Own
+
+            self._logger = Own()
+        return self._logger
+
+    @property
+    def fog_map(self) -> FogMap | None:
+        """Cells that robots have seen; None without ``world.fog_map``."""
+        if self._fog is not None:
+            self._fog.cells = self._simulation.state.explored[0]
+        return self._fog
+
+    @property
+    def grid_map(self) -> NDArray[np.float64] | None:
+        """(nx, ny) occupancy 0 to 100, None without a map."""
+        return grid_values(self._simulation)
+
+    @property
+    def reso(self) -> NDArray[np.float64]:
+        """(2, 1) extent of a map cell along x and y [m]; zero without a map."""
+        grid = self._simulation.scenario.grid
+        return column(grid.cell if grid is not None else (0.0, 0.0))
+
+    @property
+    def obstacle_index(self) -> NDArray[np.int64] | None:
+        """(2, M) indices i, j of the occupied cells, None without a map."""
+        values = self.grid_map
+        return None if values is None else np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+
+    @property
+    def obstacle_positions(self) -> NDArray[np.float64] | None:
+        """(2, M) centres of the occupied cells [m], None without a map."""
+        index = self.obstacle_index
+        return None if index is None else np.array(self.offset)[:2, None] + (index + 0.5) * self.reso

@@ -1,0 +1,41 @@
+"""Sensors by themselves, as IR-SIM's factory makes them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from irsim.objects.lifecycle import alone
+from irsim.objects.view import views
+from irsim.options.registry import SENSORS
+from irsim.scenario.open import or_raise
+from irsim.scenario.read import read
+from irsim.scenario.single_object import read_object
+
+__all__ = ["SensorFactory"]
+
+
+class SensorFactory:
+    """Makes sensors that no object of an environment carries."""
+
+    def create_sensor(self, state: Any, obj_id: int, **kwargs: Any) -> Any:
+        """A sensor with a carrier of its own in an otherwise empty world.
+
+        Args:
+            state: x, y [m] and heading [rad] of the carrier, in any shape.
+            obj_id: Its id.
+            **kwargs: Keys of a sensor in a scenario; without ``name`` and ``type`` it is a ``lidar2d``.
+
+        Raises:
+            NotImplementedError: No sensor has that name.
+            ScenarioError: A key or value is wrong.
+        """
+        name = str(kwargs.get("name", kwargs.get("type", "lidar2d")))
+        if SENSORS.get(name) is None:
+            raise NotImplementedError(f"there is no sensor {name!r}: choose one of {', '.join(SENSORS.names())}")
+        scenario, _ = or_raise(read({"world": {}}))
+        pose = np.asarray(state, dtype=np.float64).reshape(-1)[:3].tolist()
+        keys = {"state": pose, "shape": {"name": "circle"}, "sensors": [kwargs]}
+        record, _ = read_object("obstacle", keys, scenario.world, obj_id)
+        return views(alone(scenario, record, 0))[0].sensors[0]

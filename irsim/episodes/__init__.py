@@ -1,0 +1,1 @@
+"""Reading, running and explaining one episode."""

@@ -1,0 +1,223 @@
+"""One episode: from a scenario to an environment, how long it goes on, and letting time pass."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import json
+import math
+import os
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from irsim.common.arguments import as_given, whole
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path
+from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.env import Env
+from irsim.results.results import Edit as EditRecord
+from irsim.results.results import Finding, HorizonSource
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.locate import locate
+from irsim.scenario.open import or_raise
+from irsim.scenario.read import read
+from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.document import Document, load_path, load_text
+
+if TYPE_CHECKING:
+    from irsim.runs.recorder import Recorder
+
+__all__ = [
+    "HORIZON_FACTOR",
+    "MIN_HORIZON",
+    "Progress",
+    "advance",
+    "as_finding",
+    "default_time_limit",
+    "horizon_of",
+    "import_modules",
+    "read_scenario",
+    "seed_of",
+    "source_of",
+]
+
+Progress = Callable[[int, int], None]
+"""Told (steps done, steps at most) now and then."""
+
+MIN_HORIZON = 30.0
+HORIZON_FACTOR = 4.0
+_CHUNK_STEPS = 50
+_LONGEST_GIVEN = 200
+
+
+def import_modules(names: Iterable[str]) -> None:
+    """Import user modules (from the current directory too), for what they register.
+
+    Raises:
+        ImportError: With the module's name.
+        ArgumentError: A name instead of a list.
+    """
+    if isinstance(names, str):
+        raise ArgumentError(f"imports is {as_given(names)}", f"give a list: imports=[{as_given(names)}]")
+    for name in names:
+        if "" not in sys.path and str(Path.cwd()) not in sys.path:
+            sys.path.insert(0, str(Path.cwd()))
+        importlib.import_module(name.removesuffix(".py").replace("/", "."))
+
+
+def read_scenario(
+    path: str | Path | None = None,
+    *,
+    text: str | None = None,
+    strict: bool,
+    limits: Limits | None = None,
+    behavior: str | None = None,
+) -> tuple[ResolvedScenario, list[Finding]]:
+    """A scenario ready to build, with what is odd about it; from a file or a text.
+
+    Args:
+        path: The file.
+        text: Or the text.
+        strict: Refuse what IR-SIM would ignore.
+        limits: Limits of the loader.
+        behavior: Replaces every robot's own behavior; see :func:`irsim.scenario.behavior_override.behavior_of`.
+
+    Raises:
+        ScenarioError: It cannot be used.
+        BenchmarkError: There is no such behavior.
+        ValueError: Neither or both of ``path`` and ``text``.
+    """
+    source = source_of(path, text, limits)
+    if behavior is not None:
+        from irsim.scenario.behavior_override import BenchmarkError, behavior_of, check_known, read_with_behavior
+
+        document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
+        try:
+            check_known(behavior)
+            scenario, diagnostics = read_with_behavior(document, behavior_of(behavior), strict=strict)
+        except BenchmarkError as error:
+            error.where = "behavior"
+            raise
+        scenario.text = document.text  # what was given, for the record of a run
+        return scenario, [as_finding(d) for d in diagnostics]
+    scenario, diagnostics = or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))
+    return scenario, [as_finding(d) for d in diagnostics]
+
+
+def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
+    """The seed to run with: the one given, the scenario's, 0 where it decides nothing; else None, one is drawn."""
+    chosen = scenario.world.seed if seed is None else seed
+    return 0 if chosen is None and not random_parts(scenario) else chosen
+
+
+def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
+    """max(30 s, 4 x the longest way from start over its goals / that robot's top speed) [s]."""
+    longest = 0.0
+    for view in env.robot_list:
+        points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
+        way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
+        if view.max_speed > 0:
+            longest = max(longest, way / view.max_speed)
+    return max(MIN_HORIZON, HORIZON_FACTOR * longest)
+
+
+def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:
+    """What to read: a file found by its name, or a text.
+
+    Raises:
+        ScenarioNotFoundError: No such file.
+        ValueError: Neither or both are given.
+        ArgumentError: It is no path, or no text.
+    """
+    if (path is None) == (text is None):
+        raise ValueError("give either a path or a text")
+    if path is not None:
+        if not isinstance(path, (str, os.PathLike)):
+            raise ArgumentError(f"the path is {as_given(path)}", "give the path of a file, or its content as text")
+        return locate(path)
+    given: Any = text
+    if not isinstance(given, str):
+        fix = "decode it: text.decode()" if isinstance(given, bytes) else "give the YAML text of a scenario"
+        raise ArgumentError(f"the text is {as_given(given)}", fix)
+    return load_text(given, limits=limits or DEFAULT_LIMITS)
+
+
+def as_finding(diagnostic: Diagnostic) -> Finding:
+    """A diagnostic as part of a result."""
+    allowed = diagnostic.allowed
+    return Finding(
+        code=diagnostic.code,
+        severity=diagnostic.severity,
+        path=format_path(diagnostic.path),
+        line=diagnostic.line,
+        column=diagnostic.column,
+        length=diagnostic.length,
+        message=diagnostic.message,
+        given=_short(diagnostic.given),
+        allowed=allowed if allowed is None or isinstance(allowed, str) else list(allowed),
+        fix=diagnostic.fix,
+        edit=_edit(diagnostic.edit),
+        tolerated=diagnostic.tolerated,
+    )
+
+
+def _short(given: Any) -> Any:
+    """A value as written; the beginning of its JSON where that is long."""
+    try:
+        text = json.dumps(given, default=str)
+    except (ValueError, RecursionError):  # it holds itself
+        return clean(type(given).__name__)
+    return given if len(text) <= _LONGEST_GIVEN else clean(text, _LONGEST_GIVEN)
+
+
+def _edit(edit: Edit | None) -> EditRecord | None:
+    """Only what is safe to do is offered."""
+    if edit is None or not edit.safe:
+        return None
+    return EditRecord(action=edit.action, path=format_path(edit.path), value=edit.value)
+
+
+def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
+    """Steps at most, and who says so. What is asked for must be within the limits, what is derived is cut to them.
+
+    Raises:
+        OverLimitError: More is asked for.
+        ArgumentError: The steps are no whole number, or negative.
+    """
+    most, what = _most_steps(len(scenario.objects), limits)
+    if steps is not None:
+        steps = whole("steps", steps)
+        if most is not None and steps > most:
+            raise OverLimitError(f"{steps:,} steps are too many: at most {what}", f"ask for at most {most:,} steps")
+        return steps, "argument"
+    limit = scenario.world.time_limit
+    seconds = default_time_limit(scenario, env) if limit is None else limit
+    horizon = math.ceil(seconds / env.step_time - 1e-9)
+    if most is not None and horizon > most:
+        return most, "limits"
+    return horizon, "default" if limit is None else "scenario"
+
+
+def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
+    """Most steps of one run, and the limit behind it in words."""
+    bounds: list[tuple[int, str]] = []
+    if limits.steps is not None:
+        bounds.append((limits.steps, f"{limits.steps:,} are run at once"))
+    if limits.work is not None:
+        each = limits.work // max(1, objects)
+        bounds.append((each, f"{limits.work:,} steps x objects are run at once, and there are {objects:,} objects"))
+    return min(bounds, default=(None, ""))
+
+
+def advance(
+    env: Env, steps: int, progress: Progress | None, *, until_done: bool = True, recorder: Recorder | None = None
+) -> None:
+    """Let time pass, by default until every robot has arrived or stopped; a recorder keeps what happens."""
+    done = 0
+    while done < steps and not (until_done and env.done()):
+        done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))
+        if progress is not None:
+            progress(done, steps)

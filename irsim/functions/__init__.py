@@ -1,0 +1,1 @@
+"""The laws of the engine as functions of NumPy arrays."""

@@ -1,0 +1,230 @@
+"""Small worlds in which the kernels of the engine answer for arrays or for chosen objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+
+import irsim._core as core
+from irsim.options.registry import BEHAVIORS, KINEMATICS, SHAPES
+from irsim.scenario.open import or_raise
+from irsim.scenario.read import read
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+from irsim.simulation.build import build_world
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+
+__all__ = ["Agent", "behavior_options", "dash", "decide", "decide_among"]
+
+Floats = NDArray[np.float64]
+PADDING = 0.1
+"""What IR-SIM adds to radii that avoidance laws see [m]."""
+_FAR = 100.0
+_SMALLEST = 1e-9
+_STEP_TIME = 0.1
+_TOLERANCE = 0.1
+_GROUP = -1
+
+
+@cache
+def _base() -> ResolvedScenario:
+    entry = {"kinematics": {"name": "omni"}, "shape": {"name": "circle"}, "state": [0, 0, 0], "goal": [1, 0]}
+    line = {"shape": {"name": "linestring", "vertices": [[0, 0], [1, 0]]}, "state": [0, 0, 0]}
+    scenario, _ = or_raise(read({"world": {"collision_mode": "unobstructed"}, "robot": entry, "obstacle": line}))
+    return scenario
+
+
+def behavior_options(name: str, keys: Mapping[str, Any]) -> BaseModel:
+    """Options of a built-in behavior from those of ``keys`` that it knows.
+
+    Raises:
+        ValidationError: A value does not fit.
+    """
+    feature = BEHAVIORS.get(name)
+    if feature is None or feature.kernel is None:
+        raise LookupError(f"{name!r} is not a built-in behavior")
+    known = {key: value for key, value in keys.items() if key in feature.options.model_fields and key != "name"}
+    return feature.options.model_validate({**known, "name": name})
+
+
+class Agent:
+    """What avoidance laws know of an object, world frame.
+
+    Args:
+        numbers: x, y [m], vx, vy [m/s], padded radius [m], and of one that decides the wanted vx, vy [m/s].
+    """
+
+    def __init__(self, numbers: Sequence[float]) -> None:
+        values = [float(value) for value in numbers]
+        self.x, self.y, self.vx, self.vy, self.radius = values[:5]
+        self.wanted = values[5:7]
+
+    def record(self, number: int, options: BaseModel | None, *, grouped: bool) -> ObjectRecord:
+        """The same as an object that moves as it likes."""
+        speed = math.hypot(*self.wanted) if self.wanted else 0.0
+        goals = []
+        if speed > 0:
+            goals = [[self.x + _FAR * self.wanted[0] / speed, self.y + _FAR * self.wanted[1] / speed]]
+        circle = SHAPES.get("circle")
+        assert circle is not None
+        return replace(
+            _base().objects[0],
+            id=number,
+            name=str(number),
+            group=0 if options is not None else number + 1,
+            state=[self.x, self.y, 0.0],
+            velocity=[self.vx, self.vy],
+            vel_min=[-speed, -speed],
+            vel_max=[speed, speed],
+            goals=goals,
+            shape=circle.options.model_validate({"radius": max(self.radius - PADDING, _SMALLEST)}),
+            behavior=None if grouped else options,
+            group_behavior=options if grouped else None,
+        )
+
+
+def decide(
+    options: BaseModel,
+    agents: Sequence[Sequence[float]],
+    discs: Sequence[Sequence[float]] | None,
+    lines: Sequence[Sequence[float]] | None,
+    *,
+    grouped: bool = False,
+    step_time: float = _STEP_TIME,
+) -> Floats:
+    """(K, 2) world-frame velocities [m/s] that a behavior chooses for agents.
+
+    Args:
+        options: Of the behavior.
+        agents: [x, y, vx, vy, padded radius, wanted vx, wanted vy, …] of each that decides.
+        discs: [x, y, vx, vy, padded radius] of others.
+        lines: [x1, y1, x2, y2] of segments.
+        grouped: The agents are one group.
+        step_time: Period [s].
+    """
+    records = [Agent(numbers).record(k, options, grouped=grouped) for k, numbers in enumerate(agents)]
+    records += [
+        Agent(numbers[:5]).record(len(records) + k, None, grouped=False) for k, numbers in enumerate(discs or ())
+    ]
+    records += [_line(len(records) + k, numbers) for k, numbers in enumerate(lines or ())]
+    base = _base()
+    timed = base.world.model_copy(update={"step_time": float(step_time)})
+    world = build_world(replace(base, world=timed, objects=records))
+    state = core.State(world, np.zeros(1, dtype=np.uint64), False)
+    core.decide(world, state)
+    return state.command[: len(agents), :2].copy()
+
+
+def _line(number: int, numbers: Sequence[float]) -> ObjectRecord:
+    x1, y1, x2, y2 = (float(value) for value in numbers)
+    line = SHAPES.get("linestring")
+    assert line is not None
+    shape = line.options.model_validate({"name": "linestring", "vertices": [[x1, y1], [x2, y2]]})
+    return replace(_base().objects[1], id=number, name=str(number), group=number + 1, shape=shape)
+
+
+def dash(
+    drive: str,
+    state: Floats,
+    goal: Floats,
+    vel_max: Floats,
+    *,
+    goal_threshold: float,
+    angle_tolerance: float = _TOLERANCE,
+    turning_acce: float = math.inf,
+    dt: float = 0.0,
+) -> Floats:
+    """(n, 1) control that drives one object with a built-in drive straight to its goal.
+
+    Args:
+        drive: Name of the kinematics.
+        state: (3 or more, 1).
+        goal: (2 or 3, 1).
+        vel_max: (n, 1) limits.
+        goal_threshold: Arrived when nearer than this [m].
+        angle_tolerance: Smaller heading errors are left alone [rad].
+        turning_acce: Limit on the change of the turning control [rad/s^2].
+        dt: Period [s], needed with a finite ``turning_acce``.
+    """
+    numbers = np.asarray(state, dtype=np.float64).reshape(-1).tolist()
+    top = np.asarray(vel_max, dtype=np.float64).reshape(-1).tolist()
+    feature = KINEMATICS.get(drive)
+    assert feature is not None
+    record = replace(
+        _base().objects[0],
+        kinematics=feature.options.model_validate({"name": drive}),
+        state=numbers,
+        goals=[np.asarray(goal, dtype=np.float64).reshape(-1)[:3].tolist()],
+        vel_max=top,
+        vel_min=[-value for value in top],
+        acce=[*[math.inf] * (len(top) - 1), turning_acce],
+        velocity=[0.0] * len(top),
+        goal_threshold=goal_threshold,
+        behavior=behavior_options("dash", {"angle_tolerance": angle_tolerance}),
+    )
+    timed = _base().world.model_copy(update={"step_time": dt if dt > 0 else _STEP_TIME})
+    world = build_world(replace(_base(), world=timed, objects=[record]))
+    made = core.State(world, np.zeros(1, dtype=np.uint64), False)
+    core.decide_row(world, made, 0)
+    return made.command[0, : len(top), None].copy()
+
+
+def decide_among(
+    deciding: Sequence[ObjectView], others: Sequence[ObjectView], options: BaseModel, *, grouped: bool = False
+) -> list[Floats]:
+    """Controls, (vel_dim, 1) each, that a behavior chooses for objects if there were no others but these.
+
+    Args:
+        deciding: Objects of one simulation.
+        others: What they see besides each other.
+        options: Of the behavior.
+        grouped: They are one group.
+    """
+    simulation = deciding[0]._simulation
+    own, common = (None, options) if grouped else (options, None)
+    records = [
+        replace(
+            view.record,
+            group=_GROUP,
+            joined=grouped,
+            wander=False,
+            target_roles="all",
+            behavior=own,
+            group_behavior=common,
+        )
+        for view in deciding
+    ]
+    records += [replace(v.record, joined=False, behavior=None, group_behavior=None) for v in others]
+    shown = [*deciding, *others]
+    world = build_world(replace(simulation.scenario, objects=records, placements=[]))
+    if simulation.copies == 1:
+        state = core.State(world, simulation.state, [(view._simulation.state, view.row) for view in shown])
+    else:
+        state = core.State(world, simulation.state.seed[:1], False)
+        for row, view in enumerate(shown):
+            state.pose[row], state.control[row] = simulation.pose[view.row], simulation.control[view.row]
+            state.extra[row, : view.state_dim - 3] = simulation.extra[view.row, : view.state_dim - 3]
+            state.set_goals(row, simulation.state.goals(view.row), False)
+            state.moved(row)
+    controls = []
+    for row, view in enumerate(deciding):
+        core.decide_row(world, state, row)
+        controls.append(_control(view, state.command[row].copy()))
+    return controls
+
+
+def _control(view: ObjectView, command: Floats) -> Floats:
+    handler = view._handler
+    if handler is None:
+        return command[: view.vel_dim, None]
+    from irsim.objects.extensions.drives import control_from
+
+    return control_from(handler, np.array(view.state), command[:2, None])[:, None]

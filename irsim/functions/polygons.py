@@ -1,0 +1,96 @@
+"""Random polygons: star-shaped, counter-clockwise.
+
+The vertices go once round a centre, with random angular steps (more or less equal) and random distances (more or less
+the mean), as in M. Ounsworth's well-known recipe for random polygons.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.functions._random import current_rng
+
+__all__ = ["generate_polygon", "random_generate_polygon"]
+
+Floats = NDArray[np.float64]
+
+
+def generate_polygon(
+    center: Sequence[float], avg_radius: float, irregularity: float, spikeyness: float, num_vertices: int
+) -> Floats:
+    """One random polygon.
+
+    Args:
+        center: x, y [m].
+        avg_radius: Mean distance of the vertices [m].
+        irregularity: 0 to 1: spread of the angular steps.
+        spikeyness: 0 to 1: spread of the distances.
+        num_vertices: How many, at least 3.
+
+    Returns:
+        (num_vertices, 2) counter-clockwise.
+
+    Raises:
+        ValueError: A spread is not between 0 and 1.
+    """
+    for name, value in (("irregularity", irregularity), ("spikeyness", spikeyness)):
+        if not 0 <= value <= 1:
+            raise ValueError(f"{name} is between 0 and 1, not {value}")
+    rng = current_rng()
+    mean = 2 * math.pi / num_vertices
+    steps = [float(rng.uniform(mean * (1 - irregularity), mean * (1 + irregularity))) for _ in range(num_vertices)]
+    scale = 2 * math.pi / sum(steps)
+    angle = float(rng.uniform(0, 2 * math.pi))
+    points = []
+    for step in steps:
+        radius = min(max(float(rng.normal(avg_radius, spikeyness * avg_radius)), 0.0), 2 * avg_radius)
+        points.append([center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle)])
+        angle += step * scale
+    return np.array(points)
+
+
+def random_generate_polygon(
+    number: int = 1,
+    center_range: Sequence[float] | None = None,
+    avg_radius_range: Sequence[float] | None = None,
+    irregularity_range: Sequence[float] | None = None,
+    spikeyness_range: Sequence[float] | None = None,
+    num_vertices_range: Sequence[int] | None = None,
+    **_: Any,
+) -> Floats | list[Floats]:
+    """Random polygons with random parameters.
+
+    Args:
+        number: How many.
+        center_range: [xmin, ymin, xmax, ymax] of centres [m]; by default the origin.
+        avg_radius_range: Of mean distances [m]; by default [0.1, 1].
+        irregularity_range: By default [0, 1].
+        spikeyness_range: By default [0, 1].
+        num_vertices_range: Upper end excluded; by default [4, 10].
+
+    Returns:
+        The (M, 2) vertices of one, or a list of such.
+    """
+    centers = [0.0] * 4 if center_range is None else list(center_range)
+    radii = [0.1, 1.0] if avg_radius_range is None else list(avg_radius_range)
+    irregularities = [0.0, 1.0] if irregularity_range is None else list(irregularity_range)
+    spikes = [0.0, 1.0] if spikeyness_range is None else list(spikeyness_range)
+    counts = [4, 10] if num_vertices_range is None else list(num_vertices_range)
+    rng = current_rng()
+    center = rng.uniform(centers[:2], centers[2:], (number, 2))
+    radius = rng.uniform(*radii, number)
+    irregularity = rng.uniform(*irregularities, number)
+    spikeyness = rng.uniform(*spikes, number)
+    count = rng.integers(*counts, number)
+    made = [
+        generate_polygon(
+            center[i].tolist(), float(radius[i]), float(irregularity[i]), float(spikeyness[i]), int(count[i])
+        )
+        for i in range(number)
+    ]
+    return made[0] if number == 1 else made

@@ -1,0 +1,1 @@
+"""From scene data to pixels and files; it knows no simulation."""

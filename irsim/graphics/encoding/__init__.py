@@ -1,0 +1,1 @@
+"""Pixels as PNG, GIF, video and sheets of pictures."""

@@ -1,0 +1,171 @@
+"""Figure → pixels, fast: axes and whatever rests is drawn once and kept, the rest is drawn over a copy of it.
+
+Drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw it. Only what lies
+below everything that moves may be kept.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.glyphs import QuickText
+
+__all__ = ["Compositor"]
+
+_RESTING_AFTER = 2
+"""Scenes without a change after which a layer counts as resting."""
+
+
+class Compositor:
+    """Draws the one axes of a figure.
+
+    Args:
+        figure: Its canvas must be an Agg canvas (all of Matplotlib's usual windows are).
+        ax: Its only axes.
+    """
+
+    def __init__(self, figure: Figure, ax: Axes) -> None:
+        self.figure = figure
+        self.ax = ax
+        self.forget()
+
+    def forget(self) -> None:
+        """Keep nothing: the next frame is drawn from scratch."""
+        self._furniture: Any = None
+        self._furniture_key: tuple[Any, ...] | None = None
+        self._furniture_box: Bbox | None = None
+        self._base: Any = None
+        self._base_key: tuple[Any, ...] | None = None
+
+    def draw(self, versions: Mapping[Artist, tuple[int, int]]) -> None:
+        """Draw everything into the canvas.
+
+        Args:
+            versions: (version, scenes at rest) of the artists whose changes are known; all others are drawn each time.
+        """
+        canvas = self._canvas()
+        if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
+            self.draw_plainly()
+            return
+        furniture: tuple[Artist, ...] = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
+        if not self.ax.axison:
+            furniture += tuple(self.ax.spines.values())
+        artists = [a for a in self.ax.get_children() if a not in furniture and a.get_visible()]
+        artists.sort(key=lambda artist: artist.get_zorder())
+        self._draw_furniture(canvas)
+        resting = []
+        for artist in artists:
+            version, rested = versions.get(artist, (0, 0))
+            if rested < _RESTING_AFTER:
+                break
+            resting.append((artist, version))
+        key = tuple((id(artist), version) for artist, version in resting)
+        renderer = canvas.get_renderer()
+        if not resting:
+            self._base = None
+            canvas.restore_region(self._furniture)
+        elif self._base is None or key != self._base_key:
+            canvas.restore_region(self._furniture)
+            for artist, _ in resting:
+                artist.draw(renderer)
+            self._base, self._base_key = canvas.copy_from_bbox(self.figure.bbox), key
+        else:
+            canvas.restore_region(self._base)
+        for artist in artists[len(resting) :]:
+            artist.draw(renderer)
+
+    def draw_plainly(self) -> None:
+        """Let Matplotlib draw everything, and keep nothing."""
+        draw_all: Any = FigureCanvasAgg.draw
+        draw_all(self._canvas())
+        self.forget()
+
+    def _canvas(self) -> Any:
+        if not isinstance(self.figure.canvas, FigureCanvasAgg):
+            FigureCanvasAgg(self.figure)  # its window was closed
+        return self.figure.canvas
+
+    def _draw_furniture(self, canvas: Any) -> None:
+        ax, figure = self.ax, self.figure
+        ax.apply_aspect()
+        key = (
+            *figure.get_size_inches(),
+            figure.dpi,
+            *ax.get_xlim(),
+            *ax.get_ylim(),
+            *ax.get_position().bounds,
+            ax.axison,
+        )
+        parts = (ax.patch, ax.xaxis, ax.yaxis) if ax.axison else ()
+        labels = (ax.xaxis.label, ax.yaxis.label, ax.xaxis, ax.yaxis, ax.patch, figure.patch)
+        if self._furniture is not None and key == self._furniture_key and not any(a.stale for a in labels):
+            return
+        renderer = canvas.get_renderer()
+        renderer.clear()
+        figure.patch.draw(renderer)
+        for part in parts:
+            part.draw(renderer)
+        self._furniture, self._furniture_key = canvas.copy_from_bbox(figure.bbox), key
+        boxes = [part.get_tightbbox(renderer) for part in parts[1:]]
+        self._furniture_box = Bbox.union([ax.bbox, *[box for box in boxes if box is not None]])
+        self._base = None
+        for label in labels:
+            label.stale = False
+
+    def tight_box(self, pad_inches: float) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom [px] of what is drawn, with padding, within the figure. Draw first."""
+        if self._furniture_box is None:
+            renderer = self._canvas().get_renderer()
+            inches = self.figure.get_tightbbox(renderer)
+            box = Bbox(inches.get_points() * self.figure.dpi)
+        else:
+            boxes = [self._furniture_box]
+            renderer = self._canvas().get_renderer()
+            for artist in self.ax.get_children():
+                if artist.get_visible() and not _inside(artist, self.ax):
+                    found = artist.get_tightbbox(renderer)
+                    if found is not None and math.isfinite(found.width) and math.isfinite(found.height):
+                        boxes.append(found)
+            box = Bbox.union(boxes)
+        width, height = self.size
+        pad = pad_inches * self.figure.dpi
+        left, right = max(0, math.floor(box.x0 - pad)), min(width, math.ceil(box.x1 + pad))
+        top, bottom = max(0, math.floor(height - box.y1 - pad)), min(height, math.ceil(height - box.y0 + pad))
+        return left, top, right, bottom
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the canvas [px]."""
+        width, height = self._canvas().get_width_height(physical=True)
+        return int(width), int(height)
+
+    def pixels(self, crop: tuple[int, int, int, int] | None = None) -> Pixels:
+        """Copy of what was drawn last.
+
+        Args:
+            crop: Left, top, right, bottom [px].
+        """
+        rgba = np.asarray(self._canvas().buffer_rgba())
+        if crop is not None:
+            rgba = rgba[crop[1] : crop[3], crop[0] : crop[2]]
+        pixels: Pixels = rgba.copy()
+        return pixels
+
+
+def _inside(artist: Artist, ax: Axes) -> bool:
+    """Whether an artist cannot reach beyond what the axes themselves take up."""
+    if artist in (ax.xaxis, ax.yaxis, ax.patch) or artist in ax.spines.values():
+        return True
+    if isinstance(artist, QuickText):
+        return artist is not ax.title
+    return artist.get_clip_on() and (artist.get_clip_box() is not None or artist.get_clip_path() is not None)

@@ -1,0 +1,351 @@
+"""One Matplotlib figure of one world: a scene in, artists updated in place, pixels out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import compress
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.text import Text
+from matplotlib.transforms import Affine2D, Bbox
+from numpy.typing import NDArray
+
+from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.compositor import Compositor
+from irsim.graphics.figure.glyphs import Glyphs, QuickText
+from irsim.graphics.figure.grids import GridLayer
+from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
+from irsim.graphics.figure.pictures import Pictures
+from irsim.graphics.scene.labels import free_places, small_bodies
+from irsim.graphics.scene.scene import Bounds, Floats, GridImage, Label, Picture, Scene
+
+__all__ = ["SceneFigure", "fitting_size", "inches"]
+
+_TITLE_PAD = 6.0
+_TITLE_SIZE = 12.0
+_SMALLEST_TITLE = 5.0
+_LABEL_MARGIN = 4.0
+_LABEL_RANK = 0.01
+_MOST_EXTENTS = 2000
+_HALO = 2.0
+_HAIR = 0.01
+_ROOM = 8.0
+"""Between what is drawn and the edge of the figure [pt]."""
+_MOST_ROOM = 0.7
+"""Share of the figure that ticks and labels may take; beyond that the layout is left alone."""
+_POINTS_PER_INCH = 72.0
+_MARGINS = {True: (0.75, 0.85), False: (0.25, 0.45)}
+"""Room beside and above and below the axes [inch], with ticks and labels and without."""
+_LEAST_WIDTH = 3.6
+"""Of a figure, for the sake of its title [inch]."""
+
+
+class SceneFigure:
+    """Figure and axes in world coordinates, equal aspect.
+
+    Args:
+        size: Width and height [px].
+        dpi: Pixels per inch.
+        axis: Draw axes, ticks and labels.
+        tight: Fit the axes to the figure.
+        figure: A figure to use (of a window); default: a new one without a window.
+        pictures: Images drawn in place of bodies.
+        halo: Labels have a white rim, to be read on dark ground too, and keep off bodies.
+
+    Attributes:
+        figure, ax: For drawing more into it.
+    """
+
+    def __init__(
+        self,
+        size: tuple[float, float],
+        dpi: float,
+        *,
+        axis: bool = True,
+        tight: bool = True,
+        figure: Figure | None = None,
+        pictures: Pictures | None = None,
+        halo: bool = False,
+    ) -> None:
+        if figure is None:
+            figure = Figure(figsize=inches(size, dpi), dpi=dpi)
+            FigureCanvasAgg(figure)
+        self.figure = figure
+        self.axis, self.tight = axis, tight
+        self._images = pictures or Pictures()
+        self._halo = halo
+        self._effects: list[AbstractPathEffect] = [withStroke(linewidth=_HALO, foreground="white")] if halo else []
+        self.ax: Axes = figure.add_subplot()
+        self.compositor = Compositor(figure, self.ax)
+        self._glyphs = Glyphs()
+        self._start()
+
+    def _start(self) -> None:
+        self._marks: dict[tuple[Any, ...], MarkLayer] = {}
+        self._beams: dict[tuple[int, int], BeamLayer] = {}
+        self._fog: FogLayer | None = None
+        self._grids: dict[int, GridLayer] = {}
+        self._labels: dict[tuple[int, str], Text] = {}
+        self._extents: dict[tuple[str, float, float], Bounds] = {}
+        self._pictures: dict[int, AxesImage] = {}
+        self._extent: tuple[float, float, float, float] | None = None
+        self._title: str | None = None
+        ax = self.ax
+        ax.set_aspect("equal")
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        if not self.axis:
+            ax.set_axis_off()
+        self._title_artist = self._quick_title()
+        self.compositor.forget()
+
+    def _quick_title(self) -> Text:
+        """The title of the axes, of the quick kind."""
+        usual = self.ax.set_title("", pad=_TITLE_PAD, y=1.0)
+        title = QuickText(self._glyphs, x=0.5, y=1.0, text="", parse_math=False, fontsize=_TITLE_SIZE, ha="center")
+        title.set_figure(self.figure)
+        title.axes = self.ax
+        title.set_transform(usual.get_transform())
+        title.set_clip_box(None)
+        self.ax.title = title
+        return title
+
+    def clear(self) -> None:
+        """Remove everything drawn, also by others, and start anew; the view shows the world again."""
+        self.ax.clear()
+        self._start()
+
+    def show(self, scene: Scene, title: str | None) -> None:
+        """Bring the artists up to date.
+
+        Args:
+            scene: What to show.
+            title: Text above the axes; None for none.
+        """
+        first = self._extent is None
+        self._look_at(scene)
+        fit_title = self._show_title(title or "")
+        if first and self.tight:
+            self._use_room()
+        self.ax.apply_aspect()
+        if fit_title:
+            self._fit_title()
+        scale = self._points_per_metre()
+        groups: dict[tuple[Any, ...], list[Any]] = {key: [] for key in self._marks}
+        for mark in scene.marks:
+            groups.setdefault(layer_key(mark.part, mark.zorder, mark.stroke.round_caps), []).append(mark)
+        for key, marks in groups.items():
+            if key not in self._marks:
+                self._marks[key] = MarkLayer(self.ax, key)
+                self.compositor.forget()
+            self._marks[key].show(marks, scale)
+        for shown, beam_layer in self._beams.items():
+            if not any(shown == (beams.object, beams.sensor) for beams in scene.beams):
+                beam_layer.show(None)
+        for beams in scene.beams:
+            shown = beams.object, beams.sensor
+            if shown not in self._beams:
+                self._beams[shown] = BeamLayer(self.ax, beams.zorder)
+            self._beams[shown].show(beams)
+        if scene.fog is not None:
+            self._fog = self._fog or FogLayer(self.ax, scene.fog.zorder)
+            self._fog.show(scene.fog)
+        self._show_grids(scene.grids)
+        self._show_pictures(scene.pictures)
+        self._show_labels(scene)
+
+    def draw(self) -> None:
+        """Draw the artists into the canvas."""
+        layers: list[GridLayer | MarkLayer] = [*self._grids.values(), *self._marks.values()]
+        self.compositor.draw({layer.artist: (layer.version, layer.rested) for layer in layers})
+
+    def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
+        """Draw and read the pixels.
+
+        Returns:
+            The pixels, and the box (left, top, right, bottom) they were cut from.
+        """
+        self.draw()
+        box = self.compositor.tight_box(pad_inches) if tight else (0, 0, *self.compositor.size)
+        return self.compositor.pixels(box), box
+
+    # parts -----------------------------------------------------------------------------------------------------------
+    def _look_at(self, scene: Scene) -> None:
+        if scene.extent != self._extent:
+            self._extent = scene.extent
+            self.ax.set_xlim(scene.extent[0], scene.extent[1])
+            self.ax.set_ylim(scene.extent[2], scene.extent[3])
+        if scene.center is not None:
+            for value, get, set_ in (
+                (scene.center[0], self.ax.get_xlim, self.ax.set_xlim),
+                (scene.center[1], self.ax.get_ylim, self.ax.set_ylim),
+            ):
+                low, high = get()
+                set_(value - (high - low) / 2, value + (high - low) / 2)
+
+    def _use_room(self) -> None:
+        """Let the axes fill the figure but for what ticks, labels and title need."""
+        renderer, figure, ax = self._renderer(), self.figure, self.ax
+        ax.apply_aspect()
+        boxes = [artist.get_tightbbox(renderer) for artist in ((ax.xaxis, ax.yaxis) if self.axis else ())]
+        outer = Bbox.union([ax.bbox, *(box for box in boxes if box is not None)])
+        title = self._title_artist.get_window_extent(renderer)
+        pad = _ROOM * figure.dpi / _POINTS_PER_INCH
+        width, height = figure.bbox.width, figure.bbox.height
+        left, right = (ax.bbox.x0 - outer.x0 + pad) / width, (outer.x1 - ax.bbox.x1 + pad) / width
+        bottom, top = (ax.bbox.y0 - outer.y0 + pad) / height, (max(outer.y1, title.y1) - ax.bbox.y1 + pad) / height
+        if left + right < _MOST_ROOM and bottom + top < _MOST_ROOM:
+            figure.subplots_adjust(left=left, right=1 - right, bottom=bottom, top=1 - top)
+
+    def _points_per_metre(self) -> float:
+        low, high = self.ax.get_ylim()
+        return float(self.ax.bbox.height / (high - low) * _POINTS_PER_INCH / self.figure.dpi)
+
+    def _show_title(self, title: str) -> bool:
+        """Write the title; True when it may need another size."""
+        if title == self._title:
+            return False
+        longer = self._title is None or len(title) > len(self._title)
+        self._title = title
+        self._title_artist.set_text(_printable(title))
+        return longer
+
+    def _fit_title(self) -> None:
+        """Write a title smaller that would stick out of the figure."""
+        artist, box, width = self._title_artist, self.ax.bbox, self.figure.bbox.width
+        artist.set_fontsize(_TITLE_SIZE)
+        middle = (box.x0 + box.x1) / 2
+        room = 2 * min(middle, width - middle) - 2 * _LABEL_MARGIN
+        needed = artist.get_window_extent(self._renderer()).width
+        if needed > room:
+            artist.set_fontsize(max(_SMALLEST_TITLE, _TITLE_SIZE * room / needed))
+
+    def _renderer(self) -> Any:
+        return self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
+
+    def _show_grids(self, grids: Sequence[GridImage]) -> None:
+        for number, layer in self._grids.items():
+            if not any(grid.object == number for grid in grids):
+                layer.show(None)
+        for grid in grids:
+            if grid.object not in self._grids:
+                self._grids[grid.object] = GridLayer(self.ax, grid.zorder)
+                self.compositor.forget()
+            self._grids[grid.object].show(grid)
+
+    def _show_pictures(self, pictures: Sequence[Picture]) -> None:
+        shown = {picture.object for picture in pictures}
+        for number, image in self._pictures.items():
+            image.set_visible(number in shown)
+        for picture in pictures:
+            artist = self._pictures.get(picture.object)
+            label = f"{picture.name} {picture.tint}"
+            if artist is None or artist.get_label() != label:
+                if artist is not None:
+                    artist.remove()
+                artist = AxesImage(self.ax, interpolation="antialiased", label=label)
+                artist.set_data(self._images.tinted(picture.name, picture.tint))
+                self.ax.add_image(artist)
+                self._pictures[picture.object] = artist
+            x, y, length, width = picture.box
+            artist.set_extent((x, x + length, y, y + width))
+            px, py, theta = picture.pose
+            artist.set_transform(Affine2D().rotate(theta).translate(px, py) + self.ax.transData)
+            artist.set_alpha(picture.alpha)
+            artist.set_zorder(picture.zorder)
+            artist.set_clip_path(self.ax.patch)
+
+    def _show_labels(self, scene: Scene) -> None:
+        labels = scene.labels
+        if not labels and not self._labels:
+            return
+        shown: dict[tuple[int, str], tuple[Label, Text]] = {}
+        view, data = self.ax.bbox, self.ax.transData
+        anchors = data.transform([label.anchor for label in labels]) if labels else np.empty((0, 2))
+        inside: NDArray[np.bool_] = (anchors >= (view.x0, view.y0)) & (anchors <= (view.x1, view.y1))
+        seen: NDArray[np.bool_] = np.all(inside, axis=1)
+        for label in compress(labels, seen.tolist()):
+            key = label.object, label.part
+            text = self._labels.get(key)
+            if text is None:
+                text = self._labels[key] = QuickText(self._glyphs, parse_math=False, clip_on=False)
+                text.set_path_effects(self._effects)
+                self.ax.add_artist(text)
+            shown[key] = label, text
+            text.set_visible(True)
+            text.set_text(_printable(label.text))
+            text.set_position((label.x, label.y))
+            text.set_color(rgba(label.color))
+            text.set_fontsize(label.size)
+            text.set_alpha(label.alpha)
+            text.set_zorder(label.zorder + _LABEL_RANK)
+        for key, text in self._labels.items():
+            if key not in shown:
+                text.set_visible(False)
+        if shown:
+            self._move_labels(list(shown.values()), anchors[seen], scene)
+
+    def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
+        """Shift labels that the edge of the axes would cut, and those that would cover another; names come first."""
+        order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
+        texts, anchors = [shown[i][1] for i in order], anchors[order]
+        view, data = self.ax.bbox, self.ax.transData
+        starts = data.transform([text.get_position() for text in texts])
+        boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
+        margin = np.array([_LABEL_MARGIN, _LABEL_MARGIN, -_LABEL_MARGIN, -_LABEL_MARGIN])
+
+        def bodies() -> Floats:
+            corners = np.array(small_bodies(scene), dtype=np.float64).reshape(-1, 2)
+            return np.asarray(data.transform(corners), dtype=np.float64).reshape(-1, 4)
+
+        moves = free_places(boxes, anchors, np.array(view.extents) + margin, bodies, clear=self._halo)
+        moved = data.inverted().transform(starts + moves)
+        for text, move, (x, y) in zip(texts, moves.tolist(), moved.tolist(), strict=True):
+            if move != [0.0, 0.0]:
+                text.set_position((x, y))
+
+    def _extent_of(self, text: Text) -> Bounds:
+        """Left, bottom, right and top of a label, seen from where it begins [px]."""
+        key = text.get_text(), float(text.get_fontsize()), float(self.figure.dpi)
+        extent = self._extents.get(key)
+        if extent is None:
+            if len(self._extents) >= _MOST_EXTENTS:
+                self._extents.clear()
+            box = text.get_window_extent(self._renderer())
+            x, y = self.ax.transData.transform(text.get_position())
+            extent = self._extents[key] = float(box.x0 - x), float(box.y0 - y), float(box.x1 - x), float(box.y1 - y)
+        return extent
+
+
+def _printable(text: str) -> str:
+    """Text without characters that no font has."""
+    return "".join(character if character.isprintable() or character == "\n" else " " for character in text)
+
+
+def inches(size: tuple[float, float], dpi: float) -> tuple[float, float]:
+    """Size of a figure whose canvas has this many pixels; a hair more, since Matplotlib cuts fractions off."""
+    return (size[0] + _HAIR) / dpi, (size[1] + _HAIR) / dpi
+
+
+def fitting_size(width: float, height: float, side: float, dpi: float, *, axis: bool = True) -> tuple[float, float]:
+    """Size of a figure that shows a world without empty margins.
+
+    Args:
+        width: Of the world [m].
+        height: Of the world [m].
+        side: Longer side of the figure [px].
+        dpi: Pixels per inch.
+        axis: Whether ticks and labels take room.
+
+    Returns:
+        Width and height [px]; never narrower than a title needs.
+    """
+    across, up = _MARGINS[axis][0] * dpi, _MARGINS[axis][1] * dpi
+    scale = min((side - across) / width, (side - up) / height)
+    return min(side, max(scale * width + across, _LEAST_WIDTH * dpi)), min(side, max(scale * height + up, dpi))

@@ -1,0 +1,133 @@
+"""A world in three dimensions: the flat scene on the ground of a 3-D view."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+from numpy.typing import NDArray
+
+from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.figure.compositor import Compositor
+from irsim.graphics.figure.figure import inches
+from irsim.graphics.scene.scene import Beams, Circle, Label, Line, Mark, Region, Scene, Sector
+
+__all__ = ["SceneFigure3D"]
+
+_CORNERS = 48
+"""Of a drawn circle."""
+_LIFT = 1e-3
+"""Height of one layer above the next [m]: 3-D axes draw by depth, not by layer."""
+
+
+class SceneFigure3D:
+    """Figure and 3-D axes; everything of a scene is drawn anew in each frame, at the height of its object.
+
+    Args:
+        size: Width and height [px].
+        dpi: Pixels per inch.
+        depth: Extent along z [m].
+        axis: Draw axes, ticks and labels.
+        figure: A figure to use (of a window); default: a new one without a window.
+
+    Attributes:
+        figure, ax: For drawing more into it.
+    """
+
+    def __init__(
+        self, size: tuple[float, float], dpi: float, *, depth: float, axis: bool = True, figure: Figure | None = None
+    ) -> None:
+        if figure is None:
+            figure = Figure(figsize=inches(size, dpi), dpi=dpi)
+            FigureCanvasAgg(figure)
+        self.figure, self.axis, self.depth = figure, axis, depth
+        self.ax: Any = figure.add_subplot(projection="3d")
+        self.compositor = Compositor(figure, self.ax)
+        self.clear()
+
+    def clear(self) -> None:
+        """Remove everything drawn, also by others, and start anew."""
+        self.ax.clear()
+        self._artists: list[Any] = []
+        self._extent: tuple[float, float, float, float] | None = None
+        if not self.axis:
+            self.ax.set_axis_off()
+
+    def show(self, scene: Scene, title: str | None) -> None:
+        """Draw a scene; the view (angle, zoom) stays."""
+        if scene.extent != self._extent:
+            self._look_at(scene.extent)
+        for artist in self._artists:
+            if artist.axes is not None:  # else a script has cleared the axes
+                artist.remove()
+        self._artists = [self._mark(mark) for mark in scene.marks]
+        self._artists += [self._beams(beams) for beams in scene.beams if len(beams.ends)]
+        self._artists += [self._label(label) for label in scene.labels]
+        self.ax.set_title(title or "")
+
+    def _look_at(self, extent: tuple[float, float, float, float]) -> None:
+        self._extent = extent
+        left, right, low, top = extent
+        self.ax.set_xlim(left, right)
+        self.ax.set_ylim(low, top)
+        self.ax.set_zlim(0.0, self.depth)
+        self.ax.set_box_aspect((right - left, top - low, self.depth))
+        self.ax.set_xlabel("x [m]")
+        self.ax.set_ylabel("y [m]")
+        self.ax.set_zlabel("z [m]")
+
+    def _mark(self, mark: Mark) -> Any:
+        height = _LIFT * max(0.0, mark.zorder)
+        lines = [_raised(points, height) for points in outlines(mark.geometry)]
+        edge = mark.stroke.color
+        if isinstance(mark.geometry, Line):
+            color = _rgba(edge if edge is not None else "none", mark.alpha)
+            return self.ax.add_collection3d(Line3DCollection(lines, colors=[color], linestyles=mark.stroke.style))
+        patch = Poly3DCollection(lines, linewidths=0.0 if mark.stroke.metric else mark.stroke.width)
+        patch.set_facecolor(_rgba(mark.fill if mark.fill is not None else "none", mark.alpha))
+        patch.set_edgecolor(_rgba(edge if edge is not None else "none", mark.alpha))
+        return self.ax.add_collection3d(patch)
+
+    def _beams(self, beams: Beams) -> Any:
+        start = np.broadcast_to(np.array([*beams.origin, _LIFT]), (len(beams.ends), 3))
+        ends = _raised(beams.ends, _LIFT)
+        color = _rgba(beams.color, beams.alpha)
+        return self.ax.add_collection3d(Line3DCollection(np.stack([start, ends], axis=1), colors=[color]))
+
+    def _label(self, label: Label) -> Any:
+        return self.ax.text(label.x, label.y, 0.0, label.text, color=label.color, fontsize=label.size)
+
+    def draw(self) -> None:
+        """Draw into the canvas."""
+        self.compositor.draw_plainly()
+
+    def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
+        """Draw and read the pixels, and the box (left, top, right, bottom) they were cut from."""
+        self.draw()
+        box = self.compositor.tight_box(pad_inches) if tight else (0, 0, *self.compositor.size)
+        return self.compositor.pixels(box), box
+
+
+def outlines(geometry: Circle | Region | Line | Sector) -> list[NDArray[np.float64]]:
+    """(M, 2) points of each ring or line of a geometry."""
+    if isinstance(geometry, Region):
+        return list(geometry.rings)
+    if isinstance(geometry, Line):
+        return [geometry.points]
+    full = isinstance(geometry, Circle)
+    first, last = (0.0, 2 * np.pi) if isinstance(geometry, Circle) else (geometry.start, geometry.end)
+    angles = np.linspace(first, last, _CORNERS, endpoint=not full)
+    ring = geometry.radius * np.column_stack([np.cos(angles), np.sin(angles)]) + [geometry.x, geometry.y]
+    return [ring if full else np.vstack([[geometry.x, geometry.y], ring])]
+
+
+def _rgba(color: Any, alpha: float) -> tuple[float, float, float, float]:
+    return to_rgba(color, alpha)
+
+
+def _raised(points: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+    return np.column_stack([points[:, :2], np.full(len(points), height)])

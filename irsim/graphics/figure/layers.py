@@ -1,0 +1,241 @@
+"""Marks and beams as a handful of Matplotlib collections, one per layer, updated in place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import Collection, PathCollection
+from matplotlib.colors import to_rgba
+from matplotlib.image import AxesImage
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
+
+from irsim.graphics.scene.palette import Color
+from irsim.graphics.scene.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Scene, Sector
+
+__all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
+
+_PARTS = ("field", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
+"""Order of drawing within one zorder."""
+
+_RANK = 1e-3
+"""Artists of equal zorder are drawn in the order they were added; this much above it makes the parts' order certain."""
+
+_UNIT = Path.unit_circle()
+_BEAM_WIDTH = 1.0
+_NONE = (0.0, 0.0, 0.0, 0.0)
+
+
+def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
+    """Sorts layers in the order they are drawn."""
+    return float(zorder), _PARTS.index(part), round_caps
+
+
+class MarkLayer:
+    """All marks of one kind and zorder.
+
+    Attributes:
+        artist: The collection that shows them.
+        version: Counts changes of content.
+        rested: Scenes in a row without a change.
+    """
+
+    def __init__(self, ax: Axes, key: tuple[Any, ...]) -> None:
+        caps, joins = ("round", "round") if key[2] else ("butt", "miter")
+        joins = "round" if key[1] == _PARTS.index("trajectory") else joins
+        self.artist = PathCollection([], capstyle=caps, joinstyle=joins, zorder=key[0] + _RANK * key[1])
+        ax.add_collection(self.artist, autolim=False)
+        self.version = self.rested = 0
+        self._marks: list[Mark] = []
+        self._scale = 0.0
+
+    def show(self, marks: Sequence[Mark], points_per_metre: float) -> None:
+        """Draw exactly these marks.
+
+        Args:
+            marks: Marks that are the same objects as last time are taken as unchanged.
+            points_per_metre: Scale of the view, for line widths given in metres.
+        """
+        old = self._marks
+        same = next(
+            (i for i, (a, b) in enumerate(zip(old, marks, strict=False)) if a is not b), min(len(old), len(marks))
+        )
+        rescaled = points_per_metre != self._scale and any(mark.stroke.metric for mark in marks)
+        if same == len(old) == len(marks) and not rescaled:
+            self.rested += 1
+            return
+        self.version += 1
+        self.rested = 0
+        self._marks, self._scale = list(marks), points_per_metre
+        self.artist.set_paths(
+            [*self.artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])]
+        )
+        self.artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
+        self.artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
+        widths = [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
+        self.artist.set_linewidth(_shared(widths) or [0.0])
+        self.artist.set_linestyle(_shared([mark.stroke.style for mark in marks]) or ["-"])
+
+
+class BeamLayer:
+    """The beams of one sensor, which change in every scene."""
+
+    def __init__(self, ax: Axes, zorder: float) -> None:
+        self._ax = ax
+        self.artist = _Spokes(zorder + _RANK * _PARTS.index("beams"))
+        ax.add_collection(self.artist, autolim=False)
+        self._dots: PathCollection | None = None
+
+    def show(self, beams: Beams | None) -> None:
+        """Draw this scan; None draws nothing."""
+        self.artist.set_visible(beams is not None)
+        self._show_dots(None if beams is None else beams.dots)
+        if beams is None:
+            return
+        self.artist.set_ends(beams.origin, beams.ends)
+        colors: Any = np.empty((len(beams.ends), 4))
+        colors[:] = rgba(beams.color, beams.alpha) if beams.colors is None else beams.colors
+        for beam, color, alpha in beams.highlights:
+            colors[beam] = rgba(color, alpha)
+        self.artist.set_edgecolor(colors)
+        self.artist.set_linewidth(_BEAM_WIDTH if beams.widths is None else beams.widths.tolist())
+
+    def _show_dots(self, dots: Dots | None) -> None:
+        if self._dots is not None:
+            self._dots.set_visible(dots is not None)
+        if dots is None:
+            return
+        if self._dots is None:
+            self._dots = self._ax.scatter([], [], zorder=dots.zorder)
+        self._dots.set_offsets(dots.points)
+        self._dots.set_sizes([dots.area])
+        colors: Any = dots.colors
+        self._dots.set_facecolor(colors)
+        self._dots.set_edgecolor(rgba(dots.edge_color))
+        self._dots.set_linewidth(dots.edge_width)
+
+    def remove(self) -> None:
+        """Take the artists out of the axes."""
+        self.artist.remove()
+        if self._dots is not None:
+            self._dots.remove()
+
+
+class FogLayer:
+    """The fog as an image over the world, redrawn only when it has lifted somewhere.
+
+    Attributes:
+        artist: The image.
+    """
+
+    def __init__(self, ax: Axes, zorder: float) -> None:
+        self.artist = AxesImage(ax, interpolation="nearest", origin="lower", zorder=zorder)
+        self.artist.set_clip_path(ax.patch)
+        ax.add_image(self.artist)
+        self._shown: Any = None
+
+    def show(self, fog: Fog) -> None:
+        """Draw it."""
+        if self._shown is not None and np.array_equal(self._shown, fog.explored):
+            return
+        self._shown = fog.explored
+        color = np.array([round(255 * level) for level in rgba(fog.color, fog.alpha)], dtype=np.uint8)
+        pixels = np.tile(color, (*fog.explored.T.shape, 1))
+        pixels[fog.explored.T, 3] = 0
+        self.artist.set_data(pixels)
+        self.artist.set_extent(fog.extent)
+
+
+class _Spokes(Collection):
+    """Lines from one point: a unit line, turned and stretched for each (cheaper than as many lines)."""
+
+    def __init__(self, zorder: float) -> None:
+        super().__init__(facecolors="none", linewidths=_BEAM_WIDTH, zorder=zorder)
+        self._paths = [Path([(0.0, 0.0), (1.0, 0.0)])]
+        self._matrices = np.empty((0, 3, 3))
+
+    def set_ends(self, origin: tuple[float, float], ends: Floats) -> None:
+        """Spokes from ``origin`` to ``ends`` (B, 2)."""
+        matrices = np.zeros((len(ends), 3, 3))
+        matrices[:, :2, 0] = ends - origin
+        matrices[:, 2, 2] = 1.0
+        self._matrices = matrices
+        self.set_offsets(np.tile(origin, (len(ends), 1)))
+
+    def get_transforms(self) -> Any:
+        """(B, 3, 3) unit line → spoke at the origin."""
+        return self._matrices
+
+    def draw(self, renderer: Any) -> None:
+        """Turn and stretch by the transforms, move by the offsets: the data transform must not move as well."""
+        assert self.axes is not None
+        linear = self.axes.transData.get_matrix().copy()
+        linear[:2, 2] = 0.0
+        self.set_transform(Affine2D(linear))
+        self.set_offset_transform(self.axes.transData)
+        super().draw(renderer)
+
+
+def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
+    """A colour that may bring its own opacity, times ``alpha``.
+
+    Raises:
+        ValueError: Not a colour.
+    """
+    given: Any = color
+    red, green, blue, opacity = to_rgba(given)
+    return red, green, blue, opacity * float(alpha)
+
+
+def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
+    """Colours that a reduced palette must keep (0..255): paper, ink, opaque bodies and arrows, some texts."""
+    colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
+    colors += [rgba(label.color)[:3] for label in scene.labels if label.part in ("field", "plan")]
+    levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
+    return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
+
+
+def _shared(values: list[Any]) -> list[Any]:
+    """The values, or the one they all are: collections repeat what is too short."""
+    return values[:1] if all(value == values[0] for value in values) else values
+
+
+def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:
+    """(N, 4) RGBA; None is transparent; (0, 4), which Matplotlib need not draw at all, when all are None."""
+    if all(color is None for color in colors):
+        return np.empty((0, 4))
+    levels = [_NONE if c is None else rgba(c, a) for c, a in zip(colors, alphas, strict=True)]
+    return np.array(levels, dtype=np.float64)
+
+
+def geometry_path(geometry: Geometry) -> Path:
+    """The outline of a mark."""
+    if isinstance(geometry, Circle):
+        return _scaled(_UNIT, geometry)
+    if isinstance(geometry, Line):
+        return Path(geometry.points)
+    if isinstance(geometry, Sector):
+        return _sector(geometry)
+    if len(geometry.rings) == 1:
+        return _ring(geometry.rings[0])
+    return Path.make_compound_path(*[_ring(ring) for ring in geometry.rings])
+
+
+def _ring(points: Floats) -> Path:
+    closed = np.concatenate([points, points[:1]])
+    codes = np.full(len(closed), Path.LINETO, dtype=Path.code_type)
+    codes[0], codes[-1] = Path.MOVETO, Path.CLOSEPOLY
+    return Path(closed, codes)
+
+
+def _sector(sector: Sector) -> Path:
+    return _scaled(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
+
+
+def _scaled(unit: Path, place: Circle | Sector) -> Path:
+    """A path of radius 1 about the origin, brought to size and place."""
+    return Path(np.asarray(unit.vertices) * place.radius + (place.x, place.y), unit.codes)

@@ -1,0 +1,84 @@
+"""Images drawn in place of bodies: the bundled ones, or a file of the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from irsim.graphics.scene.palette import Color
+from irsim.scenario.resolve.images import BUNDLED, image_places
+
+__all__ = ["BUNDLED", "Pictures"]
+
+_LONGEST = 512
+"""Side that larger images are reduced to [px]."""
+
+
+class Pictures:
+    """The images that a scenario's ``description`` keys name, each read once.
+
+    Args:
+        folder: Folder of the scenario, looked in as well.
+        warn: Told about an image that is missing or unreadable, once.
+    """
+
+    def __init__(self, folder: str | Path | None = None, warn: Callable[[str], None] | None = None) -> None:
+        self._folder = folder
+        self._warn = warn
+        self._known: dict[str, NDArray[np.uint8] | None] = {}
+        self._tinted: dict[tuple[str, str], NDArray[np.uint8]] = {}
+
+    def get(self, name: str) -> NDArray[np.uint8] | None:
+        """(H, W, 4) pixels; None where there is no such image."""
+        if name not in self._known:
+            self._known[name] = self._read(name)
+        return self._known[name]
+
+    def tinted(self, name: str, color: Color | None) -> NDArray[np.uint8] | None:
+        """The same with its colourful parts in another colour, as light and as dark as they are; None: as it is."""
+        pixels = self.get(name)
+        if pixels is None or color is None:
+            return pixels
+        key = name, str(color)
+        if key not in self._tinted:
+            self._tinted[key] = _tinted(pixels, color)
+        return self._tinted[key]
+
+    def has(self, name: str) -> bool:
+        """Whether there is such an image."""
+        return self.get(name) is not None
+
+    def _read(self, name: str) -> NDArray[np.uint8] | None:
+        problem = "not found"
+        for path in image_places(name, self._folder):
+            try:
+                with Image.open(path) as image:
+                    image.thumbnail((_LONGEST, _LONGEST))
+                    return np.asarray(image.convert("RGBA"))
+            except (FileNotFoundError, NotADirectoryError):
+                continue
+            except (OSError, ValueError, Image.DecompressionBombError):
+                problem = "cannot be read as an image"
+        if self._warn is not None:
+            self._warn(f"description image {name!r} {problem}: the shape is drawn instead")
+        return None
+
+
+def _tinted(pixels: NDArray[np.uint8], color: Color) -> NDArray[np.uint8]:
+    """(H, W, 4) pixels whose colours, but for greys, give way to one."""
+    from matplotlib.colors import to_rgb
+
+    given: Any = color
+    levels = pixels[..., :3].astype(np.float64)
+    light, dark = levels.max(axis=2, keepdims=True), levels.min(axis=2, keepdims=True)
+    share = np.clip(3 * (light - dark) / np.maximum(light, 1.0) - 1, 0.0, 1.0)  # 0 nearly grey, 1 colourful
+    usual = np.quantile(light[share >= 1.0], 0.5) if (share >= 1.0).any() else 255.0
+    wanted = np.array(to_rgb(given)) * np.minimum(255.0 * light / max(float(usual), 1.0), 255.0)
+    result = pixels.copy()
+    result[..., :3] = np.rint(levels + share * (wanted - levels)).astype(np.uint8)
+    return result

@@ -1,0 +1,1 @@
+"""A scene as data: bodies, labels, colours, styles."""

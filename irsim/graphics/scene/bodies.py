@@ -1,0 +1,153 @@
+"""Shapes in the body frame, and moved to a pose."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from irsim.graphics.scene.scene import Circle, Floats, Geometry, Line, Picture, Region, Sector
+
+if TYPE_CHECKING:
+    from irsim._core import State
+
+__all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline", "place", "read_body"]
+
+Pose = tuple[float, float, float]
+"""x, y [m] and heading [rad]."""
+
+_SHAFT, _HEAD, _NECK = 0.1, 0.3, 0.6
+_ELLIPSE_POINTS = 64
+_UNION_SEGMENTS = 32
+
+
+@dataclass(slots=True)
+class Body:
+    """What an object looks like in its own frame.
+
+    Attributes:
+        kind: ``circle``, ``polygon``, ``linestring`` or ``compound``.
+        geometry: The shape; the union of the parts of a compound.
+        low, high: Corners of its bounding box [m].
+        radius: Radius of the smallest circle round it [m].
+    """
+
+    kind: str
+    geometry: Geometry
+    low: tuple[float, float]
+    high: tuple[float, float]
+    radius: float
+
+    @property
+    def length(self) -> float:
+        """Extent along body x [m]."""
+        return self.high[0] - self.low[0]
+
+    @property
+    def width(self) -> float:
+        """Extent along body y [m]."""
+        return self.high[1] - self.low[1]
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Centre of the bounding box."""
+        return (self.low[0] + self.high[0]) / 2, (self.low[1] + self.high[1]) / 2
+
+
+def read_body(state: State, row: int) -> Body:
+    """The shape of one row of the simulation."""
+    geometries: list[Geometry] = []
+    kinds = state.parts(row)
+    for part, kind in enumerate(kinds):
+        if kind == "circle":
+            geometries.append(Circle(*state.circle(row, part, False)))
+        else:
+            vertices = np.array(state.vertices(row, part, False), dtype=np.float64)
+            if kind == "room":
+                vertices = np.concatenate([vertices, vertices[:1]])
+            geometries.append(Region([vertices]) if kind == "polygon" else Line(vertices))
+    corners = [bounds(geometry) for geometry in geometries]
+    low = min(c[0] for c in corners), min(c[1] for c in corners)
+    high = max(c[2] for c in corners), max(c[3] for c in corners)
+    single = len(geometries) == 1
+    geometry = geometries[0] if single else _union(geometries)
+    return Body(
+        {"room": "linestring"}.get(kinds[0], kinds[0]) if single else "compound",
+        geometry,
+        low,
+        high,
+        float(state.radius[row]),
+    )
+
+
+def place(geometry: Geometry, pose: Pose) -> Geometry:
+    """``geometry`` turned by the heading of ``pose`` and moved there."""
+    x, y, theta = pose
+    c, s = math.cos(theta), math.sin(theta)
+    if isinstance(geometry, Circle):
+        return Circle(x + c * geometry.x - s * geometry.y, y + s * geometry.x + c * geometry.y, geometry.radius)
+    turn = np.array([[c, s], [-s, c]])
+    if isinstance(geometry, Region):
+        return Region([ring @ turn + (x, y) for ring in geometry.rings])
+    if isinstance(geometry, Line):
+        return Line(geometry.points @ turn + (x, y))
+    raise TypeError(f"a {type(geometry).__name__} is not part of a body")
+
+
+def arrow(length: float, width: float) -> Region:
+    """An arrow along body x that starts at the origin; the head is 0.6 ``width`` across [m]."""
+    shaft, head, neck = _SHAFT * width, _HEAD * width, _NECK * length
+    outline = [(0, -shaft), (neck, -shaft), (neck, -head), (length, 0), (neck, head), (neck, shaft), (0, shaft)]
+    return Region([np.array(outline, dtype=np.float64)])
+
+
+def box(body: Body) -> Region:
+    """The bounding box of a body."""
+    (x0, y0), (x1, y1) = body.low, body.high
+    return Region([np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], dtype=np.float64)])
+
+
+def ellipse(body: Body) -> Region:
+    """The ellipse inscribed in the bounding box of a body."""
+    angles = np.linspace(0, 2 * math.pi, _ELLIPSE_POINTS, endpoint=False)
+    (x, y), rx, ry = body.middle, body.length / 2, body.width / 2
+    return Region([np.stack([x + rx * np.cos(angles), y + ry * np.sin(angles)], axis=1)])
+
+
+def picture_outline(picture: Picture) -> Geometry:
+    """The rectangle an image covers."""
+    x, y, length, width = picture.box
+    corners = [(x, y), (x + length, y), (x + length, y + width), (x, y + width)]
+    return place(Region([np.array(corners, dtype=np.float64)]), picture.pose)
+
+
+def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
+    """Left, bottom, right, top."""
+    if isinstance(geometry, Circle | Sector):
+        x, y, r = geometry.x, geometry.y, geometry.radius
+        return x - r, y - r, x + r, y + r
+    points = geometry.points if isinstance(geometry, Line) else np.concatenate(geometry.rings)
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+def _union(geometries: list[Geometry]) -> Geometry:
+    """One outline for overlapping parts, so that a translucent compound has no darker overlaps."""
+    import shapely
+
+    shapes = []
+    for geometry in geometries:
+        if isinstance(geometry, Circle):
+            shapes.append(shapely.Point(geometry.x, geometry.y).buffer(geometry.radius, quad_segs=_UNION_SEGMENTS))
+        elif isinstance(geometry, Region):
+            shapes.append(shapely.Polygon(geometry.rings[0]))
+        else:
+            raise TypeError(f"a {type(geometry).__name__} cannot be part of a compound")
+    union = shapely.union_all(shapes)
+    rings: list[Floats] = []
+    for polygon in getattr(union, "geoms", [union]):
+        outline = shapely.geometry.polygon.orient(polygon)
+        rings += [np.asarray(ring.coords)[:-1] for ring in (outline.exterior, *outline.interiors)]
+    return Region(rings)

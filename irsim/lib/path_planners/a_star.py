@@ -1,5 +1,0 @@
-"""Plain re-export."""
-
-from irsim.navigation.planners import AStarPlanner
-
-__all__ = ["AStarPlanner"]

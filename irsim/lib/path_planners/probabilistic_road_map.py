@@ -1,5 +1,0 @@
-"""Plain re-export."""
-
-from irsim.navigation.planners import PRMPlanner
-
-__all__ = ["PRMPlanner"]

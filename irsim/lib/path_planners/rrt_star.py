@@ -1,5 +1,0 @@
-"""Plain re-export."""
-
-from irsim.navigation.planners import RRTStar
-
-__all__ = ["RRTStar"]

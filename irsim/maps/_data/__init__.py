@@ -1,1 +1,0 @@
-"""The bundled maps, and how they were drawn: ``python -m irsim.maps._data`` writes them again."""

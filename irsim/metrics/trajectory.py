@@ -1,0 +1,209 @@
+"""One robot's part of a trace, until it arrived."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.metrics.roles import HUMAN, company_of, social_groups
+
+if TYPE_CHECKING:
+    from irsim.metrics.clearance import Clearance
+    from irsim.simulation.events import Event
+    from irsim.simulation.simulation import Simulation
+    from irsim.simulation.trace import Trace
+
+__all__ = ["HOLONOMIC", "Track", "spaced", "tracks", "wrapped"]
+
+Floats = NDArray[np.float64]
+HOLONOMIC = ("omni", "omni_angular")
+_APART = 0.05  # points of a path that directions and curvature are taken of [m]
+
+
+@dataclass(frozen=True)
+class Track:
+    """Rows 0 to the first arrival of one robot, or to the end of the trace.
+
+    Attributes:
+        name: Of the robot.
+        index: Among the objects.
+        first: Step of the first row.
+        step_time: Period [s].
+        pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start.
+        goal: (K, 3) present goal; NaN without one.
+        collided: (K,) in contact with something that stands in the way.
+        stopped: At the last row a contact keeps it from moving.
+        distance: (K, 3) distance [m] to the nearest robot, human, static thing (see ``Clearance``).
+        arrival: Step of the first arrival, None if it never arrived.
+        collisions: Its contacts until then, with the kind of each (a number of :mod:`irsim.metrics.roles`).
+        control: (K - 1, C) controls executed in each step, as many as its drive has.
+        limits: (C,) greatest magnitude of each.
+        outside: (K,) its position is outside the world.
+        others: (K, M, 3) poses of the humans.
+        others_static: (K, M) distance of each to the nearest static thing [m].
+        people: Names of the humans.
+        groups: Of each social group its members, as columns of ``others``.
+        reaches: (M,) bounding radii of the humans [m].
+        reach: Its own bounding radius [m].
+        top_speed: The greatest of its limits of speed, forward or sideways [m/s].
+        holonomic: It need not turn to go another way.
+    """
+
+    name: str
+    index: int
+    first: int
+    step_time: float
+    pose: Floats
+    goal: Floats
+    collided: NDArray[np.bool_]
+    stopped: bool
+    distance: Floats
+    arrival: int | None
+    collisions: tuple[tuple[Event, int], ...]
+    control: Floats
+    limits: Floats
+    outside: NDArray[np.bool_]
+    others: Floats
+    others_static: Floats
+    people: tuple[str, ...]
+    groups: tuple[tuple[int, ...], ...]
+    reaches: Floats
+    reach: float
+    top_speed: float
+    holonomic: bool
+
+    @property
+    def position(self) -> Floats:
+        """(K, 2) [m]."""
+        return self.pose[:, :2]
+
+    @property
+    def velocity(self) -> Floats:
+        """(K - 1, 2) velocity during each step [m/s], world frame."""
+        return np.diff(self.position, axis=0) / self.step_time
+
+    @property
+    def speed(self) -> Floats:
+        """(K - 1,) [m/s]."""
+        return np.asarray(np.linalg.norm(self.velocity, axis=1))
+
+    @property
+    def turning(self) -> Floats:
+        """(K - 1,) heading change of each step [rad], in [-pi, pi)."""
+        return wrapped(np.diff(self.pose[:, 2]))
+
+    @property
+    def bends(self) -> Floats:
+        """Heading changes [rad] on its way, in [-pi, pi).
+
+        Those of its body, step by step; of a holonomic drive, whose body may look anywhere, those of the direction in
+        which it goes, from each point of its path to the next that is 0.05 m on.
+        """
+        if not self.holonomic:
+            return self.turning
+        legs = np.diff(spaced(self.position), axis=0)
+        return wrapped(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
+
+    @property
+    def path_length(self) -> float:
+        """Distance travelled [m]."""
+        return float(np.linalg.norm(np.diff(self.position, axis=0), axis=1).sum())
+
+    @property
+    def success(self) -> bool:
+        """Arrived, and no contact until then."""
+        return self.arrival is not None and not self.collisions
+
+
+def wrapped(angles: Floats) -> Floats:
+    """Angles [rad] in [-pi, pi)."""
+    return np.asarray((angles + np.pi) % (2 * np.pi) - np.pi)
+
+
+def spaced(points: Floats) -> Floats:
+    """Those of the points (T, 2) of a path that are 0.05 m from the last that was kept, (K, 2); the first is."""
+    kept = [0]
+    x, y = points[:, 0].tolist(), points[:, 1].tolist()
+    for row in range(1, len(x)):
+        if math.hypot(x[row] - x[kept[-1]], y[row] - y[kept[-1]]) >= _APART:
+            kept.append(row)
+    return points[kept]
+
+
+def tracks(
+    trace: Trace,
+    events: list[Event],
+    distances: Clearance,
+    simulation: Simulation,
+    radii: Floats,
+    top_speeds: list[float],
+) -> list[Track]:
+    """Cut a trace into the tracks of its robots.
+
+    Args:
+        trace: The episode.
+        events: What happened in it.
+        distances: Of the robots.
+        simulation: What was simulated, in the scene of the trace.
+        radii: (N,) bounding radii [m].
+        top_speeds: Of the robots [m/s].
+    """
+    from irsim.metrics.clearance import static_distance
+    from irsim.simulation.events import collision_of, first_events, partner_of
+
+    scenario = simulation.scenario
+    records = scenario.objects
+    kinds, groups = company_of(records), social_groups(records)
+    passable = {record.name for record in records if record.unobstructed}
+    number = {name: index for index, name in enumerate(trace.names)}
+    arrivals = first_events(events, "arrival")
+    humans = np.flatnonzero(kinds == HUMAN)
+    beside = static_distance(trace.pose, simulation, humans.tolist())
+    first = int(trace.step[0])
+    found = []
+    for place, robot in enumerate(distances.robots.tolist()):
+        name = trace.names[robot]
+        arrival = arrivals[name].step if name in arrivals else None
+        rows = slice(0, len(trace) if arrival is None else arrival - first + 1)
+        hits = []
+        for event in events:
+            if collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
+                other = partner_of(event, name)
+                hits.append((event, int(kinds[number[str(other)]])))
+        them = humans[humans != robot]
+        column = {human: place for place, human in enumerate(them.tolist())}
+        together = [tuple(column[one] for one in group if one in column) for group in groups]
+        record = records[robot]
+        x, y = trace.pose[rows, robot, 0], trace.pose[rows, robot, 1]
+        x0, y0, x1, y1 = scenario.world.bounds
+        found.append(
+            Track(
+                name=name,
+                index=robot,
+                first=first,
+                step_time=trace.step_time,
+                pose=trace.pose[rows, robot],
+                goal=trace.goal[rows, robot],
+                collided=trace.collided[rows, robot],
+                stopped=bool(trace.stopped[rows, robot][-1]),
+                distance=distances.distance[rows, place],
+                arrival=arrival,
+                collisions=tuple(hits),
+                control=trace.control[rows, robot, : record.vel_dim][1:],
+                limits=np.maximum(np.abs(record.vel_min), np.abs(record.vel_max)),
+                outside=(x < x0) | (x > x1) | (y < y0) | (y > y1),
+                others=trace.pose[rows][:, them],
+                others_static=beside[rows][:, humans != robot],
+                people=tuple(trace.names[human] for human in them),
+                groups=tuple(group for group in together if len(group) > 1),
+                reaches=radii[them],
+                reach=float(radii[robot]),
+                top_speed=top_speeds[place],
+                holonomic=getattr(record.kinematics, "name", None) in HOLONOMIC,
+            )
+        )
+    return found

@@ -1,0 +1,1 @@
+"""Robots and obstacles as scripts see them: rows of the simulation's arrays with names."""

@@ -1,0 +1,1 @@
+"""What objects draw: the scene of an environment, and what scripts plot by hand."""

@@ -1,0 +1,393 @@
+"""Drawing one object by hand; environments draw all of theirs together, by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from irsim.graphics.figure.pictures import Pictures
+    from irsim.objects.drawing.scene_builder import SceneBuilder
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["ObjectDrawing"]
+
+
+class PlotKeys(dict[str, Any]):
+    """The plot keys of one object as written; setting one changes how the object is drawn from then on.
+
+    Args:
+        view: The object.
+    """
+
+    def __init__(self, view: Any) -> None:
+        super().__init__(view.record.plot.model_dump(exclude_unset=True))
+        self._view = view
+
+    def __setitem__(self, key: str, value: Any) -> None:
+        super().__setitem__(key, value)
+        self._tell()
+
+    def __delitem__(self, key: str) -> None:
+        super().__delitem__(key)
+        self._tell()
+
+    def update(self, *args: Any, **kwargs: Any) -> None:
+        """Set several."""
+        super().update(*args, **kwargs)
+        self._tell()
+
+    def _tell(self) -> None:
+        record = self._view.record
+        self._view.record = replace(record, plot=type(record.plot).model_validate(dict(self)))
+
+
+class ObjectDrawing:
+    """Part of :class:`irsim.objects.view.ObjectView`.
+
+    Every ``plot_*`` adds what it draws to some axes, by default those of the environment, and lists it here until
+    ``plot_clear``. ``state`` is the pose to draw it at, x, y [m] and heading [rad] in any shape, by default where the
+    object is; other keywords are plot keys that hold for this drawing.
+
+    Attributes:
+        ax: The axes drawn on last; before that those of its environment, None without one.
+        plot_patch_list, plot_line_list, plot_text_list, plot_trail_list: Artists by kind.
+        object_patch, object_img, goal_patch, arrow_patch, fov_patch, trajectory_line: What was drawn last, or None.
+    """
+
+    if TYPE_CHECKING:
+        _simulation: Simulation
+        world: int
+        row: int
+        shape: Any
+        kinematics: Any
+        sensors: list[Any]
+        description: Any
+        record: Any
+        trajectory: Any
+
+    object_patch: Any = None
+    object_img: Any = None
+    goal_patch: Any = None
+    arrow_patch: Any = None
+    fov_patch: Any = None
+    trajectory_line: Any = None
+
+    @property
+    def plot_kwargs(self) -> PlotKeys:
+        """Its plot keys as written; those that are set count from the next frame on."""
+        return PlotKeys(self)
+
+    @property
+    def plot_patch_list(self) -> list[Any]:
+        """Patches and images that were drawn by hand."""
+        return self._artists("patch")
+
+    @property
+    def plot_line_list(self) -> list[Any]:
+        """Lines that were drawn by hand."""
+        return self._artists("line")
+
+    @property
+    def plot_text_list(self) -> list[Any]:
+        """Texts that were drawn by hand."""
+        return self._artists("text")
+
+    @property
+    def plot_trail_list(self) -> list[Any]:
+        """Snapshots that were drawn by hand."""
+        return self._artists("trail")
+
+    @property
+    def ax(self) -> Any:
+        """The axes drawn on last; before that those of its environment, None without one."""
+        own = self.__dict__.get("_ax")
+        if own is not None:
+            return own
+        env = self._simulation.owner()
+        return None if env is None or getattr(env, "headless", True) else env._env_plot.ax
+
+    @ax.setter
+    def ax(self, ax: Any) -> None:
+        self.__dict__["_ax"] = ax
+
+    # parts -----------------------------------------------------------------------------------------------------------
+    def plot(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
+        """Draw everything that its plot keys show, ``show_sensor`` included.
+
+        Args:
+            ax: Matplotlib axes.
+            state: Where.
+            vertices: (2, N) outline to draw in place of the body, world frame [m].
+            **kwargs: Plot keys over its own.
+        """
+        axes = self._on(ax)
+        if axes is None:
+            return
+        if self.shape == "map":
+            self.plot_object(axes)
+            return
+        style = self._builder().style(self, kwargs)  # type: ignore[arg-type]
+        if self.description is None or not self.plot_object_image(axes, state, **kwargs):
+            self.plot_object(axes, state, vertices, **kwargs)
+        for wanted, draw in (
+            (style.show_goal, self.plot_goal),
+            (style.show_trajectory, self.plot_trajectory),
+            (style.show_fov, self.plot_fov),
+        ):
+            if wanted:
+                draw(axes, **kwargs)
+        for wanted, draw_at in (
+            (style.show_text, self.plot_text),
+            (style.show_arrow, self.plot_arrow),
+            (style.show_trail, self.plot_trail),
+        ):
+            if wanted:
+                draw_at(axes, state, **kwargs)
+        for sensor in self.sensors if style.show_sensor else ():
+            if hasattr(sensor, "plot"):
+                sensor.plot(axes, self.state if state is None else state)  # type: ignore[attr-defined]
+
+    def plot_object(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
+        """Draw the body; of a map, its cells. ``vertices`` as in :meth:`plot`."""
+        axes = self._on(ax)
+        if axes is None:
+            return
+        if self.shape == "map":
+            from irsim.graphics.figure.artists import add_grid
+
+            self.object_img = add_grid(axes, self._builder().grid(self))  # type: ignore[arg-type]
+            self.plot_patch_list.append(self.object_img)
+            return
+        mark = self._mark("body", state, kwargs)
+        if vertices is not None:
+            mark.geometry = _region(vertices)
+        self.object_patch = self._add(axes, mark)
+
+    def plot_object_image(
+        self, ax: Any = None, state: Any = None, vertices: Any = None, description: str | None = None, **kwargs: Any
+    ) -> bool:
+        """Draw the image of its ``description``, or another one, in place of the body.
+
+        Returns:
+            Whether there is such an image.
+        """
+        from irsim.graphics.figure.artists import add_picture
+        from irsim.graphics.scene.bodies import read_body
+        from irsim.graphics.scene.scene import Picture
+        from irsim.graphics.scene.style import tint_of
+
+        axes, name = self._on(ax), self.description if description is None else description
+        images = self._images()
+        if axes is None or name is None or not images.has(name):
+            return False
+        style = self._builder().style(self, kwargs)  # type: ignore[arg-type]
+        body, pose = read_body(self._simulation.state, self.row), self._pose_of(state)
+        box = (*body.low, body.length, body.width)
+        tint = tint_of(self.record, name, style.obj_color)
+        picture = Picture(0, name, box, pose, style.obj_alpha, style.image_zorder, tint)
+        self.object_img = add_picture(axes, picture, images)
+        self.plot_patch_list.append(self.object_img)
+        return True
+
+    def plot_goal(
+        self,
+        ax: Any = None,
+        goal_state: Any = None,
+        vertices: Any = None,
+        goal_color: Any = None,
+        goal_zorder: float | None = None,
+        goal_alpha: float | None = None,
+        **kwargs: Any,
+    ) -> None:
+        """Draw the body at its goal, or at ``goal_state``; nothing without a goal."""
+        axes = self._on(ax)
+        if axes is None:
+            return
+        goal = None
+        if goal_state is not None:
+            goal = (*np.asarray(goal_state, dtype=float).reshape(-1).tolist(), 0.0)[:3]
+        elif np.isnan(self._simulation.goal[self.row, 0]):
+            return
+        keys = {"goal_color": goal_color, "goal_zorder": goal_zorder, "goal_alpha": goal_alpha}
+        mark = self._mark("goal", None, {**kwargs, **keys, "show_goal": True}, goal)
+        if vertices is not None:
+            mark.geometry = _region(vertices)
+        self.goal_patch = self._add(axes, mark)
+
+    def plot_arrow(
+        self,
+        ax: Any = None,
+        state: Any = None,
+        velocity: Any = None,
+        arrow_theta: float | None = None,
+        arrow_length: float | None = None,
+        arrow_width: float | None = None,
+        arrow_color: Any = None,
+        arrow_zorder: float | None = None,
+        **kwargs: Any,
+    ) -> None:
+        """Draw the arrow of its heading, or of ``arrow_theta`` [rad].
+
+        Args:
+            ax: Matplotlib axes.
+            state: Where.
+            velocity: Control whose direction the arrow of an ``omni`` drive shows; by default the present one.
+            arrow_theta: Direction [rad].
+            arrow_length: Length [m].
+            arrow_width: Width [m].
+            arrow_color: Colour.
+            arrow_zorder: Layer.
+            **kwargs: Plot keys over its own.
+        """
+        axes = self._on(ax)
+        if axes is None:
+            return
+        keys = {"arrow_length": arrow_length, "arrow_width": arrow_width, "arrow_color": arrow_color}
+        keys = {**kwargs, **keys, "arrow_zorder": arrow_zorder, "show_arrow": True}
+        where = state
+        if arrow_theta is None and velocity is not None and self.kinematics == "omni":
+            forward, lateral = np.asarray(velocity, dtype=float).reshape(-1)[:2]
+            arrow_theta = float(np.arctan2(lateral, forward)) + self._pose_of(state)[2]
+        if arrow_theta is not None:
+            where = (*self._pose_of(state)[:2], float(arrow_theta))
+        self.arrow_patch = self._add(axes, self._mark("arrow", where, keys))
+
+    def plot_fov(self, ax: Any = None, **kwargs: Any) -> None:
+        """Draw the field of view; nothing without one."""
+        axes = self._on(ax)
+        if (
+            axes is not None
+            and getattr(self, "fov", None) is not None
+            and getattr(self, "fov_radius", None) is not None
+        ):
+            self.fov_patch = self._add(axes, self._mark("fov", None, {**kwargs, "show_fov": True}))
+
+    def plot_text(self, ax: Any = None, state: Any = None, **kwargs: Any) -> None:
+        """Write its label, and that of its goal where both are shown."""
+        from irsim.graphics.figure.artists import add_label
+
+        axes = self._on(ax)
+        if axes is None:
+            return
+        pose = None if state is None else self._pose_of(state)
+        keys = {**kwargs, "show_text": True}
+        labels = self._builder().drawn_alone(self, keys, pose)[1]  # type: ignore[arg-type]
+        self.plot_text_list.extend(add_label(axes, label) for label in labels)
+
+    def plot_trajectory(
+        self,
+        ax: Any = None,
+        trajectory: Sequence[Any] | None = None,
+        keep_traj_length: int | None = None,
+        **kwargs: Any,
+    ) -> None:
+        """Draw the line of its states, or of a list of states; nothing for fewer than two."""
+        axes = self._on(ax)
+        states = self.trajectory if trajectory is None else trajectory
+        rows = np.array([np.asarray(state, dtype=float).reshape(-1)[:3] for state in states])
+        if axes is None or len(rows) < 2:
+            return
+        if rows.shape[1] < 3:
+            rows = np.hstack([rows, np.zeros((len(rows), 1))])
+        keys = {**kwargs, "keep_traj_length": keep_traj_length}
+        self.trajectory_line = self._add(axes, self._builder().path_of(self, rows, keys))  # type: ignore[arg-type]
+
+    def plot_trail(
+        self,
+        ax: Any = None,
+        state: Any = None,
+        vertices: Any = None,
+        keep_trail_length: int | None = None,
+        **kwargs: Any,
+    ) -> None:
+        """Leave a snapshot; those beyond the newest ``keep_trail_length`` are removed (0 keeps all)."""
+        axes = self._on(ax)
+        if axes is None:
+            return
+        builder: Any = self._builder()
+        mark = builder.trail_mark(self, self._pose_of(state), kwargs)
+        if vertices is not None:
+            mark.geometry = _region(vertices)
+        from irsim.graphics.figure.artists import add_mark
+
+        trail = self.plot_trail_list
+        trail.append(add_mark(axes, mark))
+        keep = builder.style(self, kwargs).keep_trail_length if keep_trail_length is None else keep_trail_length
+        while keep and len(trail) > keep:
+            _remove(trail.pop(0))
+
+    def plot_uncertainty(self, ax: Any = None, **kwargs: Any) -> None:
+        """Nothing: there is no uncertainty to draw."""
+
+    def plot_clear(self, all: bool = False) -> None:
+        """Remove what was drawn by hand.
+
+        Args:
+            all: The snapshots of the trail, too.
+        """
+        for kind in ("patch", "line", "text", *(("trail",) if all else ())):
+            artists = self._artists(kind)
+            for artist in artists:
+                _remove(artist)
+            artists.clear()
+        for sensor in self.sensors:
+            if hasattr(sensor, "plot_clear"):
+                sensor.plot_clear()
+
+    # -----------------------------------------------------------------------------------------------------------------
+    def _artists(self, kind: str) -> list[Any]:
+        lists: dict[str, list[Any]] = self.__dict__.setdefault("_plotted", {})
+        return lists.setdefault(kind, [])
+
+    def _on(self, ax: Any) -> Any:
+        if ax is not None:
+            self.ax = ax
+        return self.ax
+
+    def _builder(self) -> SceneBuilder:
+        from irsim.objects.drawing.scene_builder import SceneBuilder
+
+        palette = getattr(self._simulation.owner(), "palette_param", None)
+        return SceneBuilder(self._simulation, world=self.world, palette=palette)
+
+    def _images(self) -> Pictures:
+        from irsim.graphics.figure.pictures import Pictures
+
+        if "_pictures" not in self.__dict__:
+            source = self._simulation.scenario.source
+            self.__dict__["_pictures"] = Pictures(Path(source).parent if source else None)
+        return self.__dict__["_pictures"]  # type: ignore[no-any-return]
+
+    def _pose_of(self, state: Any) -> tuple[float, float, float]:
+        given = self._simulation.pose[self.row] if state is None else np.asarray(state, dtype=float).reshape(-1)
+        x, y, theta = (*given.tolist(), 0.0)[:3]
+        return x, y, theta
+
+    def _mark(self, part: str, state: Any, keys: dict[str, Any], goal: Any = None) -> Any:
+        pose = None if state is None else self._pose_of(state)
+        marks = self._builder().drawn_alone(self, keys, pose, goal)[0]  # type: ignore[arg-type]
+        return next(mark for mark in marks if mark.part == part)
+
+    def _add(self, axes: Any, mark: Any) -> Any:
+        from irsim.graphics.figure.artists import add_mark
+        from irsim.graphics.scene.scene import Line
+
+        artist = add_mark(axes, mark)
+        (self.plot_line_list if isinstance(mark.geometry, Line) else self.plot_patch_list).append(artist)
+        return artist
+
+
+def _region(vertices: Any) -> Any:
+    from irsim.graphics.scene.scene import Region
+
+    return Region([np.asarray(vertices, dtype=float)[:2].T])
+
+
+def _remove(artist: Any) -> None:
+    if artist.axes is not None and artist in artist.axes.get_children():
+        artist.remove()

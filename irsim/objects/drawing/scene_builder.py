@@ -1,0 +1,395 @@
+"""State of one world → :class:`irsim.graphics.scene.scene.Scene`. Reads the simulation, never writes to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from irsim.graphics.scene.bodies import Body, Pose, arrow, box, ellipse, place, read_body
+from irsim.graphics.scene.palette import Palette
+from irsim.graphics.scene.scene import (
+    Circle,
+    Floats,
+    Fog,
+    Geometry,
+    GridImage,
+    Label,
+    Line,
+    Mark,
+    Picture,
+    Scene,
+    Sector,
+    Stroke,
+)
+from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
+from irsim.objects.sensors.contact import Contact2D
+from irsim.objects.sensors.contact_drawing import draw_forces
+from irsim.objects.sensors.lidar import Lidar2D
+from irsim.objects.sensors.lidar_drawing import draw_scan
+from irsim.objects.view import views
+from irsim.simulation.fog import FOG_COLOR
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["MODES", "SceneBuilder"]
+
+MODES = ("dynamic", "static", "all")
+"""Which objects the overrides of a frame apply to."""
+
+_FOG_ZORDER = 2
+_GRID_ZORDER = 0.0
+_FULL_TURN = 2 * math.pi - 0.01
+_MOVING = 1e-9
+
+
+@dataclass(slots=True)
+class _Trail:
+    """Snapshots made so far: how many states they cover, and of which style and body."""
+
+    style: ObjectStyle
+    body: Body
+    states: int = 0
+    marks: list[Mark] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Drawn:
+    """What an object showed last, kept as long as nothing about it changes."""
+
+    key: tuple[Any, ...]
+    marks: list[Mark]
+    labels: list[Label]
+    picture: Picture | None
+
+
+class SceneBuilder:
+    """Makes scenes of one world.
+
+    Marks of objects that did not change since the last scene are the same objects again, by which a drawer can tell
+    what it need not touch.
+
+    Args:
+        simulation: What to show.
+        world: Which of its worlds.
+        palette: Default colours.
+        has_picture: Tells whether a description image can be drawn; bodies are drawn as shapes where it cannot.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        *,
+        world: int = 0,
+        palette: Palette | None = None,
+        has_picture: Callable[[str], bool] | None = None,
+    ) -> None:
+        self.simulation = simulation
+        self.world = world
+        self.palette = palette or Palette()
+        self._has_picture = has_picture or (lambda name: False)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget shapes, styles and snapshots, after objects were exchanged or reshaped."""
+        self._bodies: dict[int, Body] = {}
+        self._styles: dict[int, tuple[Any, ObjectStyle]] = {}
+        self._drawn: dict[int, _Drawn] = {}
+        self._trails: dict[int, _Trail] = {}
+        self._known: tuple[int, int] | None = None  # scene and revision
+        self._grids: dict[int, GridImage] = {}
+
+    def build(
+        self,
+        *,
+        status: str = "",
+        viewpoint: str | Sequence[float] | None = None,
+        mode: str = "all",
+        overrides: Mapping[str, Any] | None = None,
+    ) -> Scene:
+        """The scene as it is now.
+
+        Args:
+            status: Word for the title.
+            viewpoint: Point, or name of the object, to centre on.
+            mode: Which objects ``overrides`` apply to: ``dynamic``, ``static`` or ``all``.
+            overrides: Plot keys that hold for this scene.
+        """
+        simulation = self.simulation
+        known = int(simulation.state.scene[self.world]), simulation.revision
+        if known != self._known:
+            self.reset()
+            self._known = known
+        world = simulation.scenario.world
+        x, y = float(world.offset[0]), float(world.offset[1])
+        scene = Scene(
+            time=float(simulation.count[self.world]) * float(world.step_time),
+            status=status,
+            extent=(x, x + float(world.width), y, y + float(world.height)),
+            center=None,
+            marks=[],
+            beams=[],
+            labels=[],
+            pictures=[],
+            fog=self._fog(),
+        )
+        overrides = overrides or {}
+        objects = views(simulation, self.world)
+        poses = simulation.pose[objects[0].row : objects[-1].row + 1].tolist() if objects else []
+        goals = simulation.goal[objects[0].row : objects[-1].row + 1].tolist() if objects else []
+        for view, pose, goal in zip(objects, poses, goals, strict=True):
+            chosen = mode == "all" or (mode == "static") == view.static
+            self._add(scene, view, tuple(pose), goal, overrides if chosen else {})
+        self._add_beams(scene, objects, overrides, mode)
+        if isinstance(viewpoint, str):
+            scene.center = next(
+                ((p[0], p[1]) for v, p in zip(objects, poses, strict=True) if v.name == viewpoint), None
+            )
+        elif viewpoint is not None:
+            scene.center = float(viewpoint[0]), float(viewpoint[1])
+        return scene
+
+    # one object ------------------------------------------------------------------------------------------------------
+    def body(self, view: ObjectView) -> Body:
+        """Shape of an object in its own frame."""
+        body = self._bodies.get(view.id)
+        if body is None:
+            body = self._bodies[view.id] = read_body(self.simulation.state, view.row)
+        return body
+
+    def style(self, view: ObjectView, overrides: Mapping[str, Any]) -> ObjectStyle:
+        """Resolved plot keys of an object."""
+        key = (view.record.plot, view.color, overrides)
+        cached = self._styles.get(view.id)
+        if cached is not None and cached[0][0] is key[0] and cached[0][1:] == key[1:]:
+            return cached[1]
+        body = self.body(view)
+        style = resolve_style(
+            view.record,
+            color=view.color,
+            shape=body.kind,
+            radius=body.radius,
+            width=body.width,
+            palette=self.palette,
+            overrides=overrides,
+        )
+        self._styles[view.id] = (view.record.plot, view.color, dict(overrides)), style
+        return style
+
+    def _add(self, scene: Scene, view: ObjectView, pose: Pose, goal: list[float], overrides: Mapping[str, Any]) -> None:
+        if view.shape == "map":
+            scene.grids.append(self._grid(view))
+            return
+        style = self.style(view, overrides)
+        heading = self._heading(view, pose) if style.show_arrow else pose[2]
+        body = self.body(view)
+        key = (style, body, pose, str(goal), heading, view.text, view.goal_text, view.description)
+        drawn = self._drawn.get(view.id)
+        if drawn is None or drawn.key != key:
+            drawn = self._drawn[view.id] = _draw(view, body, style, pose, heading, goal, key, self._has_picture)
+        scene.marks += drawn.marks
+        scene.labels += drawn.labels
+        if drawn.picture is not None:
+            scene.pictures.append(drawn.picture)
+        if style.show_trajectory or style.show_trail:
+            states = self.simulation.state.trajectory(view.row)
+            if style.show_trajectory and len(states) > 1:
+                scene.marks.append(_trajectory(view.id, body, style, states))
+            if style.show_trail:
+                start = self.simulation.state.initial_state(view.row)[None, :3]
+                scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
+
+    def _grid(self, view: ObjectView) -> GridImage:
+        """The image of a map, made once per scene."""
+        if view.id not in self._grids:
+            grid = self.simulation.scenario.grid
+            cells = self.simulation.state.cells(view.row)
+            assert grid is not None
+            assert cells is not None
+            drawn = grid.raster is None
+            levels = cells.occupied * np.uint8(100) if drawn else np.clip(grid.values(), 0, 100).astype(np.uint8)
+            (x, y), (nx, ny), (dx, dy) = cells.origin, cells.shape, cells.cell
+            self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
+        return self._grids[view.id]
+
+    def _heading(self, view: ObjectView, pose: Pose) -> float:
+        if view.kinematics != "omni":
+            return pose[2]
+        vx, vy = self.simulation.twist[view.row, :2].tolist()
+        return math.atan2(vy, vx) if math.hypot(vx, vy) > _MOVING else pose[2]
+
+    def _trail(self, object_id: int, body: Body, style: ObjectStyle, states: Floats) -> list[Mark]:
+        trail = self._trails.get(object_id)
+        if trail is None or trail.style is not style or trail.body is not body or trail.states > len(states):
+            trail = self._trails[object_id] = _Trail(style, body)
+        every = max(1, int(style.trail_freq))
+        for index in range(-(-trail.states // every) * every, len(states), every):
+            x, y, theta = states[index].tolist()
+            trail.marks.append(_trail_mark(object_id, body, style, (x, y, theta)))
+        trail.states = len(states)
+        return trail.marks[-style.keep_trail_length :]
+
+    def drawn_alone(
+        self,
+        view: ObjectView,
+        overrides: Mapping[str, Any],
+        pose: Pose | None = None,
+        goal: Sequence[float] | None = None,
+    ) -> tuple[list[Mark], list[Label], Picture | None]:
+        """Body, goal, arrow, view sector, labels and image of one object, somewhere else if asked.
+
+        Args:
+            view: The object.
+            overrides: Plot keys over its own.
+            pose: x, y [m], heading [rad]; default: where it is.
+            goal: x, y [m], heading [rad]; default: its present goal.
+        """
+        body, style = self.body(view), self.style(view, overrides)
+        placed: Pose = tuple(self.simulation.pose[view.row].tolist()) if pose is None else pose
+        heading = self._heading(view, placed) if pose is None and style.show_arrow else placed[2]
+        shown = self.simulation.goal[view.row].tolist() if goal is None else list(goal)
+        drawn = _draw(view, body, style, placed, heading, shown, (), self._has_picture)
+        return drawn.marks, drawn.labels, drawn.picture
+
+    def path_of(self, view: ObjectView, states: Floats, overrides: Mapping[str, Any]) -> Mark:
+        """The line through (N, 3 or more) states of an object."""
+        return _trajectory(view.id, self.body(view), self.style(view, overrides), states)
+
+    def trail_mark(self, view: ObjectView, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
+        """One snapshot of an object at a pose."""
+        return _trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
+
+    def grid(self, view: ObjectView) -> GridImage:
+        """The image of a map."""
+        return self._grid(view)
+
+    # sensors ---------------------------------------------------------------------------------------------------------
+    def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:
+        for view in objects:
+            chosen = mode == "all" or (mode == "static") == view.static
+            if not view.sensors or not self.style(view, overrides if chosen else {}).show_sensor:
+                continue
+            lidars = ((i, sensor) for i, sensor in enumerate(view.sensors) if isinstance(sensor, Lidar2D))
+            scene.beams += [draw_scan(lidar, i) for i, lidar in lidars]
+            for i, sensor in enumerate(view.sensors):
+                if isinstance(sensor, Contact2D):
+                    marks, beams = draw_forces(sensor, i)
+                    scene.marks += marks
+                    scene.beams += beams
+
+    def _fog(self) -> Fog | None:
+        explored = self.simulation.state.explored[self.world]
+        if not explored.size:
+            return None
+        world = self.simulation.scenario.world
+        x, y = float(world.offset[0]), float(world.offset[1])
+        extent = x, x + float(world.width), y, y + float(world.height)
+        return Fog(explored.astype(bool), extent, FOG_COLOR, 1.0, _FOG_ZORDER)
+
+
+def _draw(
+    view: ObjectView,
+    body: Body,
+    style: ObjectStyle,
+    pose: Pose,
+    heading: float,
+    goal: list[float],
+    key: tuple[Any, ...],
+    has_picture: Callable[[str], bool],
+) -> _Drawn:
+    """Everything about an object that follows from its pose and goal."""
+    drawn = _Drawn(key, [], [], None)
+    marks, number = drawn.marks, view.id
+    if style.show_fov and view.fov is not None and view.fov_radius is not None:
+        marks.append(_view_sector(number, view.fov, view.fov_radius, style, pose))
+    has_goal = not math.isnan(goal[0])
+    if style.show_goal and has_goal:
+        goal_pose = (goal[0], goal[1], 0.0 if math.isnan(goal[2]) else goal[2])
+        marks.append(
+            _shape_mark(number, "goal", place(body.geometry, goal_pose), style.goal_color, Stroke(style.goal_color),
+                        style.goal_alpha, style.goal_zorder)
+        )  # fmt: skip
+    if view.description is not None and body.kind != "compound" and has_picture(view.description):
+        area = (*body.low, body.length, body.width)
+        drawn.picture = Picture(
+            number,
+            view.description,
+            area,
+            pose,
+            style.obj_alpha,
+            style.image_zorder,
+            tint_of(view.record, view.description, style.obj_color),
+        )
+    else:
+        stroke = Stroke(style.obj_color, style.obj_linewidth, style=style.obj_linestyle)
+        body_now = place(body.geometry, pose)
+        marks.append(_shape_mark(number, "body", body_now, style.obj_color, stroke, style.obj_alpha, style.obj_zorder))
+    if style.show_arrow:
+        pointer = place(arrow(style.arrow_length, style.arrow_width), (pose[0], pose[1], heading))
+        color = style.arrow_color
+        marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
+    if style.show_text and view.shape != "walls":  # those round the world need no name
+        text = view.abbr if view.text is None else view.text
+        drawn.labels.append(_label(number, "name", pose[0], pose[1], text, style))
+        if style.show_goal and style.show_goal_text and has_goal:
+            text = view.goal_abbr if view.goal_text is None else view.goal_text
+            drawn.labels.append(_label(number, "goal", goal[0], goal[1], text, style))
+    return drawn
+
+
+def _shape_mark(
+    number: int, part: str, geometry: Geometry, color: Any, stroke: Stroke, alpha: float, zorder: float
+) -> Mark:
+    return Mark(number, part, geometry, None if isinstance(geometry, Line) else color, stroke, alpha, zorder)
+
+
+def _label(number: int, part: str, x: float, y: float, text: str, style: ObjectStyle) -> Label:
+    dx, dy = style.text_position
+    size, alpha = style.text_size, style.text_alpha
+    return Label(number, part, x + dx, y + dy, (x, y), str(text), style.text_color, size, alpha, style.text_zorder)
+
+
+def _view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:
+    x, y, theta = pose
+    shape: Geometry = Circle(x, y, radius)
+    if angle < _FULL_TURN:
+        shape = Sector(x, y, radius, theta - angle / 2, theta + angle / 2)
+    return Mark(number, "fov", shape, style.fov_color, Stroke(style.fov_edge_color), style.fov_alpha, style.fov_zorder)
+
+
+def _trajectory(number: int, body: Body, style: ObjectStyle, states: Floats) -> Mark:
+    kept = states[-int(style.keep_traj_length) :] if style.keep_traj_length else states
+    points = np.array(kept[:, :2])
+    if body.kind == "compound" and body.middle[1]:
+        shift = body.middle[1]
+        points += np.stack([-np.sin(kept[:, 2]), np.cos(kept[:, 2])], axis=1) * shift
+    stroke = Stroke(
+        style.traj_color,
+        float(style.traj_width),
+        metric=True,
+        style=style.traj_style,
+        round_caps=body.kind == "circle",
+    )
+    return Mark(number, "trajectory", Line(points), None, stroke, style.traj_alpha, style.traj_zorder)
+
+
+def _trail_mark(number: int, body: Body, style: ObjectStyle, pose: Pose) -> Mark:
+    shape = _trail_shape(body, style.trail_type)
+    fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
+    stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
+    return Mark(number, "trail", place(shape, pose), fill, stroke, style.trail_alpha, style.trail_zorder)
+
+
+def _trail_shape(body: Body, kind: str) -> Geometry:
+    if kind == "ellipse":
+        return ellipse(body)
+    if kind == "rectangle" and body.kind != "polygon":
+        return box(body)
+    if kind == "circle" and body.kind != "circle":
+        return Circle(*body.middle, body.radius)
+    return body.geometry

@@ -1,0 +1,229 @@
+"""Behaviors written in Python the 2.12 way: what they return is the control of an object, or of each of a group."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.diagnostics.diagnostic import Diagnostic
+from irsim.diagnostics.errors import BehaviorError, ScenarioError
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.scenario.resolve.resolved import ObjectRecord
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["PythonBehaviors", "attach_python_behaviors", "forget_behavior"]
+
+
+class PythonBehaviors:
+    """Asks user code for the controls of objects and groups, in every world; all of it sees the same snapshot.
+
+    Attributes:
+        objects: Places, within a world, of the objects whose `behavior` is of user code, or of nobody yet.
+        groups: Places of the members of each group whose `group_behavior` is; the first one's counts.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._instances: dict[tuple[int, int, str], Any] = {}
+        self.objects: list[int] = []
+        self.groups: list[list[int]] = []
+
+    def find(self) -> bool:
+        """Look for those that take part; True if there are any."""
+        from irsim.simulation.build import group_behaviors
+
+        records = self._simulation.scenario.objects
+        native = group_behaviors(records)
+        own: dict[tuple[str, str], bool] = {}
+
+        def is_own(record: ObjectRecord) -> bool:
+            if record.behavior is None or record.kinematics is None:
+                return False
+            pair = _name(record.kinematics), _name(record.behavior)
+            if pair not in own:
+                own[pair] = _is_own(record, record.behavior, CUSTOM_BEHAVIORS)
+            return own[pair]
+
+        members: dict[int, list[int]] = {}
+        for index, record in enumerate(records):
+            if record.joined:
+                members.setdefault(record.group, []).append(index)
+        self.objects = [
+            index
+            for index, record in enumerate(records)
+            if not (record.joined and record.group in native) and is_own(record)
+        ]
+        self.groups = [
+            group
+            for number, group in members.items()
+            if number not in native
+            and _is_own(records[group[0]], records[group[0]].group_behavior, CUSTOM_GROUP_BEHAVIORS)
+        ]
+        return bool(self.objects or self.groups)
+
+    def prepare(self, worlds: Sequence[int], *, anew: bool = False) -> None:
+        """Construct the behaviors that are classes, once per object or group.
+
+        Args:
+            worlds: Where.
+            anew: Also where there are some already.
+        """
+        from irsim.objects.view import views
+
+        for world in worlds:
+            objects = views(self._simulation, world)
+            for index in self.objects:
+                view = objects[index]
+                key = (world, view.id, "behavior")
+                maker = CUSTOM_BEHAVIORS.maker(view.kinematics, _name(view.record.behavior))
+                if maker is not None and (anew or key not in self._instances):
+                    self._construct(key, maker, view.info, _written(view.record.behavior))
+            for group in self.groups:
+                leader = objects[group[0]]
+                key = (world, leader.group, "group")
+                maker = CUSTOM_GROUP_BEHAVIORS.maker(leader.kinematics, _name(leader.record.group_behavior))
+                if maker is not None and (anew or key not in self._instances):
+                    chosen = [objects[index] for index in group]
+                    self._construct(key, maker, chosen, _written(leader.record.group_behavior))
+
+    def forget(self, view: ObjectView) -> None:
+        """Drop what was constructed for an object."""
+        self._instances.pop((view.world, view.id, "behavior"), None)
+
+    def _construct(self, key: tuple[int, int, str], maker: Any, given: Any, options: dict[str, Any]) -> None:
+        try:
+            self._instances[key] = maker(given, **options)
+        except Exception as error:  # what user code raises; the object goes on without it, as in IR-SIM
+            self._instances.pop(key, None)
+            self._simulation.report(f"behavior class {options.get('name')!r} could not be constructed: {error!r}")
+
+    def __call__(self, simulation: Simulation) -> None:
+        """Fill ``command`` of the rows that are theirs; a group acts before its members' own behaviors."""
+        from irsim.objects.view import views
+
+        for world in range(simulation.copies):
+            objects = views(simulation, world)
+            for group in self.groups:
+                self._decide_group(world, [objects[index] for index in group])
+            for index in self.objects:
+                view = objects[index]
+                if simulation.given[view.row] or view.static or simulation.stopped[view.row]:
+                    continue
+                name = _name(view.record.behavior)
+                _impose(simulation, view, name, self.control(view))
+
+    def control(self, view: ObjectView) -> Any:
+        """What user code wants one object to do.
+
+        Raises:
+            ScenarioError: Nothing has registered its behavior.
+        """
+        options = view.record.behavior
+        name = _name(options)
+        act = self._instances.get((view.world, view.id, "behavior")) or CUSTOM_BEHAVIORS.function(view.kinematics, name)
+        if act is None:
+            raise _unknown(self._simulation, view, name)
+        roles = view.record.target_roles
+        others = [o for o in view.environment_objects if o is not view and roles in ("all", o.role)]
+        return act(ego_object=view, external_objects=others, **_written(options))
+
+    def _decide_group(self, world: int, members: list[ObjectView]) -> None:
+        leader, simulation = members[0], self._simulation
+        options = leader.record.group_behavior
+        name = _name(options)
+        act = self._instances.get((world, leader.group, "group"))
+        act = act or CUSTOM_GROUP_BEHAVIORS.function(leader.kinematics, name)
+        if act is None:
+            simulation.report(
+                f"group behavior {name!r} is not registered for {leader.kinematics!r}: its members follow their own"
+            )
+            return
+        controls = act(members, **_written(options))
+        for view, control in zip(members, () if controls is None else controls, strict=False):
+            if control is None or simulation.given[view.row] or view.static or simulation.stopped[view.row]:
+                continue
+            _impose(simulation, view, name, control)
+
+
+def _name(options: Any) -> str:
+    return str(getattr(options, "name", ""))
+
+
+def _written(options: Any) -> dict[str, Any]:
+    """The keys of the mapping, as the file has them."""
+    keys: dict[str, Any] = options.model_dump(exclude_unset=True)
+    return keys
+
+
+def _is_own(record: ObjectRecord, options: Any, table: CustomBehaviors) -> bool:
+    """Whether a mapping names a behavior of user code, or one that nobody has."""
+    if options is None or record.kinematics is None:
+        return False
+    name = _name(options)
+    return table.has(_name(record.kinematics), name) or BEHAVIORS.get(name) is None
+
+
+def _impose(simulation: Simulation, view: ObjectView, name: str, control: Any) -> None:
+    simulation.impose(view.row, _checked(control, name, view))
+
+
+def _unknown(simulation: Simulation, view: ObjectView, name: str) -> ScenarioError:
+    """Nothing has registered the behavior by the time it is needed."""
+    known = [*BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(view.kinematics)]
+    finding = Diagnostic(
+        code="unknown-behavior",
+        severity="error",
+        path=(*view.record.path, "behavior", "name"),
+        message=f"behavior {name!r} of {view.name!r} is not registered for {view.kinematics!r}",
+        given=name,
+        allowed=known,
+        fix="register it before the first step: irsim run --import MODULE, or register_behavior in Python",
+        file=simulation.scenario.source,
+    )
+    return ScenarioError([finding], simulation.scenario.text)
+
+
+def _checked(control: object, name: str, view: ObjectView) -> NDArray[np.float64]:
+    """What a behavior returned, as finite control components."""
+    problem = f"behavior-failed: behavior {name!r} of {view.name!r} returned"
+    if control is None:
+        raise BehaviorError(f"{problem} None; return {view.vel_dim} numbers")
+    try:
+        values = np.asarray(control, dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        raise BehaviorError(f"{problem} {control!r}; return {view.vel_dim} numbers") from None
+    if values.size != view.vel_dim:
+        raise BehaviorError(f"{problem} {values.size} numbers; {view.kinematics!r} takes {view.vel_dim}")
+    if not np.isfinite(values).all():
+        raise BehaviorError(f"{problem} {values.tolist()}, which is not finite")
+    return values
+
+
+def attach_python_behaviors(simulation: Simulation, *, anew: bool = False) -> None:
+    """Let the Python behaviors that the scenario names take part in every step.
+
+    Calling it again looks anew at what is registered and at the objects there are.
+
+    Args:
+        simulation: Where.
+        anew: Construct behaviors that are classes again.
+    """
+    known = [part for part in simulation.decisions if isinstance(part, PythonBehaviors)]
+    part = known[0] if known else PythonBehaviors(simulation)
+    if part.find() and not known:
+        simulation.decisions.append(part)
+        simulation.scene_drawn.append(lambda worlds: part.prepare(worlds, anew=True))
+    part.prepare(range(simulation.copies), anew=anew)
+
+
+def forget_behavior(simulation: Simulation, view: ObjectView) -> None:
+    """An object gets another behavior: where that is a class, it is constructed anew when user code is attached."""
+    for part in simulation.decisions:
+        if isinstance(part, PythonBehaviors):
+            part.forget(view)

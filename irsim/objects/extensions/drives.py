@@ -1,0 +1,308 @@
+"""Drives written in Python: they move the rows that the core leaves alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
+from irsim.diagnostics.errors import BehaviorError
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
+from irsim.simulation.build import COLLISION_MODES, group_behaviors
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["PythonDrives", "attach_python_drives"]
+
+Floats = NDArray[np.float64]
+_CORE_CONTROLS = 3
+_CONTACT = COLLISION_MODES["contact"]
+_DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
+
+
+class Wide:
+    """The controls of a drive that has more than the core keeps.
+
+    Attributes:
+        command: (n,) wanted in the next step.
+        control: (n,) executed in the last one.
+        drive: (n,) what the drive does, before contacts interfere.
+    """
+
+    def __init__(self, record: ObjectRecord) -> None:
+        self.record = record
+        self.command = np.zeros(record.vel_dim)
+        self.control = np.zeros(record.vel_dim)
+        self.drive = np.zeros(record.vel_dim)
+        self.reset()
+
+    def reset(self) -> None:
+        """As at the start."""
+        self.command[:] = 0.0
+        self.control[:] = self.drive[:] = self.record.velocity
+
+    def limit(self, dt: float, *, moves: bool) -> None:
+        """The executed control of the next step."""
+        record = self.record
+        if moves:
+            change = np.asarray(record.acce) * dt
+            low = np.maximum(record.vel_min, self.control - change)
+            high = np.minimum(record.vel_max, self.control + change)
+            self.control[:] = np.minimum(np.maximum(self.command, low), high)
+        else:
+            self.control[:] = 0.0
+        self.command[:] = 0.0
+
+
+class PythonDrives:
+    """Moves the objects whose kinematics a user has registered, row by row, in every world."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._handlers: dict[tuple[int, int], KinematicsHandler] = {}
+        self._wide: dict[tuple[int, int], Wide] = {}
+        self._led: set[int] = set()
+        self.objects: list[int] = []
+
+    def find(self) -> bool:
+        """Look for those that take part; True if there are any."""
+        records = self._simulation.scenario.objects
+        drives = [getattr(record.kinematics, "name", None) for record in records]
+        self.objects = [index for index, name in enumerate(drives) if handler_class(name) is not None]
+        grouped = group_behaviors(records)
+        self._led = {index for index in self.objects if _is_led(records[index], grouped)}
+        return bool(self.objects)
+
+    def prepare(self, worlds: Sequence[int], *, anew: bool = False) -> None:
+        """Construct the handlers of objects that have none, or of all.
+
+        Raises:
+            TypeError: A constructor does not take a key of the scenario.
+        """
+        records = self._simulation.scenario.objects
+        for world in worlds:
+            for index in self.objects:
+                key = world, records[index].id
+                if anew or key not in self._handlers:
+                    self._handlers[key] = construct(records[index].kinematics)
+                if records[index].vel_dim > _CORE_CONTROLS and (anew or key not in self._wide):
+                    self._wide[key] = Wide(records[index])
+
+    def handler(self, row: int) -> KinematicsHandler | None:
+        """The handler of a row, None where the core moves it."""
+        return self._handlers.get(self._key(row))
+
+    def wide(self, row: int) -> Wide | None:
+        """The controls of a row that has more than the core keeps."""
+        return self._wide.get(self._key(row)) if self._wide else None
+
+    def _key(self, row: int) -> tuple[int, int]:
+        world, index = divmod(row, self._simulation.objects)
+        return world, int(self._simulation.ids[index])
+
+    def reset(self, worlds: Sequence[int]) -> None:
+        """Controls as at the start."""
+        for (world, _), wide in self._wide.items():
+            if world in worlds:
+                wide.reset()
+
+    def _rows(self) -> list[int]:
+        count = self._simulation.objects
+        return [world * count + index for world in range(self._simulation.copies) for index in self.objects]
+
+    def _of(self, row: int) -> tuple[ObjectRecord, KinematicsHandler]:
+        key = self._key(row)
+        return self._simulation.scenario.objects[row % self._simulation.objects], self._handlers[key]
+
+    def follow(self) -> None:
+        """Turn the velocities that native behaviors want into controls."""
+        simulation = self._simulation
+        for row in self._rows():
+            record, _ = self._of(row)
+            stands = record.static or simulation.stopped[row]
+            if row % simulation.objects in self._led and not simulation.given[row] and not stands:
+                simulation.impose(row, self.control_alone(row, simulation.command[row].copy()))
+
+    def control_alone(self, row: int, wanted: Floats) -> Floats:
+        """(n,) controls for what a native behavior wants of a row; what it wants where the drive is native."""
+        if self._key(row) not in self._handlers:
+            return wanted
+        record, handler = self._of(row)
+        if row % self._simulation.objects not in self._led:
+            return np.zeros(record.vel_dim)
+        control: Floats = control_from(handler, self.state(row, record), wanted[:2, None].copy())
+        return control
+
+    def state(self, row: int, record: ObjectRecord) -> Floats:
+        """(state_dim, 1) state of a row."""
+        extra = self._simulation.extra[row, : record.state_dim - 3]
+        state: Floats = np.concatenate([self._simulation.pose[row], extra])[:, None]
+        return state
+
+    def move(self) -> None:
+        """Limit the controls that the core does not keep, and move."""
+        for row in self._rows():
+            self.move_row(row)
+
+    @contextmanager
+    def feeling(self) -> Iterator[None]:
+        """What contacts change of the velocities meanwhile, the controls of these drives feel."""
+        before = self._simulation.twist.copy()
+        yield
+        for row in self._rows():
+            self._feel(row, self._simulation.twist[row] - before[row])
+
+    def _feel(self, row: int, change: Floats) -> None:
+        """The control of a row follows a (3,) change of its velocity: world frame [m/s] and yaw rate [rad/s]."""
+        if not change.any():
+            return
+        record, handler = self._of(row)
+        felt = control_from(handler, self.state(row, record), change[:2, None].copy(), turning=False)
+        if handler.yaw_rate_row is not None:
+            felt[handler.yaw_rate_row] += change[2]
+        wide = self.wide(row)
+        if wide is not None:
+            wide.control += felt
+        kept = felt[:_CORE_CONTROLS]
+        self._simulation.control[row, : kept.size] += kept
+
+    def move_row(self, row: int) -> None:
+        """One period of one object; nothing where the core moves it."""
+        if self._key(row) not in self._handlers:
+            return
+        record, handler = self._of(row)
+        simulation = self._simulation
+        dt = simulation.scenario.world.step_time
+        stands = record.static or bool(simulation.stopped[row])
+        wide = self.wide(row)
+        if wide is not None:
+            wide.limit(dt, moves=not stands and bool(simulation.given[row]))
+            simulation.control[row] = wide.control[:_CORE_CONTROLS]
+        if stands:
+            return
+        control = simulation.control[row, : record.vel_dim] if wide is None else wide.control
+        if simulation.world.collision_mode == _CONTACT:
+            drive = simulation.drive_of(row, record.vel_dim)
+            gravity = simulation.scenario.world.gravity
+            drive[:] = control[:] = respond(control, drive, handler.translation_rows, record, dt, gravity)
+            simulation.control[row, : min(_CORE_CONTROLS, control.size)] = control[:_CORE_CONTROLS]
+        velocity = control[:, None].copy()
+        before = self.state(row, record)
+        after = _checked(handler.step(before.copy(), velocity, dt), record)
+        pose = simulation.pose[row]
+        pose[: min(3, after.size)] = after[:3]
+        pose[2] = _into(pose[2], *record.angle_range)
+        rest = after[3 : record.state_dim]
+        simulation.extra[row, : rest.size] = rest
+        simulation.twist[row] = _twist(handler, before, self.state(row, record), velocity, dt)
+
+
+def respond(
+    command: Floats, drive: Floats, travel: Sequence[int], record: ObjectRecord, dt: float, gravity: float
+) -> Floats:
+    """(n,) executed control in ``collision_mode: contact``: the lag of the drive, then the grip of its wheels.
+
+    Args:
+        command: (n,) limited control, command frame.
+        drive: (n,) what the drive did in the last period, before contacts interfered.
+        travel: Rows that are speeds [m/s].
+        record: The object, for its lag and friction.
+        dt: Period [s].
+        gravity: [m/s^2].
+    """
+    target: Floats = command.copy()
+    if record.drive_tau > 0.0:
+        target = drive + min(1.0, dt / record.drive_tau) * (command - drive)
+    rows = list(travel)
+    change = target[rows] - drive[rows]
+    most, size = record.friction * gravity * dt, float(np.linalg.norm(change))
+    if size > most:
+        target[rows] = drive[rows] + change * (most / size)
+    return target
+
+
+def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats, *, turning: bool = True) -> Floats:
+    """(n,) controls of a drive for a wanted world-frame velocity (2, 1) [m/s].
+
+    The handler's own ``velocity_from_xy`` where it has one; a drive of two controls without one turns toward the
+    velocity like a differential drive, unless ``turning`` is out of the question.
+
+    Raises:
+        BehaviorError: It has another number of controls and no ``velocity_from_xy``.
+    """
+    if not turning or type(handler).velocity_from_xy is not KinematicsHandler.velocity_from_xy:
+        return np.asarray(handler.velocity_from_xy(state, velocity_xy), dtype=np.float64).reshape(-1)
+    if handler.action_dim != 2:
+        raise BehaviorError(
+            f"behavior-failed: kinematics {handler.name!r} has no velocity_from_xy, which built-in behaviors need"
+        )
+    return np.array(core.drive_follow(_DIFF, state[:3, 0].tolist(), velocity_xy[:, 0].tolist())[:2])
+
+
+def _twist(handler: KinematicsHandler, before: Floats, after: Floats, velocity: Floats, dt: float) -> Floats:
+    """(3,) world-frame velocity [m/s] and yaw rate [rad/s] of the period."""
+    change = (after[:3, 0] - before[:3, 0]) / dt
+    yaw = math.remainder(float(after[2, 0] - before[2, 0]), 2 * math.pi) / dt
+    known = type(handler).velocity_to_xy is not KinematicsHandler.velocity_to_xy
+    if known:
+        change[:2] = np.asarray(handler.velocity_to_xy(after, velocity), dtype=np.float64).reshape(-1)[:2]
+    return np.array([change[0], change[1], yaw])
+
+
+def _checked(state: Any, record: ObjectRecord) -> Floats:
+    name = getattr(record.kinematics, "name", "")
+    try:
+        values = np.asarray(state, dtype=np.float64).reshape(-1)
+    except (TypeError, ValueError):
+        values = np.full(1, np.nan)
+    if not values.size or not np.isfinite(values).all():
+        raise BehaviorError(f"behavior-failed: kinematics {name!r} moved {record.name!r} to {state!r}; return a state")
+    return values
+
+
+def _into(angle: float, low: float, high: float) -> float:
+    while angle < low:
+        angle += 2 * math.pi
+    while angle > high:
+        angle -= 2 * math.pi
+    return angle
+
+
+def _is_led(record: ObjectRecord, grouped: dict[int, BehaviorOptions]) -> bool:
+    """Whether a behavior of the core decides for an object."""
+    if record.group in grouped:
+        return True
+    name = str(getattr(record.behavior, "name", ""))
+    feature = BEHAVIORS.get(name) if record.behavior is not None else None
+    return feature is not None and feature.kernel is not None and not _has_own(record, name)
+
+
+def _has_own(record: ObjectRecord, name: str) -> bool:
+    return CUSTOM_BEHAVIORS.has(getattr(record.kinematics, "name", None), name)
+
+
+def attach_python_drives(simulation: Simulation, *, anew: bool = False) -> None:
+    """Let the drives that users registered move their objects; calling it again looks anew at the objects.
+
+    Args:
+        simulation: Where.
+        anew: Construct the handlers again.
+    """
+    drives = simulation.drives
+    if drives is None:
+        drives = PythonDrives(simulation)
+        if not drives.find():
+            return
+        simulation.drives = drives
+        simulation.scene_drawn.append(lambda worlds: drives.prepare(worlds, anew=True))
+    drives.find()
+    drives.prepare(range(simulation.copies), anew=anew)

@@ -1,0 +1,273 @@
+"""Moments of a step at which code of users takes part, object by object: overridden in subclasses or on instances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from types import MethodType
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["HOOKS", "Hooks", "ObjectHooks", "overridable"]
+
+Floats = NDArray[np.float64]
+HOOKS = ("step", "pre_process", "gen_behavior_vel", "mid_process", "post_process")
+Method = TypeVar("Method", bound=Callable[..., Any])
+
+
+class overridable(Generic[Method]):
+    """A method that is called in the steps of an environment once something else is put in its place."""
+
+    def __init__(self, default: Method) -> None:
+        self.default = default
+        self.name = default.__name__
+        self.__doc__ = default.__doc__
+
+    def __get__(self, view: Any, owner: type | None = None) -> Any:
+        if view is None:
+            return self.default
+        return view.__dict__.get(self.name) or MethodType(self.default, view)
+
+    def __set__(self, view: Any, method: Any) -> None:
+        view.__dict__[self.name] = method
+        view._take_part()
+
+    def __delete__(self, view: Any) -> None:
+        del view.__dict__[self.name]
+
+
+class ObjectHooks:
+    """What an object does in its step; part of :class:`irsim.objects.view.ObjectView`."""
+
+    _simulation: Simulation
+    _subclassed: ClassVar[frozenset[str]] = frozenset()
+    record: ObjectRecord
+    row: int
+    static: bool
+    state_dim: int
+    vel_dim: int
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        own = {name for name in HOOKS if not isinstance(_found(cls, name), overridable)}
+        cls._subclassed = frozenset(own)
+
+    def overridden(self) -> frozenset[str]:
+        """Names of the moments at which something of a user's takes part."""
+        own = self.__dict__
+        return self._subclassed | {name for name in HOOKS if name in own}
+
+    def _take_part(self) -> None:
+        """Be asked in the steps of the present simulation, if anything is overridden."""
+        if self._subclassed or not self.__dict__.keys().isdisjoint(HOOKS):
+            hooks = self._simulation.hooks
+            if hooks is None:
+                hooks = self._simulation.hooks = Hooks(self._simulation)
+            hooks.add(self)
+
+    @overridable
+    def pre_process(self) -> None:
+        """Before the object decides: a wanderer that has arrived gets its next goal, a looper its goals again."""
+        if self._simulation.arrived[self.row]:
+            core.renew_row(self._simulation.world, self._simulation.state, self.row)
+
+    @overridable
+    def gen_behavior_vel(self, velocity: Any = None) -> Floats:
+        """The control of the next step.
+
+        Args:
+            velocity: A wanted control; None asks the behavior.
+
+        Returns:
+            (vel_dim, 1), within the limits of speed and acceleration.
+        """
+        simulation, row = self._simulation, self.row
+        hooks = simulation.hooks
+        wanted: NDArray[np.float64]
+        if velocity is not None:
+            wanted = np.asarray(velocity, dtype=np.float64).reshape(-1)
+            if wanted.size != self.vel_dim:
+                raise ValueError(f"a control of this object is {self.vel_dim} numbers, not {velocity!r}")
+        elif hooks is not None and row in hooks.decided:
+            wanted = hooks.decided[row]
+        else:
+            wanted = simulation.decide_alone(self)
+        record, now = self.record, simulation.control_of(row, self.vel_dim)
+        change = np.asarray(record.acce) * simulation.scenario.world.step_time
+        low, high = np.maximum(record.vel_min, now - change), np.minimum(record.vel_max, now + change)
+        control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
+        return control
+
+    @overridable
+    def mid_process(self, state: Any) -> Floats:
+        """Between the motion and its taking effect: the heading is brought into ``angle_range``.
+
+        Args:
+            state: State that the drive has moved to.
+
+        Returns:
+            (state_dim, 1); rows that ``state`` lacks keep their values.
+        """
+        values = np.asarray(state, dtype=np.float64).reshape(-1)
+        out = self._simulation.row_state(self.row, self.state_dim)
+        out[: values.size] = values[: self.state_dim]
+        low, high = self.record.angle_range
+        while out[2] < low:
+            out[2] += 2 * math.pi
+        while out[2] > high:
+            out[2] -= 2 * math.pi
+        return out[:, None]
+
+    @overridable
+    def post_process(self) -> None:
+        """After the object has moved: nothing."""
+
+    @overridable
+    def step(self, velocity: Any = None, sensor_step: bool = True, **_: Any) -> Floats:
+        """Move this object alone by one period; the clock of the environment stands still.
+
+        Args:
+            velocity: Control, ``vel_dim`` numbers in the command frame; None lets its behavior choose.
+            sensor_step: Also read the sensors anew.
+
+        Returns:
+            (state_dim, 1) the new state.
+        """
+        simulation, row = self._simulation, self.row
+        within = simulation.hooks is not None and row in simulation.hooks.stepping
+        if self.static or simulation.stopped[row]:
+            simulation.control[row] = 0.0
+            return simulation.row_state(row, self.state_dim)[:, None]
+        if not within:
+            self.pre_process()
+        simulation.impose(row, self.gen_behavior_vel(velocity).reshape(-1))
+        before = simulation.row_state(row, self.state_dim), simulation.control[row].copy()
+        simulation.move_alone(row)
+        if "mid_process" in self.overridden():
+            _settle(self, before)
+        self.post_process()
+        if not within:
+            simulation.given[row] = 0
+            core.remember_row(simulation.world, simulation.state, row)
+            if sensor_step:
+                core.sense(simulation.world, simulation.state)
+                simulation.measure()
+        return simulation.row_state(row, self.state_dim)[:, None]
+
+
+class Hooks:
+    """Calls the overridden methods of objects at their moments.
+
+    Attributes:
+        stepping: Rows whose own ``step`` is being called by the environment.
+        decided: The controls that were decided for them.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._views: list[Any] = []
+        self.stepping: set[int] = set()
+        self.decided: dict[int, Floats] = {}
+        self._slots: dict[int, Floats | None] = {}
+        self._before: dict[int, tuple[Floats, Floats, Floats]] = {}
+
+    def add(self, view: Any) -> None:
+        """Ask this object, too."""
+        if not any(view is known for known in self._views):
+            self._views.append(view)
+
+    def _present(self) -> list[Any]:
+        """Those that are still there and have something overridden, in the order of their rows."""
+        simulation = self._simulation
+        there = [view for view in self._views if view._simulation is simulation and view.overridden()]
+        return sorted(there, key=lambda view: view.row)
+
+    def decide(self) -> None:
+        """The goals and native behaviors of all, with ``pre_process`` of those who have their own."""
+        simulation = self._simulation
+        self.decided.clear()
+        self._slots.clear()
+        renewed = []
+        for view in self._present():
+            row = view.row
+            if "pre_process" in view.overridden() and not (view.static or simulation.stopped[row]):
+                view.pre_process()
+                renewed.append((row, int(simulation.arrived[row])))
+            if not self._views_own_step(view):
+                continue
+            given = bool(simulation.given[row])
+            self._slots[row] = simulation.command_of(row, view.vel_dim)[:, None].copy() if given else None
+        for row, _ in renewed:
+            simulation.arrived[row] = 0
+        core.decide(simulation.world, simulation.state)
+        for row, arrived in renewed:
+            simulation.arrived[row] = arrived
+
+    @staticmethod
+    def _views_own_step(view: Any) -> bool:
+        return bool(view.overridden() & {"step", "gen_behavior_vel"})
+
+    def before_motion(self) -> None:
+        """Keep what the core is about to change of those who have a say in it."""
+        simulation = self._simulation
+        self._before.clear()
+        for view in self._present():
+            row, own = view.row, view.overridden()
+            if view.static or simulation.stopped[row]:
+                continue
+            if own & {"step", "gen_behavior_vel"}:
+                self.decided[row] = simulation.command_of(row, view.vel_dim).copy()
+                if "step" not in own:
+                    simulation.impose(row, np.asarray(view.gen_behavior_vel(self._slots.get(row))).reshape(-1))
+            if own & {"step", "mid_process"}:
+                control, drive = simulation.control[row].copy(), simulation.drive_of(row, view.vel_dim).copy()
+                self._before[row] = simulation.row_state(row, view.state_dim), control, drive
+
+    def after_motion(self) -> None:
+        """Let those who have their own ``step``, ``mid_process`` and ``post_process`` act."""
+        simulation = self._simulation
+        for view in self._present():
+            row, own = view.row, view.overridden()
+            if "step" in own:
+                if row in self._before:
+                    state, control, drive = self._before[row]
+                    simulation.set_row_state(row, state)
+                    simulation.control[row] = control
+                    simulation.drive_of(row, view.vel_dim)[:] = drive
+                self.stepping.add(row)
+                try:
+                    view.step(self._slots.get(row), False)
+                finally:
+                    self.stepping.discard(row)
+                continue
+            if view.static or simulation.stopped[row]:
+                continue
+            if "mid_process" in own:
+                _settle(view, self._before[row][:2])
+            view.post_process()
+        self.decided.clear()
+
+
+def _settle(view: Any, before: tuple[Floats, Floats]) -> None:
+    """Let ``mid_process`` see the object where it was, and put it where that says."""
+    simulation, row = view._simulation, view.row
+    reached = simulation.row_state(row, view.state_dim)
+    control = simulation.control[row].copy()
+    simulation.set_row_state(row, before[0])
+    simulation.control[row] = before[1]
+    settled = np.asarray(view.mid_process(reached[:, None].copy()), dtype=np.float64).reshape(-1)
+    reached[: settled.size] = settled[: reached.size]
+    simulation.set_row_state(row, reached)
+    simulation.control[row] = control
+
+
+def _found(cls: type, name: str) -> Any:
+    return next((base.__dict__[name] for base in cls.__mro__ if name in base.__dict__), None)

@@ -1,0 +1,222 @@
+"""The body of an object: shape, outline, extent, in the body frame or where it stands."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["ObjectBody", "column", "convex_inequality"]
+
+Floats = NDArray[np.float64]
+Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
+_CIRCLE_POINTS = 64
+_STRAIGHT = 1e-12
+"""A corner that turns less than this [m2] counts as straight."""
+
+
+def column(values: Any) -> Floats:
+    """(n, 1) read-only copy."""
+    copied = np.array(values, dtype=np.float64).reshape(-1, 1)
+    copied.setflags(write=False)
+    return copied
+
+
+def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) -> Inequality:
+    """A body as ``G p <= h``, for convex optimisation.
+
+    Returns:
+        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone
+        ``"Rpositive"``. Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Other areas:
+        None, None, None, False; lines and maps: four times None.
+    """
+    state = simulation.state
+    kinds = state.parts(row)
+    if kinds == ["circle"]:
+        x, y, radius = state.circle(row, 0, world_frame)
+        return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-radius]]), "norm2", True
+    if kinds != ["polygon"]:
+        return None, None, None, None if len(kinds) == 1 else False
+    points = state.vertices(row, 0, world_frame)
+    edges = np.roll(points, -1, axis=0) - points
+    ahead = np.roll(edges, -1, axis=0)
+    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
+    if not ((turns >= -_STRAIGHT).all() or (turns <= _STRAIGHT).all()):
+        return None, None, None, False
+    if turns.sum() < 0:
+        points = points[::-1]
+        edges = np.roll(points, -1, axis=0) - points
+    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
+    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
+
+
+class ObjectBody:
+    """Geometry of one row of a simulation."""
+
+    _simulation: Simulation
+    record: ObjectRecord
+    row: int
+
+    @property
+    def shape(self) -> str:
+        """Name of the shape."""
+        return str(getattr(self.record.shape, "name", ""))
+
+    @property
+    def kinematics(self) -> str | None:
+        """Name of the drive; None for objects that have none."""
+        return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
+
+    @property
+    def radius(self) -> float:
+        """Radius of the smallest circle round the body [m]."""
+        return float(self._simulation.radius[self.row])
+
+    @property
+    def radius_extend(self) -> float:
+        """``radius`` plus the margin that avoidance methods keep."""
+        return self.radius + AVOIDANCE_MARGIN
+
+    @property
+    def vertices(self) -> Floats | None:
+        """(2, M) outline in the world frame: 64 points for a circle, None for a compound."""
+        return self._outline(world_frame=True)
+
+    @property
+    def original_vertices(self) -> Floats | None:
+        """(2, M) outline in the body frame."""
+        return self._outline(world_frame=False)
+
+    @property
+    def part_vertices(self) -> list[Floats] | None:
+        """Outlines of the parts of a compound, (2, M) each, world frame; None for simple shapes."""
+        if self.shape != "compound":
+            return None
+        return [self._part(i, world_frame=True) for i in range(len(self._simulation.state.parts(self.row)))]
+
+    @property
+    def length(self) -> float:
+        """Extent of the body along its x axis [m]."""
+        return self._extent(0)
+
+    @property
+    def width(self) -> float:
+        """Extent of the body along its y axis [m]."""
+        return self._extent(1)
+
+    @property
+    def geometry(self) -> Any:
+        """The body as a shapely geometry, world frame (circles as polygons of 64 vertices)."""
+        from irsim.objects.shapely_geometry import shapely_geometry
+
+        return shapely_geometry(self._simulation, self.row, world_frame=True)
+
+    @property
+    def original_geometry(self) -> Any:
+        """The body as a shapely geometry, body frame."""
+        from irsim.objects.shapely_geometry import shapely_geometry
+
+        return shapely_geometry(self._simulation, self.row, world_frame=False)
+
+    @property
+    def centroid(self) -> Floats:
+        """(2, 1) centre of the body's area, world frame."""
+        x, y, theta = self._simulation.pose[self.row].tolist()
+        a, b = self._centre()
+        c, s = math.cos(theta), math.sin(theta)
+        return column([x + c * a - s * b, y + s * a + c * b])
+
+    @property
+    def original_centroid(self) -> Floats:
+        """(2, 1) centre of the body's area, body frame."""
+        return column(self._centre())
+
+    @property
+    def original_state(self) -> Floats:
+        """(3, 1) centre of the body's area and heading 0, body frame."""
+        return column([*self.original_centroid[:, 0], 0.0])
+
+    @property
+    def original_part_vertices(self) -> list[Floats] | None:
+        """Outlines of the parts of a compound, (2, M) each, body frame; None for simple shapes."""
+        if self.shape != "compound":
+            return None
+        return [self._part(i, world_frame=False) for i in range(len(self._simulation.state.parts(self.row)))]
+
+    @property
+    def goal_vertices(self) -> Floats | None:
+        """(2, M) outline at the present goal; None without a goal or for a compound."""
+        x, y, theta = self._simulation.goal[self.row].tolist()
+        outline = self.original_vertices
+        if outline is None or math.isnan(x):
+            return None
+        turn = 0.0 if math.isnan(theta) else theta
+        c, s = math.cos(turn), math.sin(turn)
+        moved: Floats = np.array([[c, -s], [s, c]]) @ outline + [[x], [y]]
+        return moved
+
+    # convex inequality -----------------------------------------------------------------------------------------------
+    @property
+    def G(self) -> Floats | None:
+        """Normals of ``G p <= h`` in the body frame; see :func:`irsim.objects.geometry.convex_inequality`."""
+        return self.get_init_Gh()[0]
+
+    @property
+    def h(self) -> Floats | None:
+        """Right side of ``G p <= h`` in the body frame."""
+        return self.get_init_Gh()[1]
+
+    @property
+    def cone_type(self) -> str | None:
+        """``Rpositive`` for convex polygons, ``norm2`` for circles, else None."""
+        return self.get_init_Gh()[2]
+
+    @property
+    def convex_flag(self) -> bool | None:
+        """Whether the body is convex; None for lines and maps."""
+        return self.get_init_Gh()[3]
+
+    def get_init_Gh(self) -> Inequality:
+        """(G, h, cone_type, convex_flag) of the body in its own frame."""
+        return convex_inequality(self._simulation, self.row, world_frame=False)
+
+    def get_Gh(self) -> Inequality:
+        """(G, h, cone_type, convex_flag) of the body where it is now, world frame."""
+        return convex_inequality(self._simulation, self.row, world_frame=True)
+
+    def _centre(self) -> list[float]:
+        world, index = divmod(self.row, self._simulation.objects)
+        centre: list[float] = centres(self._simulation, world)[index].tolist()
+        return centre
+
+    def _part(self, part: int, *, world_frame: bool) -> Floats:
+        state = self._simulation.state
+        if state.parts(self.row)[part] == "circle":
+            x, y, radius = state.circle(self.row, part, world_frame)
+            turn = float(self._simulation.pose[self.row, 2]) if world_frame else 0.0
+            angles = turn - np.arange(_CIRCLE_POINTS) * (2 * math.pi / _CIRCLE_POINTS)
+            return np.vstack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
+        return state.vertices(self.row, part, world_frame).T.copy()
+
+    def _outline(self, *, world_frame: bool) -> Floats | None:
+        return None if self.shape in ("compound", "map") else self._part(0, world_frame=world_frame)
+
+    def _extent(self, axis: int) -> float:
+        state = self._simulation.state
+        low, high = math.inf, -math.inf
+        for part, kind in enumerate(state.parts(self.row)):
+            if kind == "circle":
+                *centre, radius = state.circle(self.row, part, False)
+                low, high = min(low, centre[axis] - radius), max(high, centre[axis] + radius)
+            else:
+                along = state.vertices(self.row, part, False)[:, axis]
+                low, high = min(low, float(along.min())), max(high, float(along.max()))
+        return high - low

@@ -1,0 +1,1 @@
+"""The classes behind ``robot.kf``, ``robot.gf`` and registered behaviors."""

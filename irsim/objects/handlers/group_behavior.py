@@ -1,0 +1,60 @@
+"""A group behavior as an object: looks up what is registered for a drive and a name, and asks it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import Any
+
+from irsim.objects.handlers import registration as behavior_registry
+from irsim.objects.handlers.registration import group_behaviors_map
+
+__all__ = ["GroupBehavior"]
+
+
+class GroupBehavior:
+    """What drives the members of a group together.
+
+    Args:
+        members: The group; the drive of the first one counts.
+        **behavior_dict: The YAML mapping: ``name`` and the keys of the behavior.
+    """
+
+    def __init__(self, members: Sequence[Any], **behavior_dict: Any) -> None:
+        self.members = list(members)
+        self.behavior_dict = behavior_dict
+        self.kinematics = self.members[0].kinematics if self.members else None
+        self.name = behavior_dict.get("name")
+        self._made: Callable[..., Any] | None = None
+        self._construct()
+
+    def _construct(self) -> None:
+
+        key = (self.kinematics or "static", self.name or "")
+        maker = behavior_registry.group_behaviors_class_map.get(key)
+        self._made = None
+        if maker is None:
+            if self.name is not None and key not in group_behaviors_map:
+                print(f"group behavior {self.name!r} is not registered for {self.kinematics!r}", file=sys.stderr)
+            return
+        try:
+            self._made = maker(self.members, **self.behavior_dict)
+        except Exception as error:  # what user code raises; members follow their own, as in IR-SIM
+            print(f"group behavior {self.name!r} could not be constructed: {error!r}", file=sys.stderr)
+
+    def update_members(self, members: Sequence[Any]) -> None:
+        """Other members from now on."""
+        self.members = list(members)
+
+    def load_group_behaviors(self, group_behaviors: str = ".group_behavior_methods") -> None:
+        """Import a module for what it registers; a leading dot means this package."""
+        import_module(group_behaviors, package="irsim.lib.behavior")
+        self._construct()
+
+    def gen_group_vel(self) -> list[Any]:
+        """One control per member, (vel_dim, 1); None where the group has nothing to say."""
+        act = self._made or group_behaviors_map.get((self.kinematics or "static", self.name or ""))
+        if act is None or not self.members:
+            return [None] * len(self.members)
+        return list(act(self.members, **self.behavior_dict))

@@ -1,0 +1,107 @@
+"""Registration of behaviors by kinematics and name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+
+__all__ = [
+    "behaviors_class_map",
+    "behaviors_map",
+    "group_behaviors_class_map",
+    "group_behaviors_map",
+    "register_behavior",
+    "register_behavior_class",
+    "register_group_behavior",
+    "register_group_behavior_class",
+]
+
+Made = TypeVar("Made", bound=Callable[..., Any])
+
+behaviors_class_map = CUSTOM_BEHAVIORS.classes
+"""Classes by (kinematics, name), of user code only; so are ``group_behaviors_map``."""
+group_behaviors_map = CUSTOM_GROUP_BEHAVIORS.functions
+
+if TYPE_CHECKING:
+    behaviors_map = CUSTOM_BEHAVIORS.functions
+    group_behaviors_class_map = CUSTOM_GROUP_BEHAVIORS.classes
+
+
+def __getattr__(name: str) -> Any:
+    """``behaviors_map`` and ``group_behaviors_class_map``, the built-in ones included, which are imported for it."""
+    if name == "behaviors_map":
+        import_module("irsim.objects.handlers.built_in")
+        return CUSTOM_BEHAVIORS.functions
+    if name == "group_behaviors_class_map":
+        import_module("irsim.objects.handlers.group_built_in")
+        return CUSTOM_GROUP_BEHAVIORS.classes
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def register_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:
+    """Make a function the behavior ``action`` of objects that move by ``kinematics``.
+
+    It is called in each step with ``ego_object``, ``external_objects`` (views) and every key of the YAML mapping, and
+    returns the control, ``vel_dim`` numbers in the command frame, which is then limited like any other.
+
+    Raises:
+        ValueError: The pair is registered already.
+    """
+
+    def add(function: Made) -> Made:
+        CUSTOM_BEHAVIORS.register(kinematics, action, function)
+        return function
+
+    return add
+
+
+def register_behavior_class(kinematics: str, action: str) -> Callable[[Made], Made]:
+    """Make a class, or another factory, the behavior ``action`` of objects that move by ``kinematics``.
+
+    It is called once per object with its ``ObjectInfo`` and every key of the YAML mapping; what it returns is then
+    called in each step like a function of :func:`register_behavior`. It wins over functions and built-in behaviors. An
+    error in the constructor is logged and the class is not used.
+
+    Raises:
+        ValueError: The pair is registered already.
+    """
+
+    def add(maker: Made) -> Made:
+        CUSTOM_BEHAVIORS.register_class(kinematics, action, maker)
+        return maker
+
+    return add
+
+
+def register_group_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:
+    """Make a function the group behavior ``action`` of groups whose first member moves by ``kinematics``.
+
+    It is called in each step with the list of members and every key of the first member's YAML mapping, and returns one
+    control per member; None leaves a member to its own behavior.
+
+    Raises:
+        ValueError: The pair is registered already.
+    """
+
+    def add(function: Made) -> Made:
+        CUSTOM_GROUP_BEHAVIORS.register(kinematics, action, function)
+        return function
+
+    return add
+
+
+def register_group_behavior_class(kinematics: str, action: str) -> Callable[[Made], Made]:
+    """The same for a class, which is called once with the members and the keys.
+
+    Raises:
+        ValueError: The pair is registered already.
+    """
+
+    def add(maker: Made) -> Made:
+        CUSTOM_GROUP_BEHAVIORS.register_class(kinematics, action, maker)
+        return maker
+
+    return add

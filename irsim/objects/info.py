@@ -1,0 +1,96 @@
+"""Plain descriptions of objects, for scripts and planners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+
+__all__ = ["ObjectInfo", "ObstacleInfo"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass
+class _Extensible:
+    def add_property(self, key: str, value: Any) -> None:
+        """Attach another attribute."""
+        setattr(self, key, value)
+
+
+@dataclass
+class ObjectInfo(_Extensible):
+    """What an object is; arrays are columns."""
+
+    id: int
+    shape: str
+    kinematics: str | None
+    role: str
+    color: Any
+    static: bool
+    goal: Floats | None
+    vel_min: Floats
+    vel_max: Floats
+    acce: Floats
+    angle_range: Floats
+    goal_threshold: float
+    wheelbase: float | None
+    G: Floats | None
+    h: Floats | None
+    cone_type: str | None
+    convex_flag: bool | None
+    name: str
+    mass: float
+    friction: float
+    inertia: float
+    restitution: float
+
+    @classmethod
+    def of(cls, view: ObjectView) -> ObjectInfo:
+        """The description of ``view`` now."""
+        record = view.record
+        return cls(
+            view.id,
+            view.shape,
+            view.kinematics,
+            view.role,
+            view.color,
+            view.static,
+            view.goal,
+            view.vel_min,
+            view.vel_max,
+            view.acce,
+            np.array(record.angle_range, dtype=np.float64).reshape(2, 1),
+            view.goal_threshold,
+            view.wheelbase,
+            *view.get_init_Gh(),
+            view.name,
+            record.mass,
+            record.friction,
+            view.inertia,
+            record.restitution,
+        )
+
+
+@dataclass
+class ObstacleInfo(_Extensible):
+    """Where an obstacle is and how big; ``G`` and ``h`` are in its body frame."""
+
+    center: Floats
+    vertex: Floats | None
+    velocity: Floats
+    radius: float
+    G: Floats | None
+    h: Floats | None
+    cone_type: str | None
+    convex_flag: bool | None
+
+    @classmethod
+    def of(cls, view: ObjectView) -> ObstacleInfo:
+        """The description of ``view`` now."""
+        return cls(view.position, view.vertices, view.velocity, view.radius, *view.get_init_Gh())

@@ -1,0 +1,130 @@
+"""Objects that come and go while a world is running.
+
+An object is always a row of some simulation: that of its environment, or, before it is added and after it is taken out,
+one of its own. Exchanging rows between simulations keeps its state, goals, history and random draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from irsim.objects.extensions.attach import attach_python
+from irsim.objects.extensions.behaviors import forget_behavior
+from irsim.objects.extensions.drives import attach_python_drives
+from irsim.objects.view import ObjectView, set_views, views
+from irsim.simulation.simulation import Simulation
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+
+__all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore"]
+
+
+def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
+    """A simulation of one object in an otherwise empty world like that of ``scenario``."""
+    world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none"})
+    simulation = Simulation(
+        replace(scenario, world=world, objects=[record], placements=[], grid=None), [seed], history=True
+    )
+    simulation.user = record.id + 1
+    attach_python_drives(simulation)
+    return simulation
+
+
+def admit(simulation: Simulation, newcomers: Sequence[ObjectView]) -> None:
+    """Move objects, each alone so far, into a simulation of one world; they become its last rows."""
+    present = views(simulation)
+    records = [_as_it_starts(view) for view in newcomers]
+    _exchange(simulation, [*present, *newcomers], [*simulation.scenario.objects, *records])
+
+
+def dismiss(simulation: Simulation, leaving: Iterable[ObjectView]) -> None:
+    """Take objects out of a simulation of one world; each is alone from then on."""
+    gone = set(leaving)
+    staying = [view for view in views(simulation) if view not in gone]
+    seed = simulation.key()[0]
+    for view in gone:
+        own = alone(simulation.scenario, view.record, seed)
+        own.exchange(own.scenario, [(simulation, view.row)])
+        _keep(view, own)
+    _exchange(simulation, staying, _with_leaders(simulation.scenario.objects, [view.record for view in staying]))
+
+
+def amend(view: ObjectView, record: ObjectRecord) -> None:
+    """Give an object another record, of the same id; it and all others go on where they are.
+
+    Raises:
+        AttributeError: It is one of a batch, whose worlds share their records.
+    """
+    simulation = view._simulation
+    if simulation.copies != 1:
+        raise AttributeError(f"{view.name!r} is an object of a batch: set it in the scenario, or for all with `make`")
+    if record == view.record:
+        return
+    if record.behavior is not view.record.behavior:
+        forget_behavior(simulation, view)
+    shown = views(simulation)
+    _exchange(simulation, shown, [record if other is view else other.record for other in shown])
+
+
+def amend_world(simulation: Simulation, **changed: Any) -> None:
+    """Go on with other values in the section ``world`` of the scenario."""
+    world = simulation.scenario.world.model_copy(update=changed)
+    shown = views(simulation)
+    origins = [(simulation, view.row) for view in shown]
+    simulation.exchange(replace(simulation.scenario, world=world), origins)
+    _settle(simulation, shown)
+
+
+def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Sequence[ObjectView]) -> None:
+    """Start the next scene with the objects of ``scenario``, shown by ``originals``; all others are alone then."""
+    seed = simulation.key()[0]
+    for view in views(simulation):
+        if view not in originals:
+            own = alone(simulation.scenario, view.record, seed)
+            own.exchange(own.scenario, [(simulation, view.row)])
+            _keep(view, own)
+    simulation.restore(scenario)
+    _settle(simulation, originals, anew=True)
+
+
+def _exchange(simulation: Simulation, shown: Sequence[ObjectView], records: Sequence[ObjectRecord]) -> None:
+    origins = [(view._simulation, view.row) for view in shown]
+    simulation.exchange(replace(simulation.scenario, objects=list(records)), origins)
+    _settle(simulation, shown)
+
+
+def _settle(simulation: Simulation, shown: Sequence[ObjectView], *, anew: bool = False) -> None:
+    """After other rows: who is where, and where code of users takes part."""
+    set_views(simulation, shown)
+    attach_python(simulation, anew=anew)
+
+
+def _keep(view: ObjectView, own: Simulation) -> None:
+    set_views(own, [view])
+
+
+def _as_it_starts(view: ObjectView) -> ObjectRecord:
+    """Its record with the present initial values, from which a redrawn scene starts it."""
+    state = view.init_state[:, 0].tolist()
+    return replace(view.record, state=state, goals=[goal[:, 0].tolist() for goal in view.goals])
+
+
+def _with_leaders(before: Sequence[ObjectRecord], after: Sequence[ObjectRecord]) -> list[ObjectRecord]:
+    """The records that stay; a group whose first member has gone keeps that one's group behavior."""
+    leaders: dict[int, ObjectRecord] = {}
+    for record in before:
+        if record.joined:
+            leaders.setdefault(record.group, record)
+    seen: set[int] = set()
+    kept: list[ObjectRecord] = []
+    for record in after:
+        if record.joined and record.group not in seen:
+            seen.add(record.group)
+            behavior = leaders[record.group].group_behavior
+            if record.group_behavior is not behavior:
+                record = replace(record, group_behavior=behavior)
+        kept.append(record)
+    return kept

@@ -1,0 +1,63 @@
+"""All objects of a world at once, as arrays: what avoidance laws ask of neighbours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["AVOIDANCE_MARGIN", "centres", "discs"]
+
+Floats = NDArray[np.float64]
+AVOIDANCE_MARGIN = 0.1
+"""What avoidance methods of IR-SIM add to a body's radius [m]."""
+
+
+def centres(simulation: Simulation, world: int) -> Floats:
+    """(N, 2) centre of the area of every body of a world [m], body frame; worked out once per scene and set of bodies.
+
+    Maps have theirs in the world frame, which is where they stand.
+    """
+    key = simulation.revision, *simulation.key(world)[:2]
+    known: dict[int, tuple[tuple[int, int, int], Floats]] = simulation.__dict__.setdefault("_centres", {})
+    if world not in known or known[world][0] != key:
+        first = world * simulation.objects
+        found = [_centre(simulation, first + i) for i in range(simulation.objects)]
+        known[world] = key, np.array(found, dtype=np.float64).reshape(-1, 2)
+    return known[world][1]
+
+
+def discs(simulation: Simulation, world: int) -> Floats:
+    """(N, 5) x, y [m], vx, vy [m/s] and padded radius [m] of every object of a world where it is now, world frame."""
+    size = simulation.objects
+    rows = slice(world * size, (world + 1) * size)
+    pose, centre = simulation.pose[rows], centres(simulation, world)
+    found = np.empty((size, 5))
+    found[:, :2] = pose[:, :2]
+    if centre.any():
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        found[:, 0] += c * centre[:, 0] - s * centre[:, 1]
+        found[:, 1] += s * centre[:, 0] + c * centre[:, 1]
+    found[:, 2:4] = simulation.state.velocities_world(world)
+    if simulation.drives is not None:
+        from irsim.objects.view import views
+
+        objects = views(simulation, world)
+        for index in simulation.drives.objects:
+            found[index, 2:4] = objects[index].velocity_xy[:, 0]
+    found[:, 4] = simulation.radius[rows] + AVOIDANCE_MARGIN
+    return found
+
+
+def _centre(simulation: Simulation, row: int) -> tuple[float, float]:
+    state = simulation.state
+    if state.parts(row) == ["circle"]:
+        return state.circle(row, 0, False)[:2]
+    from irsim.objects.shapely_geometry import shapely_geometry
+
+    point = shapely_geometry(simulation, row, world_frame=False).centroid
+    return point.x, point.y

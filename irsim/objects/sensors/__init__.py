@@ -1,0 +1,1 @@
+"""Sensors of an object: their values, and how each is drawn."""

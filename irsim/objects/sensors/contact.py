@@ -1,0 +1,213 @@
+"""Contacts of ``collision_mode: contact``: records of the last step, and what an object feels of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["Contact", "Contact2D", "ContactReport", "contact_step", "contacts_of"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Contact:
+    """Two objects that were pushed apart, or rested against each other, in the last step.
+
+    Attributes:
+        a, b: The objects; ``a`` has the lower id.
+        normal: (2,) unit vector from ``b`` to ``a``, world frame.
+        depth: Deepest overlap that was found [m].
+        point: (2,) middle of what overlapped, world frame [m].
+        force: What pushed them apart [N].
+    """
+
+    a: ObjectView
+    b: ObjectView
+    normal: Floats
+    depth: float
+    point: Floats
+    force: float
+
+
+@dataclass(eq=False)
+class ContactReport:
+    """A contact as one of its objects sees it: ``normal`` points to that object."""
+
+    other: ObjectView
+    point: Floats
+    normal: Floats
+    depth: float
+    force: float
+
+
+class Contact2D:
+    """What an object feels: contacts of the last step. Every object has one as ``contact``.
+
+    Attributes:
+        parent: The object.
+        force_scale, marker_size, linewidth, alpha, color: How a ``contact2d`` of the scenario is drawn.
+    """
+
+    sensor_type = "contact2d"
+
+    def __init__(self, parent: ObjectView, options: Any = None) -> None:
+        if options is None:
+            from irsim.components.sensors.contact2d import Contact2d
+
+            options = Contact2d()
+        self.parent = parent
+        self.options = options
+        self.obj_id = parent.id
+        self.force_scale: float = options.force_scale
+        self.marker_size: float = options.marker_size
+        self.linewidth: float = options.linewidth
+        self.alpha: float = options.alpha
+        self.color: Any = options.color
+        self._axes: Any = None
+        self._drawn: list[Any] = []
+
+    @property
+    def records(self) -> list[Contact]:
+        """The contacts of the last step that involve the object."""
+        return [c for c in contacts_of(self.parent._simulation, self.parent.world) if self.parent in (c.a, c.b)]
+
+    @property
+    def reports(self) -> list[ContactReport]:
+        """The same, seen from the object."""
+        mine = self.parent
+        return [
+            ContactReport(c.b, c.point, c.normal, c.depth, c.force)
+            if c.a is mine
+            else ContactReport(c.a, c.point, -c.normal, c.depth, c.force)
+            for c in self.records
+        ]
+
+    @property
+    def partners(self) -> list[ObjectView]:
+        """The objects touched, each once."""
+        return list(dict.fromkeys(report.other for report in self.reports))
+
+    @property
+    def force(self) -> Floats:
+        """(2, 1) sum of the contact forces on the object, world frame [N]."""
+        total = np.zeros((2, 1))
+        for report in self.reports:
+            total[:, 0] += report.force * report.normal
+        return total
+
+    @property
+    def in_contact(self) -> bool:
+        """Whether the object touched something in the last step."""
+        return bool(self._touching & 1)
+
+    @property
+    def started(self) -> bool:
+        """Whether the last step began a contact."""
+        return self._touching & 3 == 1
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last step ended all contact."""
+        return self._touching & 3 == 2
+
+    @property
+    def contact_time(self) -> float:
+        """How long the object has touched something [s]."""
+        return float(self.parent._simulation.state.contact_time[self.parent.row])
+
+    @property
+    def air_time(self) -> float:
+        """How long the object has touched nothing [s]."""
+        return float(self.parent._simulation.state.air_time[self.parent.row])
+
+    def step(self, state: Any = None) -> None:
+        """Nothing: contacts are found by the step of the world."""
+
+    # drawing by hand: environments draw ``contact2d`` of the scenario by themselves -----------------------------------
+    def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
+        """Draw the contact forces into some axes.
+
+        Args:
+            ax: Matplotlib axes in world coordinates.
+            state: Accepted as for other sensors; contacts are where they are.
+            **kwargs: ``force_scale``, ``marker_size``, ``linewidth``, ``alpha``, ``color``: kept.
+        """
+        from irsim.graphics.figure.artists import add_dots, add_mark
+        from irsim.objects.sensors.contact_drawing import draw_forces
+
+        self.plot_clear()
+        for name in ("force_scale", "marker_size", "linewidth", "alpha", "color"):
+            setattr(self, name, kwargs.get(name, getattr(self, name)))
+        marks, dots = draw_forces(self)
+        self._axes = ax
+        self._drawn = [add_mark(ax, mark) for mark in marks]
+        self._drawn += [add_dots(ax, beams.dots) for beams in dots if beams.dots is not None]
+
+    def step_plot(self) -> None:
+        """Bring what ``plot`` has drawn up to date."""
+        if self._axes is not None:
+            self.plot(self._axes)
+
+    def plot_clear(self) -> None:
+        """Remove what ``plot`` has drawn."""
+        for artist in self._drawn:
+            artist.remove()
+        self._drawn, self._axes = [], None
+
+    @property
+    def _touching(self) -> int:
+        return int(self.parent._simulation.state.touching[self.parent.row])
+
+
+def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
+    """The contacts of the last step of one world, in the order in which they were found."""
+    from irsim.objects.view import views
+
+    objects = views(simulation, world)
+    return [
+        Contact(objects[a], objects[b], np.array([nx, ny]), depth, np.array([x, y]), force)
+        for a, b, nx, ny, depth, x, y, force in simulation.state.contacts(world)
+    ]
+
+
+def contact_step(
+    pairs: Sequence[tuple[ObjectView, ObjectView]],
+    iterations: int = 32,
+    slop: float = 1e-6,
+    margin: float = 0.0,
+    step_time: float | None = None,
+) -> list[Contact]:
+    """Push apart pairs of objects where they overlap, as a step with ``collision_mode: contact`` does.
+
+    Args:
+        pairs: Objects of one environment; the order decides among pairs that are as far from what cannot be pushed.
+        iterations: Sweeps over the pairs, at most.
+        slop: Gap that is left between them [m].
+        margin: Not needed here; pairs that are apart cost nothing.
+        step_time: Period in which they are pushed apart [s], from which velocities follow; None is the world's.
+
+    Raises:
+        ValueError: Objects of several environments.
+    """
+    if not pairs:
+        return []
+    first = pairs[0][0]
+    simulation, world = first._simulation, first.world
+    if any((o._simulation, o.world) != (simulation, world) for pair in pairs for o in pair):
+        raise ValueError("contact_step takes objects of one environment")
+    numbers = [(a.row % simulation.objects, b.row % simulation.objects) for a, b in pairs]
+    dt = simulation.world.step_time if step_time is None else float(step_time)
+    with simulation.feeling():
+        core.contact_step(simulation.world, simulation.state, world, numbers, int(iterations), float(slop), dt)
+    return contacts_of(simulation, world)

@@ -1,0 +1,355 @@
+"""What a script reads from a lidar: a view of its slice of the core's scan arrays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+from irsim.objects.geometry import column
+from irsim.objects.setters import refuse, sensor_options
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["FMCWLidar2D", "Lidar2D"]
+
+Floats = NDArray[np.float64]
+_MISS_MARGIN = 0.02
+"""Beams whose range is within this of ``range_max`` [m] leave no point in the cloud."""
+_HIGHLIGHT = "#56B4E9"
+"""Colour of beams picked out by ``set_laser_color``."""
+
+
+_FIXED = frozenset(
+    {
+        "parent",
+        "obj_id",
+        "sensor_type",
+        "angle_list",
+        "angle_min",
+        "angle_max",
+        "angle_inc",
+        "time_inc",
+        "range_data",
+        "valid",
+        "hits",
+        "velocity",
+        "lidar_origin",
+        "cast_angles",
+        "state",
+        "radial_velocity",
+    }
+)
+_HINT = "it follows from `number`, `angle_range` and the other options, and from the scan"
+
+
+class Lidar2D:
+    """A 2-D lidar of one object.
+
+    The options of the scenario may be set at run time: ``range_max``, ``number``, ``noise``, ….
+
+    Args:
+        parent: The object that carries it.
+        options: Validated options of the sensor.
+        index: Number of the sensor among the native ones of one world.
+
+    Attributes:
+        number: Beams; beam 0 is the rightmost (clockwise) one.
+        angle_list: (number,) nominal angles in the sensor frame [rad].
+        angle_min, angle_max, angle_inc: First and last of them, and their distance [rad].
+        range_min, range_max: Limits of the ranges [m].
+        offset: (3, 1) x, y [m], heading [rad] of the sensor in the body frame.
+        alpha, color: How the beams are drawn; may be changed.
+        colors: {beam: (colour, alpha)} of beams drawn differently, see :meth:`set_laser_color`.
+    """
+
+    parent: ObjectView
+    obj_id: int
+    sensor_type: str
+    number: int
+    range_min: float
+    range_max: float
+    angle_range: float
+    scan_time: float
+    noise: bool
+    std: float
+    angle_std: float
+    offset: Floats
+    has_velocity: bool
+    angle_list: Floats
+    angle_min: float
+    angle_max: float
+    angle_inc: float
+    time_inc: float
+    _simulation: Simulation
+    _index: int
+    _beams: slice
+    _ranges: Floats
+    _hits: NDArray[np.int32]
+    _valid: NDArray[np.uint8]
+    _velocities: Floats
+    _settings: ClassVar[tuple[str, ...]] = (
+        "number",
+        "range_min",
+        "range_max",
+        "angle_range",
+        "scan_time",
+        "noise",
+        "std",
+        "angle_std",
+        "offset",
+        "has_velocity",
+    )
+
+    def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
+        self.options = options
+        self.__dict__.update(parent=parent, obj_id=parent.id, sensor_type=str(options.name))
+        self.alpha, self.color = options.drawn_alpha, options.drawn_color
+        self.colors: dict[int, tuple[str, float]] = {}
+        self._drawn: Any = None
+        self.attach(simulation, index)
+
+    def attach(self, simulation: Simulation, index: int) -> None:
+        """Read the ``index``-th sensor of this simulation from now on."""
+        own, world = self.__dict__, self.parent.world  # without __setattr__: many do this at once
+        _, first, number = simulation.scans[index]
+        first += world * simulation.world.beams_per_world
+        beams = slice(first, first + number)
+        own["_simulation"], own["_index"], own["_beams"] = simulation, index, beams
+        own["_ranges"], own["_hits"], own["_valid"] = (
+            simulation.ranges[beams],
+            simulation.hits[beams],
+            simulation.valid[beams],
+        )
+        first, rows = simulation.velocity_slices[index]
+        first += world * simulation.world.velocities_per_world
+        own["_velocities"] = simulation.state.velocities[first : first + rows * number].reshape(rows, number)
+        if own.get("_described") is not self.options:
+            self._describe(number)
+
+    def _describe(self, number: int) -> None:
+        """Show the options, and the beams they mean."""
+        options, own = self.options, self.__dict__
+        own["_described"] = options
+        angles: Floats = self._simulation.state.beam_angles[self._beams].copy()
+        own.update({name: getattr(options, name) for name in self._settings}, number=number, angle_list=angles)
+        own["offset"] = column(options.offset)
+        own["has_velocity"] = bool(options.has_velocity) and len(self._velocities) == 2
+        own["angle_min"], own["angle_max"] = float(angles[0]), float(angles[-1])
+        own["angle_inc"] = self.angle_range / (number - 1) if number > 1 else 0.0
+        own["time_inc"] = 0.0
+        self._fixed = {
+            "angle_min": self.angle_min,
+            "angle_max": self.angle_max,
+            "angle_increment": self.angle_inc,
+            "time_increment": self.time_inc,
+            "scan_time": self.scan_time,
+            "range_min": self.range_min,
+            "range_max": self.range_max,
+            "ranges": None,
+            "intensities": None,
+        }
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self._settings:
+            self._change(name, value)
+        elif name in _FIXED:
+            refuse(f"the {self.sensor_type} of {self.parent.name!r}", name, _HINT)
+        else:
+            object.__setattr__(self, name, value)
+
+    def _change(self, name: str, value: Any) -> None:
+        """Another value of an option, for the next scan and all after it; the present scan is taken anew."""
+        parent, before = self.parent, self.options
+        self.options = sensor_options(before, f"the {self.sensor_type} of {parent.name!r}", **{name: value})
+        sensors = [self.options if options is before else options for options in parent.record.sensors]
+        try:
+            parent.amend(replace(parent.record, sensors=sensors))
+        except Exception:
+            self.options = before
+            raise
+
+    @property
+    def range_data(self) -> Floats:
+        """(number,) measured ranges [m]; a miss reads ``range_max``. A copy."""
+        return self._ranges.copy()
+
+    @property
+    def valid(self) -> NDArray[np.bool_]:
+        """(number,) whether the beam hit something within ``[range_min, range_max]``. A copy."""
+        return self._valid.astype(bool)
+
+    @property
+    def hits(self) -> NDArray[np.int32]:
+        """(number,) id of the object each beam hit, -1 where it hit nothing. A copy."""
+        return self._simulation.ids[self._hits]
+
+    @property
+    def velocity(self) -> Floats:
+        """(2, number) world velocity of what each beam hit [m/s]; zeros without ``has_velocity`` or hit. A copy."""
+        return self._velocities.copy() if self.has_velocity else np.zeros((2, self.number))
+
+    @property
+    def lidar_origin(self) -> Floats:
+        """(3, 1) pose of the sensor in the world frame."""
+        return self._placed(self._simulation.pose[self.parent.row])
+
+    @property
+    def cast_angles(self) -> Floats:
+        """(number,) the nominal angles [rad]; noise on them (``angle_std``) is drawn within each scan. A copy."""
+        return self.angle_list.copy()
+
+    @property
+    def state(self) -> Floats:
+        """(3, 1) pose of the carrier in the world frame."""
+        return column(self._simulation.pose[self.parent.row])
+
+    def init_geometry(self, state: Any) -> None:
+        """Nothing: the engine knows the beams, and where they start follows from the carrier.
+
+        Args:
+            state: Accepted as it was before.
+        """
+
+    def step(self, state: Any = None) -> None:
+        """Take the scan anew.
+
+        Args:
+            state: x, y [m] and heading [rad] of the carrier, in any shape; by default where it stands.
+        """
+        pose = self._simulation.pose[self.parent.row] if state is None else np.asarray(state, dtype=np.float64)
+        x, y, theta = (float(v) for v in pose.reshape(-1)[:3])
+        core.scan(self._simulation.world, self._simulation.state, self.parent.world, self._index, (x, y, theta))
+
+    def get_scan(self) -> dict[str, Any]:
+        """The scan as a dictionary; arrays are copies of your own.
+
+        Returns:
+            ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``time_increment``, ``scan_time`` [s],
+            ``range_min``, ``range_max``, ``ranges`` (number,) [m], ``intensities`` None, ``velocity`` (2, number)
+            [m/s], ``valid`` (number,) bool.
+        """
+        scan: dict[str, Any] = dict(self._fixed)
+        scan["ranges"] = self._ranges.copy()
+        scan["velocity"] = self.velocity
+        scan["valid"] = self._valid.astype(bool)
+        return scan
+
+    def get_points(self) -> Floats | None:
+        """(2, K) points of the valid hits in the sensor frame [m]; None when there is none."""
+        keep = self._valid.astype(bool) & (self._ranges < self.range_max - _MISS_MARGIN)
+        if not keep.any():
+            return None
+        ranges, angles = self._ranges[keep], self.angle_list[keep]
+        return np.vstack([ranges * np.cos(angles), ranges * np.sin(angles)])
+
+    scan_to_pointcloud = get_points
+
+    def get_offset(self) -> list[float]:
+        """[x, y, theta] of the sensor in the body frame."""
+        return [float(v) for v in self.offset[:, 0]]
+
+    def set_laser_color(self, laser_indices: Any, laser_color: str | None = None, alpha: float = 0.3) -> None:
+        """Draw some beams in another colour from the next frame on.
+
+        Args:
+            laser_indices: Beam numbers.
+            laser_color: Any Matplotlib colour; by default that of picked-out beams.
+            alpha: Opacity, 0 to 1.
+        """
+        for index in np.atleast_1d(np.asarray(laser_indices, dtype=int)):
+            self.colors[int(index)] = (laser_color or _HIGHLIGHT, alpha)
+
+    # drawing by hand: environments draw their lidars by themselves --------------------------------------------------
+    def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
+        """Draw the beams into some axes.
+
+        Args:
+            ax: Matplotlib axes in world coordinates.
+            state: Pose of the carrier; by default where it stands.
+            **kwargs: ``alpha`` and ``color`` of the beams.
+        """
+        from irsim.graphics.figure.layers import BeamLayer
+
+        self.plot_clear()
+        self.alpha, self.color = kwargs.get("alpha", self.alpha), kwargs.get("color", self.color)
+        self._drawn = BeamLayer(ax, 2)
+        self._show(state)
+
+    def step_plot(self) -> None:
+        """Bring what ``plot`` has drawn up to date."""
+        if self._drawn is not None:
+            self._show(None)
+
+    def plot_clear(self) -> None:
+        """Remove what ``plot`` has drawn."""
+        if self._drawn is not None:
+            self._drawn.remove()
+        self._drawn = None
+
+    def _show(self, state: Any) -> None:
+        from irsim.objects.sensors.lidar_drawing import draw_scan
+
+        origin = None if state is None else self._placed(np.asarray(state, dtype=np.float64).reshape(-1)[:3])
+        self._drawn.show(draw_scan(self, origin=origin))
+
+    def _placed(self, carrier: Floats) -> Floats:
+        """(3, 1) pose of the sensor on a carrier at this pose."""
+        x, y, theta = carrier
+        dx, dy, turn = self.offset[:, 0]
+        heading = (theta + turn + math.pi) % (2 * math.pi) - math.pi
+        c, s = math.cos(theta), math.sin(theta)
+        return np.array([[x + c * dx - s * dy], [y + s * dx + c * dy], [heading]])
+
+
+class FMCWLidar2D(Lidar2D):
+    """A lidar that measures how fast each hit recedes, too.
+
+    The drawing options of the scenario (``velocity_color``, ``velocity_color_max``, …) are attributes, too.
+
+    Attributes:
+        motion_compensate: The carrier's own motion is left out of the radial velocities.
+        velocity_noise_std: Standard deviation of their noise [m/s].
+        drawing: Drawing options by name; may be changed.
+    """
+
+    motion_compensate: bool
+    velocity_noise_std: float
+    _settings: ClassVar[tuple[str, ...]] = (*Lidar2D._settings, "motion_compensate", "velocity_noise_std")
+
+    def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
+        super().__init__(simulation, parent, options, index)
+        self.drawing: dict[str, Any] = options.drawing()
+
+    def __getattr__(self, name: str) -> Any:
+        drawing = self.__dict__.get("drawing", {})
+        if name in drawing:
+            return drawing[name]
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        drawing = self.__dict__.get("drawing", {})
+        if name in drawing:
+            drawing[name] = value
+        else:
+            super().__setattr__(name, value)
+
+    @property
+    def radial_velocity(self) -> Floats:
+        """(number,) radial velocity of each valid hit [m/s], positive when it recedes; 0 for other beams. A copy."""
+        velocity: Floats = self._velocities[0].copy()
+        return velocity
+
+    def get_scan(self) -> dict[str, Any]:
+        """The scan of a lidar, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
+        scan: dict[str, Any] = dict(self._fixed)
+        scan["ranges"] = self._ranges.copy()
+        scan["radial_velocity"] = self._velocities[0].copy()
+        scan["valid"] = self._valid.astype(bool)
+        return scan

@@ -1,0 +1,80 @@
+"""One scan as a drawing: the beams of a lidar, coloured by radial velocity where it measures one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from irsim.graphics.scene.scene import Beams, Dots, Floats
+from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
+
+__all__ = ["BEAM_ZORDER", "draw_scan"]
+
+BEAM_ZORDER = 2
+_DOT_ZORDER = 4
+
+
+def draw_scan(lidar: Lidar2D, sensor: int = 0, origin: Any = None) -> Beams:
+    """The present scan.
+
+    Args:
+        lidar: What has measured.
+        sensor: Its place among the sensors of its object.
+        origin: Pose of the sensor, world frame; by default where it is.
+    """
+    x, y, theta = (
+        np.asarray(lidar.lidar_origin if origin is None else origin, dtype=np.float64).reshape(-1)[:3].tolist()
+    )
+    angles, ranges = lidar.angle_list + theta, lidar.range_data
+    ends = np.stack([x + ranges * np.cos(angles), y + ranges * np.sin(angles)], axis=1)
+    beams = Beams(
+        object=lidar.obj_id,
+        sensor=sensor,
+        origin=(x, y),
+        ends=ends,
+        color=lidar.color,
+        alpha=lidar.alpha,
+        zorder=BEAM_ZORDER,
+        highlights=[(beam, c, a) for beam, (c, a) in lidar.colors.items() if 0 <= beam < lidar.number],
+    )
+    if isinstance(lidar, FMCWLidar2D):
+        _add_velocities(beams, lidar)
+    return beams
+
+
+def _add_velocities(beams: Beams, lidar: FMCWLidar2D) -> None:
+    from matplotlib.colors import to_rgba
+
+    look, valid = lidar.drawing, lidar.valid
+    beams.widths = np.where(valid, look["velocity_linewidth"], look["no_hit_linewidth"])
+    if look["velocity_color"]:
+        colors = velocity_colors(lidar.radial_velocity, look)
+        colors[~valid] = to_rgba(look["no_hit_color"], look["no_hit_alpha"])
+        beams.colors = colors
+    if look["show_velocity_markers"] and valid.any():
+        own = np.array(to_rgba(lidar.color))
+        beams.dots = Dots(
+            points=beams.ends[valid],
+            colors=np.tile(own, (int(valid.sum()), 1)) if beams.colors is None else beams.colors[valid],
+            area=float(look["velocity_marker_size"]),
+            edge_color=look["velocity_marker_edge_color"],
+            edge_width=float(look["velocity_marker_edge_width"]),
+            zorder=_DOT_ZORDER,
+        )
+
+
+def velocity_colors(velocity: Floats, look: dict[str, Any]) -> Floats:
+    """(B, 4) RGBA: from the colour of rest to that of receding or approaching, full at ``velocity_color_max``.
+
+    Args:
+        velocity: (B,) radial velocities [m/s], positive when receding.
+        look: Drawing options of the sensor.
+    """
+    from matplotlib.colors import to_rgba
+
+    share = np.clip(np.abs(velocity) / look["velocity_color_max"], 0.0, 1.0)[:, None]
+    rest = np.array(to_rgba(look["zero_velocity_color"]))
+    away, near = (np.array(to_rgba(look[f"{way}_velocity_color"])) for way in ("positive", "negative"))
+    colors: Floats = rest + share * (np.where(velocity[:, None] >= 0.0, away, near) - rest)
+    return colors

@@ -1,0 +1,132 @@
+"""Bodies as shapely geometries, for scripts that ask; the engine never uses them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import irsim._core as core
+from irsim.components.maps._grid import MapCells, Walls
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["compound_body", "core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
+
+_QUADRANT_SEGMENTS = 16
+
+
+def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> Any:
+    """The body of a row: Polygon, LineString or the union of the parts of a compound.
+
+    Circles become polygons of 64 vertices, as users of IR-SIM know them.
+    """
+    import shapely
+
+    state = simulation.state
+    parts: list[Any] = []
+    cells = state.cells(row)
+    if cells is not None:
+        return shapely.MultiLineString([shapely.LinearRing(ring) for ring in cells.outline()])
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, world_frame)
+            parts.append(shapely.Point(x, y).buffer(radius, quad_segs=_QUADRANT_SEGMENTS))
+        elif kind == "polygon":
+            parts.append(shapely.Polygon(state.vertices(row, part, world_frame)))
+        elif kind == "room":
+            parts.append(shapely.LinearRing(state.vertices(row, part, world_frame)))
+        else:
+            parts.append(shapely.LineString(state.vertices(row, part, world_frame)))
+    return parts[0] if len(parts) == 1 else shapely.union_all(parts)
+
+
+def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
+    """The body of a row for the core, body frame."""
+    shape = simulation.scenario.objects[row % simulation.objects].shape
+    if isinstance(shape, (MapCells, Walls)):
+        return shape.parts()
+    state = simulation.state
+    cells = state.cells(row)
+    if cells is not None:
+        return [core.GridCells(grid=cells)]
+    parts: list[core.Part] = []
+    for part, kind in enumerate(state.parts(row)):
+        if kind == "circle":
+            x, y, radius = state.circle(row, part, False)
+            parts.append(core.Circle(radius=radius, center=[x, y]))
+        else:
+            vertices = state.vertices(row, part, False).tolist()
+            make: Any = {"polygon": core.Polygon, "linestring": core.Linestring, "room": core.Room}[kind]
+            parts.append(make(vertices=vertices))
+    return parts
+
+
+def touching(a: ObjectView, b: ObjectView) -> bool:
+    """Whether two bodies meet where they are now, exactly."""
+    first, second = core_parts(a._simulation, a.row), core_parts(b._simulation, b.row)
+    return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
+
+
+def touching_circle(a: ObjectView, x: float, y: float, radius: float) -> bool:
+    """Whether a body where it is now meets a circle."""
+    circle = core.Circle(radius=radius, center=[x, y])
+    return core.intersects(core_parts(a._simulation, a.row), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
+
+
+def from_shapely(geometry: Any) -> list[core.Part]:
+    """Polygons, lines and collections of them as parts for the core; holes are filled.
+
+    Raises:
+        ValueError: Empty, or of points.
+    """
+    parts: list[core.Part] = []
+    for piece in getattr(geometry, "geoms", [geometry]):
+        if piece.is_empty:
+            continue
+        if piece.geom_type == "Polygon":
+            parts.append(core.Polygon(vertices=[[x, y] for x, y, *_ in piece.exterior.coords[:-1]]))
+        elif piece.geom_type in ("LineString", "LinearRing"):
+            parts.append(core.Linestring(vertices=[[x, y] for x, y, *_ in piece.coords]))
+        elif hasattr(piece, "geoms"):
+            parts += from_shapely(piece)
+        else:
+            raise ValueError(f"a body is made of polygons and lines, not of a {piece.geom_type}")
+    if not parts:
+        raise ValueError("the geometry is empty")
+    return parts
+
+
+def compound_body(parts: Sequence[Any]) -> list[float]:
+    """What contacts need to know of the area that parts of a compound cover together.
+
+    Returns:
+        Its centre, x, y [m, body frame], and the square of its radius of gyration [m^2] if it is in one piece (holes
+        count as filled); empty where a part is drawn per scene.
+    """
+    import shapely
+
+    shapes: list[Any] = []
+    for part in parts:
+        if isinstance(part, core.Circle):
+            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_QUADRANT_SEGMENTS))
+        elif isinstance(part, core.Polygon):
+            shapes.append(shapely.Polygon(part.vertices))
+        elif isinstance(part, core.Linestring):
+            shapes.append(shapely.LineString(part.vertices))
+        else:
+            return []
+    area: Any = shapely.union_all(shapes)
+    centre = [area.centroid.x, area.centroid.y]
+    return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
+
+
+def _gyration2(ring: Any, centre: Sequence[float]) -> float:
+    """Second moment of the area in a closed ring about ``centre``, per area [m^2]."""
+    a = np.asarray(ring, dtype=np.float64)[:-1] - centre
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return float(np.sum(cross * np.sum(a * a + a * b + b * b, axis=1)) / (6.0 * np.sum(cross)))

@@ -1,0 +1,236 @@
+"""Evaluation of one object outside a step: arrival, contact, reset, new goals, another body."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.objects.shapely_geometry import from_shapely, touching, touching_circle
+from irsim.simulation.active_env import last_used
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.scenario.resolve.resolved import ObjectRecord
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["ObjectStatus"]
+
+Floats = NDArray[np.float64]
+_STOPS = {0: ("robot", "obstacle"), 2: ("robot",)}
+"""Who stops when it touches something, by collision mode of the core."""
+
+
+class ObjectStatus:
+    """Part of :class:`irsim.objects.view.ObjectView`."""
+
+    if TYPE_CHECKING:
+        _simulation: Simulation
+        record: ObjectRecord
+        row: int
+        name: str
+        role: Any
+        goal: Any
+        goals: Any
+        state: Any
+        init_state: Any
+        static: bool
+        unobstructed: bool
+        arrive_mode: Any
+        goal_threshold: Any
+        external_objects: Any
+        environment_objects: Any
+        surroundings: Any
+
+        def set_goal(self, goal: Any, init: bool = False) -> None:
+            """See :class:`irsim.objects.view.ObjectView`."""
+
+    # arrival and contact ---------------------------------------------------------------------------------------------
+    def check_arrive(self, goal: Any, threshold: float | None = None) -> bool:
+        """Whether the object is at a goal.
+
+        Args:
+            goal: x, y [m] and, for ``arrive_mode: state``, theta [rad]; None is never reached.
+            threshold: Distance at which it counts as reached [m]; default: ``goal_threshold``.
+        """
+        if goal is None:
+            return False
+        numbers = np.asarray(goal, dtype=np.float64).reshape(-1)
+        x, y, theta = self._simulation.pose[self.row].tolist()
+        turn = 0.0
+        if self.arrive_mode == "state" and numbers.size > 2:
+            turn = (theta - numbers[2] + math.pi) % (2 * math.pi) - math.pi
+        away = math.sqrt((x - numbers[0]) ** 2 + (y - numbers[1]) ** 2 + turn * turn)
+        return away < (self.goal_threshold if threshold is None else threshold)
+
+    def check_arrive_status(self) -> None:
+        """Set the arrival flag; at a goal with others behind it, go on to the next one instead."""
+        goals = self.goals
+        arrived = bool(goals) and self.check_arrive(goals[0])
+        if arrived and len(goals) > 1:
+            rest = [goal[:, 0].tolist() for goal in goals[1:]]
+            self._simulation.state.set_goals(self.row, rest, False)
+            arrived = False
+        self._simulation.arrived[self.row] = arrived
+
+    def check_collision(self, obj: ObjectView) -> bool:
+        """Whether it touches another object now, exactly."""
+        return touching(self, obj)  # type: ignore[arg-type]
+
+    def check_collision_status(self) -> None:
+        """Set the flags of collision and stop from where everything is now."""
+        simulation = self._simulation
+        collided = any(self.check_collision(other) for other in self.possible_collision_objects)
+        simulation.collided[self.row] = collided
+        simulation.stopped[self.row] = collided and self.role in _STOPS.get(simulation.world.collision_mode, ())
+
+    def check_status(self) -> None:
+        """Arrival, then collision and stop, as at the end of a step."""
+        self.check_arrive_status()
+        self.check_collision_status()
+
+    @property
+    def possible_collision_objects(self) -> list[ObjectView]:
+        """The others, ``unobstructed`` ones left out, whose bounding boxes meet its own."""
+        if self.surroundings is None:
+            objects = self.environment_objects
+            near = [objects[i] for i in self._simulation.state.near_row(self.row)]
+            return [other for other in near if not other.unobstructed]
+        low, high = _box(self)
+        found = []
+        for other in self.external_objects:
+            if not other.unobstructed:
+                other_low, other_high = _box(other)
+                if (low <= other_high).all() and (other_low <= high).all():
+                    found.append(other)
+        return found
+
+    # evaluation and reset --------------------------------------------------------------------------------------------
+    def sensor_step(self) -> None:
+        """Read the sensors anew from where everything is now."""
+        self._simulation.state.look()
+        self._simulation.measure()
+
+    def refresh(self, sensor_step: bool = True) -> None:
+        """Take over a state that was written; geometry always does.
+
+        Args:
+            sensor_step: Also read the sensors anew.
+        """
+        if sensor_step:
+            self.sensor_step()
+
+    def reset(self) -> None:
+        """Back to the initial state, control and goals; flags and trajectory are cleared."""
+        self._simulation.state.reset_row(self.row)
+
+    def remove(self) -> None:
+        """Nothing: objects are taken out by ``env.delete_object``."""
+
+    # goals and bodies ------------------------------------------------------------------------------------------------
+    def set_random_goal(
+        self,
+        obstacle_list: Iterable[ObjectView],
+        init: bool = False,
+        free: bool = True,
+        goal_check_radius: float = 0.2,
+        range_limits: Sequence[Sequence[float]] | None = None,
+        max_attempts: int = 100,
+    ) -> None:
+        """Draw new goals, as many as there are now (one, if there is none).
+
+        Args:
+            obstacle_list: What goals must keep away from.
+            init: Also what ``reset`` returns to.
+            free: Draw until the circle about a goal touches no obstacle.
+            goal_check_radius: Radius of that circle [m].
+            range_limits: [low, high] of x, y [m] and heading [rad]; default: the range of the behavior (the world).
+            max_attempts: Draws per goal; the last one is taken in any case.
+        """
+        low, high = (self.rl, self.rh) if range_limits is None else range_limits
+        bounds = np.asarray(low, dtype=np.float64).reshape(-1), np.asarray(high, dtype=np.float64).reshape(-1)
+        obstacles = list(obstacle_list)
+        goals: list[list[float]] = []
+        for _ in range(max(1, len(self.goals))):
+            for _ in range(max(1, max_attempts)):
+                drawn = self._simulation.rng.uniform(*bounds)
+                x, y = drawn[:2].tolist()
+                if not free or not any(touching_circle(o, x, y, goal_check_radius) for o in obstacles):
+                    break
+            goals.append(drawn.tolist())
+        self.set_goal(goals, init)
+
+    def set_original_geometry(self, geometry: Any) -> None:
+        """Give it another body until the next scene is drawn.
+
+        Args:
+            geometry: shapely polygon or line, or a collection of them, in the body frame.
+        """
+        self._simulation.reshape(self.row, from_shapely(geometry))
+
+    # what it belongs to ----------------------------------------------------------------------------------------------
+    @property
+    def env_param(self) -> Any:
+        """``env_param`` of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "env_param", None)
+
+    @property
+    def world_param(self) -> Any:
+        """``world_param`` of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "world_param", None)
+
+    @property
+    def logger(self) -> Any:
+        """The logger of its environment; None for an object that is in none."""
+        return getattr(self._simulation.owner(), "logger", None)
+
+    @staticmethod
+    def reset_id_iter(start: int = 0, step: int = 1) -> None:
+        """Let the ids of new objects of the environment used last begin anew."""
+        if (env := last_used()) is not None:
+            env.env_param.id_iter = count(start, step)
+
+    # what behaviors are given ----------------------------------------------------------------------------------------
+    @property
+    def rl(self) -> list[float]:
+        """Lower bounds of wander goals: x, y [m], heading [rad]."""
+        return list(self.record.range_low)
+
+    @property
+    def rh(self) -> list[float]:
+        """Upper bounds of wander goals."""
+        return list(self.record.range_high)
+
+    @property
+    def group_behavior_dict(self) -> dict[str, Any]:
+        """Keys of its group behavior as the scenario has them; empty without one."""
+        options = self.record.group_behavior
+        return {} if options is None else options.model_dump(exclude_unset=True)
+
+    @property
+    def z(self) -> float:
+        """Height above the ground [m]: 0, the world is flat."""
+        return 0.0
+
+    def input_state_check(self, state: Sequence[float], dim: int = 3) -> list[float]:
+        """``state`` cut, or filled up with zeros, to ``dim`` numbers."""
+        values = list(state)[:dim]
+        return values + [0] * (dim - len(values))
+
+
+def _box(view: Any) -> tuple[Floats, Floats]:
+    """Corners of the bounding box of a body where it is now, (2,) each."""
+    state = view._simulation.state
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
+    for part, kind in enumerate(state.parts(view.row)):
+        if kind == "circle":
+            x, y, radius = state.circle(view.row, part, True)
+            low, high = np.minimum(low, [x - radius, y - radius]), np.maximum(high, [x + radius, y + radius])
+        else:
+            points = state.vertices(view.row, part, True)
+            low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
+    return low, high

@@ -1,0 +1,142 @@
+"""The base of every model of the scenario language, and the documentation of its fields."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import itertools
+import textwrap
+from collections.abc import Callable
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler, create_model
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+__all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "open_options", "problem", "shared_schema"]
+
+
+@dataclass
+class SchemaParts:
+    """A schema in the making.
+
+    Attributes:
+        makers: Parts that it refers to by name, and what makes them.
+        user_code: Whether names that user code has registered in this process belong into it.
+    """
+
+    makers: dict[str, Callable[[], dict[str, Any]]]
+    user_code: bool
+
+
+SCHEMA_PARTS: ContextVar[SchemaParts | None] = ContextVar("SCHEMA_PARTS", default=None)
+"""The schema that is being made; None when nobody makes one."""
+
+
+def shared_schema(name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """A reference to a part of the schema that occurs more than once; the part itself where none is collected."""
+    parts = SCHEMA_PARTS.get()
+    if parts is None:
+        return make()
+    parts.makers[name] = make
+    return {"x-shared": name}  # pydantic would look a $ref up among its own definitions
+
+
+class Options(BaseModel):
+    """Keys of one mapping of a scenario.
+
+    Every field is documented by the string below it. These strings are read from the source when someone asks
+    (:func:`field_docs`, the JSON Schema), not when the class is made: a run needs none of them.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, protected_namespaces=())
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        """Itself: options never change, so defaults need no copies."""
+        return self
+
+    schema_extra: ClassVar[dict[str, Any]] = {}
+    """What the schema says about the mapping besides its keys: examples."""
+    also_called: ClassVar[dict[str, str]] = {}
+    """Words that people write for keys of this mapping, and the keys they mean."""
+    any_case: ClassVar[bool] = False
+    """Whether upper case is accepted in ``name``."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        produced = handler(schema)
+        target = handler.resolve_ref_schema(produced)
+        docs = field_docs(cls)
+        target.pop("title", None)
+        for name, value in target.get("properties", {}).items():
+            value.pop("title", None)
+            if isinstance(cls.model_fields[name].default, BaseModel):
+                value["default"] = {}
+            if name == "name" and cls.any_case and "const" in value:
+                pattern = "".join(f"[{c}{c.upper()}]" if c.isalpha() else c for c in value["const"])
+                value["anyOf"] = [{"const": value.pop("const")}, {"pattern": f"^{pattern}$"}]
+            if docs.get(name) and "description" not in value:
+                value["description"] = docs[name]
+        if cls.__doc__:
+            target["description"] = inspect.cleandoc(cls.__doc__)
+        target.update(cls.schema_extra)
+        return produced
+
+
+def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
+    """A validation error that becomes a diagnostic of that code.
+
+    Args:
+        code: From :data:`irsim.diagnostics.codes.CODES`.
+        message: One sentence.
+        **details: ``allowed`` and ``fix`` of the diagnostic; ``replace``: a better value, or ``rename``: a better key;
+            ``tolerated``: IR-SIM 2.12 carries on with the better value, or ``tolerated_as``: with another one.
+    """
+    return PydanticCustomError(code, "{message}", {"message": message, **details})
+
+
+@cache
+def open_options(model: type[BaseModel]) -> type[BaseModel]:
+    """The same model with any other key, for code of users that takes the place of what is built in."""
+    return create_model(model.__name__, __base__=model, __module__=model.__module__, __cls_kwargs__={"extra": "allow"})
+
+
+@cache
+def field_docs(model: type[BaseModel]) -> dict[str, str]:
+    """The documentation of each field of ``model``, its own and inherited; missing ones are left out."""
+    docs: dict[str, str] = {}
+    for cls in reversed(model.__mro__):
+        if not (issubclass(cls, BaseModel) and inspect.get_annotations(cls)):
+            continue
+        for name, text in _own_docs(cls).items():
+            if name in model.model_fields:
+                docs[name] = text
+    for name, info in model.model_fields.items():
+        if info.description:
+            docs[name] = info.description
+    return docs
+
+
+def _own_docs(cls: type) -> dict[str, str]:
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(cls)))
+    except (OSError, TypeError, SyntaxError):  # made at run time or shipped without source
+        return {}
+    body = getattr(tree.body[0], "body", [])
+    found: dict[str, str] = {}
+    for statement, following in itertools.pairwise(body):
+        if (
+            isinstance(statement, ast.AnnAssign)
+            and isinstance(statement.target, ast.Name)
+            and isinstance(following, ast.Expr)
+            and isinstance(following.value, ast.Constant)
+            and isinstance(following.value.value, str)
+        ):
+            found[statement.target.id] = inspect.cleandoc(following.value.value)
+    return found

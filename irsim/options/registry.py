@@ -1,0 +1,253 @@
+"""One registry per kind of feature: YAML name → options model, and what computes it.
+
+Built-in features are modules of a package, found by file name and imported when first asked for, so that a scenario
+pays only for what it uses. Plug-ins come through decorators or the entry-point group of the registry.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import BaseModel
+
+__all__ = [
+    "BEHAVIORS",
+    "CUSTOM_BEHAVIORS",
+    "CUSTOM_GROUP_BEHAVIORS",
+    "DISTRIBUTIONS",
+    "KINEMATICS",
+    "MAPS",
+    "PLANNERS",
+    "REGISTRIES",
+    "SENSORS",
+    "SHAPES",
+    "CustomBehaviors",
+    "Feature",
+    "Registry",
+]
+
+
+Pair = tuple[str, str]
+"""Kinematics and name."""
+
+
+@dataclass(frozen=True)
+class Feature:
+    """A registered feature.
+
+    Attributes:
+        name: Its name in YAML.
+        options: pydantic model of its keys; the docstring and field docstrings are its documentation.
+        kernel: Class of the core that holds the same options for the native kernel, or None.
+        function: Python function that computes it, or None.
+        origin: ``"built-in"`` or the plug-in that brought it.
+    """
+
+    name: str
+    options: type[BaseModel]
+    kernel: type[Any] | None = None
+    function: Callable[..., Any] | None = None
+    origin: str = "built-in"
+
+    @property
+    def simulated(self) -> bool:
+        """Whether this version computes it."""
+        return self.kernel is not None or self.function is not None
+
+
+class Registry:
+    """Features of one kind, by YAML name.
+
+    Args:
+        kind: Singular word for messages: ``behavior``.
+        package: Package whose modules are the built-in features, one module per name.
+        group: Entry-point group of third-party features.
+    """
+
+    def __init__(self, kind: str, package: str, group: str) -> None:
+        self.kind, self.package, self.group = kind, package, group
+        self._features: dict[str, Feature] = {}
+        self._plugins: dict[str, Any] | None = None
+
+    def register(
+        self,
+        options: type[BaseModel],
+        *,
+        name: str | None = None,
+        kernel: type[Any] | None = None,
+        function: Callable[..., Any] | None = None,
+    ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+        """Register an options model under ``name``, by default the default of its ``name`` field.
+
+        With neither ``kernel`` nor ``function`` the feature is part of the language but not simulated; the returned
+        decorator then adds the Python function that computes it.
+
+        Raises:
+            ValueError: The name is taken by another model.
+        """
+        name = str(options.model_fields["name"].default) if name is None else name
+        known = self._features.get(name)
+        if known is not None and known.options is not options:
+            raise ValueError(f"{self.kind} {name!r} is already registered by {known.options.__module__}")
+        module = options.__module__
+        origin = "built-in" if module.startswith("irsim.") else module
+        self._features[name] = Feature(name, options, kernel, function, origin)
+
+        def add(computed_by: Callable[..., Any]) -> Callable[..., Any]:
+            self._features[name] = replace(self._features[name], function=computed_by)
+            return computed_by
+
+        return add
+
+    def replace(self, options: type[BaseModel], name: str, function: Callable[..., Any]) -> None:
+        """Register what user code defines, also over an earlier definition of its own.
+
+        Raises:
+            ValueError: The name is that of a built-in feature.
+        """
+        known = self.get(name)
+        if known is not None and known.origin == "built-in":
+            raise ValueError(f"{name!r} is a built-in {self.kind}; give yours another name")
+        self._features[name] = Feature(name, options, None, function, options.__module__)
+
+    def names(self) -> list[str]:
+        """All names, sorted: built-in, registered, and offered by installed plug-ins."""
+        return sorted({*self.installed(), *self._features})
+
+    def installed(self) -> list[str]:
+        """Names that are there in every process, sorted: built-in and offered by installed plug-ins."""
+        builtin = (
+            info.name
+            for info in pkgutil.iter_modules(importlib.import_module(self.package).__path__)
+            if not info.name.startswith("_")
+        )
+        return sorted({*builtin, *self._plugin_entries()})
+
+    def get(self, name: str) -> Feature | None:
+        """The feature, imported on first use; None when there is none of that name."""
+        if name in self._features:
+            return self._features[name]
+        if name.isidentifier() and not name.startswith("_"):
+            module = f"{self.package}.{name}"
+            try:
+                importlib.import_module(module)
+            except ModuleNotFoundError as error:
+                if error.name != module:
+                    raise
+        if name not in self._features and name in self._plugin_entries():
+            self._plugin_entries()[name].load()
+        return self._features.get(name)
+
+    def features(self) -> list[Feature]:
+        """Every feature, sorted by name (imports all of them)."""
+        return [feature for name in self.names() if (feature := self.get(name)) is not None]
+
+    def _plugin_entries(self) -> dict[str, Any]:
+        if self._plugins is None:
+            from importlib.metadata import entry_points
+
+            self._plugins = {entry.name: entry for entry in entry_points(group=self.group)}
+        return self._plugins
+
+
+class CustomBehaviors:
+    """Behaviors that user code registered the 2.12 way: functions and classes by kinematics and name.
+
+    A class (or any factory) is called once per object, or per group, and returns what is then called in every step.
+    Classes win over functions, and both over the built-in behavior of that name.
+
+    Args:
+        kind: Singular word for messages: ``behavior``.
+        functions_taken: Pairs of kinematics and name that IR-SIM has as functions of its own.
+        classes_taken: Those that it has as classes.
+    """
+
+    def __init__(self, kind: str, functions_taken: Iterable[Pair] = (), classes_taken: Iterable[Pair] = ()) -> None:
+        self.kind = kind
+        self.functions: dict[Pair, Callable[..., Any]] = {}
+        self.classes: dict[Pair, Callable[..., Any]] = {}
+        self._taken = frozenset(functions_taken), frozenset(classes_taken)
+
+    def register(self, kinematics: str, name: str, function: Callable[..., Any]) -> None:
+        """Make ``function`` the behavior ``name`` of objects with these kinematics.
+
+        Raises:
+            ValueError: There is one of that name, built-in or registered before.
+        """
+        self._add(self.functions, self._taken[0], (kinematics, name), function)
+
+    def register_class(self, kinematics: str, name: str, maker: Callable[..., Any]) -> None:
+        """The same for a class or another factory.
+
+        Raises:
+            ValueError: There is one of that name.
+        """
+        self._add(self.classes, self._taken[1], (kinematics, name), maker)
+
+    def _add(self, table: dict[Pair, Callable[..., Any]], taken: frozenset[Pair], key: Pair, value: Any) -> None:
+        if key in taken:
+            raise ValueError(f"{key[1]!r} is a built-in {self.kind} of {key[0]!r}; register yours under another name")
+        if table.get(key, value) is not value:
+            raise ValueError(f"{self.kind} {key[1]!r} is already registered for {key[0]!r}")
+        table[key] = value
+
+    def function(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
+        """The function registered by user code, or None."""
+        key = (kinematics or "static", name)
+        found = self.functions.get(key)
+        if (
+            found is None
+            or key in self._taken[1]
+            or getattr(found, "__module__", "").startswith("irsim.objects.handlers.")
+        ):
+            return None
+        return found
+
+    def maker(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
+        """The class or factory registered by user code, or None."""
+        found = self.classes.get((kinematics or "static", name))
+        return None if getattr(found, "__module__", "").startswith("irsim.objects.handlers.") else found
+
+    def has(self, kinematics: str | None, name: str) -> bool:
+        """Whether user code has registered anything for this kinematics and name."""
+        return self.maker(kinematics, name) is not None or self.function(kinematics, name) is not None
+
+    def _pairs(self) -> set[Pair]:
+        return {pair for pair in {*self.functions, *self.classes} if self.has(*pair)}
+
+    def names(self, kinematics: str | None = None) -> list[str]:
+        """Names registered for these kinematics, sorted; for any kinematics without an argument."""
+        return sorted({name for drive, name in self._pairs() if kinematics in (None, drive)})
+
+    def drives(self, name: str) -> list[str]:
+        """Kinematics that have a behavior of that name, sorted."""
+        return sorted(drive for drive, known in self._pairs() if known == name)
+
+
+BEHAVIORS = Registry("behavior", "irsim.components.behaviors", "irsim.behaviors")
+DISTRIBUTIONS = Registry("distribution", "irsim.components.distributions", "irsim.distributions")
+KINEMATICS = Registry("kinematics", "irsim.components.kinematics", "irsim.kinematics")
+MAPS = Registry("map", "irsim.components.maps", "irsim.maps")
+PLANNERS = Registry("planner", "irsim.components.planners", "irsim.planners")
+SENSORS = Registry("sensor", "irsim.components.sensors", "irsim.sensors")
+SHAPES = Registry("shape", "irsim.components.shapes", "irsim.shapes")
+
+CUSTOM_BEHAVIORS = CustomBehaviors(
+    "behavior",
+    functions_taken=[
+        *((drive, name) for drive in ("diff", "omni") for name in ("dash", "rvo", "sfm")),
+        ("omni_angular", "dash"),
+        ("acker", "dash"),
+    ],
+)
+CUSTOM_GROUP_BEHAVIORS = CustomBehaviors(
+    "group behavior", classes_taken=[(drive, name) for drive in ("diff", "omni") for name in ("orca", "sfm")]
+)
+
+REGISTRIES = {
+    registry.kind: registry for registry in (BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES)
+}

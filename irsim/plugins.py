@@ -1,0 +1,92 @@
+"""The door for authors of plug-ins: everything that a component outside irsim needs, from one module.
+
+```python
+from irsim.plugins import SENSORS, Meters, SensorOptions
+```
+
+An installed package offers its component through an entry point of the group ``irsim.<kind>``, such as
+``irsim.sensors``. The names below stay where they are when the rest of irsim is rearranged.
+"""
+
+from __future__ import annotations
+
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.distributions._options import DistributionOptions
+from irsim.components.kinematics._handler import KinematicsHandler, register_kinematics
+from irsim.components.kinematics._options import KinematicsOptions
+from irsim.components.maps._options import MapOptions
+from irsim.components.planners._options import PlannerOptions
+from irsim.components.sensors._options import SensorOptions
+from irsim.components.shapes._options import ShapeOptions
+from irsim.objects.handlers.registration import (
+    register_behavior,
+    register_behavior_class,
+    register_group_behavior,
+    register_group_behavior_class,
+)
+from irsim.options.base import Options
+from irsim.options.registry import BEHAVIORS, DISTRIBUTIONS, KINEMATICS, MAPS, PLANNERS, SENSORS, SHAPES
+from irsim.options.units import (
+    Bool,
+    Count,
+    Degrees,
+    Fraction,
+    Hertz,
+    Integer,
+    Kilograms,
+    Meters,
+    MetersPerSecond,
+    MetersPerSecondSquared,
+    Number,
+    Pixels,
+    Points,
+    Radians,
+    RadiansPerSecond,
+    Seconds,
+    unit,
+)
+from irsim.options.vectors import Point, Pose, vector
+
+__all__ = [
+    "BEHAVIORS",
+    "DISTRIBUTIONS",
+    "KINEMATICS",
+    "MAPS",
+    "PLANNERS",
+    "SENSORS",
+    "SHAPES",
+    "BehaviorOptions",
+    "Bool",
+    "Count",
+    "Degrees",
+    "DistributionOptions",
+    "Fraction",
+    "Hertz",
+    "Integer",
+    "Kilograms",
+    "KinematicsHandler",
+    "KinematicsOptions",
+    "MapOptions",
+    "Meters",
+    "MetersPerSecond",
+    "MetersPerSecondSquared",
+    "Number",
+    "Options",
+    "Pixels",
+    "PlannerOptions",
+    "Point",
+    "Points",
+    "Pose",
+    "Radians",
+    "RadiansPerSecond",
+    "Seconds",
+    "SensorOptions",
+    "ShapeOptions",
+    "register_behavior",
+    "register_behavior_class",
+    "register_group_behavior",
+    "register_group_behavior_class",
+    "register_kinematics",
+    "unit",
+    "vector",
+]

@@ -1,1 +1,0 @@
-"""Pictures that a scenario's `description` may name; drawn by ``python -m irsim.render.images``."""

@@ -1,0 +1,84 @@
+"""The picture of an environment in three dimensions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+
+from irsim.graphics.figure.figure3d import SceneFigure3D
+from irsim.graphics.figure.overlay import Overlay, coordinates
+from irsim.rendering.env_plot import EnvPlot
+
+__all__ = ["EnvPlot3D"]
+
+_ARROW = 6
+
+
+class _Overlay3D(Overlay):
+    """Drawings of a script in space: points and paths of three rows (two lie on the ground), arrows of six numbers."""
+
+    def trajectory(self, ax: Any, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
+        """A path through ``traj``."""
+        refresh = kwargs.pop("refresh", False)
+        direction = kwargs.pop("show_direction", False)
+        rows = _in_space(traj, flat=True)
+        kwargs = self._with_color(traj_type, {"label": "trajectory", **kwargs}, self.palette.path)
+        artists: list[Artist] = list(ax.plot(*rows, traj_type, **kwargs))
+        if direction:
+            heading = coordinates(traj, least=3)[2]
+            artists.append(ax.quiver(*rows, np.cos(heading), np.sin(heading), 0 * heading, length=0.4))
+        self._keep(artists, refresh)
+
+    def points(self, ax: Any, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
+        """Dots at (3, N) or (2, N) points."""
+        rows = _in_space(points) if points is not None else np.empty((3, 0))
+        if rows.shape[1]:
+            self._keep([ax.scatter(*rows, s=s, c=self.palette.marker if c is None else c, **kwargs)], refresh)
+
+    def box(self, ax: Any, vertices: Any, refresh: bool = False, color: str = "-") -> None:
+        """A closed outline."""
+        rows = _in_space(vertices)
+        closed = np.concatenate([rows, rows[:, :1]], axis=1)
+        self._keep(list(ax.plot(*closed, color, **self._with_color(color, {}, self.palette.path))), refresh)
+
+    def quivers(self, ax: Any, arrows: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
+        """Arrows (x, y, z, u, v, w)."""
+        if arrows is None:
+            return
+        rows = np.array([np.asarray(arrow, dtype=float).reshape(-1) for arrow in arrows])
+        if rows.size and rows.shape[1] != _ARROW:
+            raise ValueError(f"an arrow in space has {_ARROW} numbers (x, y, z, u, v, w), not {rows.shape[1]}")
+        if rows.size:
+            self._keep([ax.quiver(*rows.T, color=self.palette.quiver if color is None else color, **kwargs)], refresh)
+
+
+class EnvPlot3D(EnvPlot):
+    """Draws one environment in space; see :class:`irsim.rendering.env_plot.EnvPlot`. Grid maps and fog are not drawn.
+
+    Args:
+        env: What to draw.
+        depth: Extent along z [m].
+        **kwargs: Those of ``EnvPlot``.
+    """
+
+    def __init__(self, env: Any, *, depth: float, **kwargs: Any) -> None:
+        self._depth = depth
+        super().__init__(env, **kwargs)
+        self._overlay = _Overlay3D(self.palette)
+
+    def _has_picture(self, name: str) -> bool:
+        return False
+
+    def _new_figure(self, figure: Figure | None) -> Any:
+        axis = not self._options.no_axis
+        return SceneFigure3D(self._size, self._dpi, depth=self._depth, axis=axis, figure=figure)
+
+
+def _in_space(points: Any, *, flat: bool = False) -> Any:
+    """(3, N); ``flat`` puts everything on the ground, where the third row is a heading."""
+    rows = coordinates(points, least=2)
+    third = np.zeros(rows.shape[1]) if flat or rows.shape[0] < 3 else rows[2]
+    return np.vstack([rows[:2], third])

@@ -1,0 +1,136 @@
+"""The animation of an environment: frames kept while it runs, written when it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from irsim.graphics.encoding.animation import AnimationOptions, FrameBuffer, check_suffix
+from irsim.graphics.encoding.picture_files import replacing
+from irsim.graphics.encoding.pixels import Pixels
+from irsim.graphics.encoding.png import png_bytes
+from irsim.graphics.encoding.video import VIDEO_OPTIONS
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["Pictured", "Recording"]
+
+_PLACE = ("ani_name", "suffix", "rm_fig_path")
+
+
+class Pictured(Protocol):
+    """What drawing reads of an environment.
+
+    ``path_param`` has the folders ``fig_path``, ``ani_path`` and ``ani_buffer_path``; ``logger`` has ``info`` and
+    ``warning``; ``ani_kwargs`` are the defaults of the animation.
+    """
+
+    path_param: Any
+    logger: Any
+    ani_kwargs: dict[str, Any]
+
+    @property
+    def simulation(self) -> Simulation:
+        """State and scenario."""
+
+    @property
+    def status(self) -> str:
+        """Word for the title."""
+
+
+class Recording:
+    """Frames of one environment; it shares them with no other.
+
+    Attributes:
+        crop: Box (left, top, right, bottom) that all frames are cut to [px], once there is one.
+        frames_written: Frames of the animation saved last.
+    """
+
+    def __init__(self, env: Pictured) -> None:
+        self.env = env
+        self.crop: tuple[int, int, int, int] | None = None
+        self.frames_written = 0
+        self._buffer: FrameBuffer | None = None
+
+    @property
+    def last_count(self) -> int | None:
+        """Step number of the frame kept last."""
+        return self._buffer.counts[-1] if self._buffer is not None and self._buffer.counts else None
+
+    def add(self, pixels: Pixels, colors: Callable[[], list[tuple[int, int, int]]]) -> None:
+        """Keep a frame.
+
+        Args:
+            pixels: The frame.
+            colors: Tells the (r, g, b) that must come out exactly in a GIF; asked for the first frame.
+        """
+        if self._buffer is None:
+            defaults = self.env.ani_kwargs
+            indexed = str(defaults.get("suffix", ".gif")).lower() == ".gif" and bool(defaults.get("rm_fig_path", True))
+            play, _ = _animation_options(defaults)
+            self._buffer = FrameBuffer(play, indexed=indexed, colors=colors())
+        self._buffer.add(pixels, int(self.env.simulation.count[0]))
+
+    def save(
+        self,
+        path: str | Path | None = None,
+        *,
+        ani_name: str | None = None,
+        suffix: str = ".gif",
+        rm_fig_path: bool = True,
+        **options: Any,
+    ) -> Path | None:
+        """Write the animation and forget the frames.
+
+        Args:
+            path: File to write; default ``<ani_path>/<ani_name><suffix>``.
+            ani_name: Default ``animation_<world>``.
+            suffix: ``.gif``, ``.apng``, ``.png`` or a video's: ``.mp4``, ``.webm``, …
+            rm_fig_path: Unless set to False, no single frames are left behind; else they are in ``ani_buffer_path``.
+            **options: ``fps`` (10), ``last_frame_duration`` (1 s), ``loop`` (0: for ever), and the video encoder's.
+
+        Returns:
+            The file; None, with a warning, when there are no frames.
+
+        Raises:
+            ValueError: A suffix that nothing writes.
+            RuntimeError: The video encoder failed.
+        """
+        paths, name = self.env.path_param, self.env.simulation.scenario.name
+        if path is None:
+            path = Path(paths.ani_path) / f"{ani_name or f'animation_{name}'}{suffix}"
+        path = Path(path)
+        check_suffix(path.suffix)
+        play, unknown = _animation_options(options)
+        if unknown:
+            self.env.logger.warning(f"unknown options of the animation are ignored: {', '.join(unknown)}")
+        buffer = self._buffer
+        if buffer is None or not buffer.frames:
+            self.env.logger.warning("no frames were kept: there is no animation to save")
+            return None
+        buffer.save(path, play)
+        if not rm_fig_path:
+            for count, pixels in zip(buffer.counts, buffer.read(), strict=True):
+                with replacing(Path(paths.ani_buffer_path) / f"{name}_{count:04d}.png") as temporary:
+                    temporary.write_bytes(png_bytes(pixels))
+        self.frames_written = buffer.frames
+        self.forget()
+        self.env.logger.info(f"animation saved: {path}")
+        return path
+
+    def forget(self) -> None:
+        """Drop the frames."""
+        if self._buffer is not None:
+            self._buffer.close()
+        self._buffer = None
+        self.crop = None
+
+
+def _animation_options(options: Mapping[str, Any]) -> tuple[AnimationOptions, list[str]]:
+    """Options of an animation, and the names among them that mean nothing."""
+    known = {key: options[key] for key in ("fps", "last_frame_duration", "loop") if options.get(key) is not None}
+    video = {key: options[key] for key in VIDEO_OPTIONS if key in options}
+    unknown = [key for key in options if key not in known and key not in video and key not in _PLACE]
+    return AnimationOptions(**known, video=video), unknown

@@ -1,0 +1,1 @@
+"""Typed results of every command: what the CLI prints and ``--json`` dumps."""

@@ -1,0 +1,241 @@
+"""What the page needs of a run, as one block of bytes."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections import Counter
+from collections.abc import Container
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.text import clean
+from irsim.env import Env
+from irsim.runs.files import RunError
+from irsim.runs.reading import Run
+from irsim.runs.replay.columns import Columns, changes, folded, quantised
+from irsim.runs.replay.drawing import drawn_grid, drawn_objects
+from irsim.runs.resimulation import scenario_of
+from irsim.scenario.limits import Limits
+from irsim.simulation.events import Event
+from irsim.simulation.trace import Trace
+
+__all__ = ["Packed", "pack_run"]
+
+FORMAT = 1
+_MOST_POSES = 2_000_000
+"""Rows times moving objects; runs beyond that show every so many-th step."""
+_MOST_EVENTS = 4000
+_RANKS = {"collision": 0, "no_path": 1, "arrival": 2, "waypoint": 3}
+_MOST_RANGES = 2_000_000
+_MOST_SCAN_BYTES = 700_000
+"""Recorded scans are shown as long as they take no more than this; others the page computes."""
+_TURN_QUANTUM = 2.0**-11
+"""Of headings [rad]."""
+_FINEST, _COARSEST = -13, -4
+"""Powers of two: of positions [m]."""
+_RANGE_STEPS = 4000
+"""Parts of the longest range of a sensor."""
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A run for the page.
+
+    Attributes:
+        data: Compressed; what it looks like inside tells :class:`irsim.runs.replay.columns.Columns`.
+        head: The part that is plain data.
+    """
+
+    data: bytes
+    head: dict[str, Any]
+
+
+def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
+    """Read a run and the shapes of its objects.
+
+    Args:
+        run: Recorded; one that was cut short is shown as far as it was kept.
+        limits: Of the reader of its scenario.
+
+    Raises:
+        RunError: It cannot be read, or its scenario starts elsewhere now, because a map or irsim has changed.
+        ScenarioError: Its scenario cannot be used any more.
+    """
+    trace = run.trace()
+    env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
+    try:
+        start = env.simulation.pose
+        if trace.pose[0].shape != start.shape or not np.array_equal(trace.pose[0], start, equal_nan=True):
+            what = f"the scenario of run {run.id} starts at other poses now"
+            raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
+        shapes, objects, lidars = drawn_objects(env)
+        grid = drawn_grid(env)
+        world = env.simulation.scenario.world
+        title = env.simulation.scenario.name
+    finally:
+        env.end(ending_time=0.0)
+    columns = Columns()
+    x, y = (float(value) for value in world.offset)
+    width, height = float(world.width), float(world.height)
+    moved = np.not_equal(trace.pose, trace.pose[:1]).any(axis=(0, 2))
+    moving = np.flatnonzero(moved & ~np.isnan(trace.pose).all(axis=(0, 2)))
+    for number, row in enumerate(moving.tolist()):
+        objects[row]["track"] = number
+    rows, every = _rows(len(trace), len(moving))
+    quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _FINEST), _COARSEST)
+    columns.add("step", trace.step[rows], 2)
+    _add_poses(columns, trace.pose[np.ix_(rows, moving)], quantum)
+    travellers = np.array([item["role"] == "robot" or "track" in item for item in objects], dtype=bool)
+    _add_goals(columns, np.where(travellers[:, None], trace.goal[rows], np.nan), quantum)
+    _add_flags(columns, trace, rows)
+    scans = _add_scans(columns, trace, rows, lidars)
+    if grid is not None:
+        columns.add("cells", grid.pop("runs"))
+    head = {
+        "format": FORMAT,
+        "run_id": run.id,
+        "title": run.id if run.meta.get("scenario") is None else clean(title),
+        "status": run.status,
+        **_ending(run),
+        "seed": int(run.meta["seed"]),
+        "irsim": clean(run.meta.get("irsim", "")),
+        "notes": run.notes,
+        "step_time": trace.step_time,
+        "last_step": int(trace.step[-1]),
+        "every": every,
+        "world": [x, x + width, y, y + height],
+        "quanta": [quantum, _TURN_QUANTUM],
+        "shapes": shapes,
+        "objects": objects,
+        "lidars": lidars,
+        "scans": scans,
+        "grid": grid,
+        **_events(run, trace, objects),
+    }
+    return Packed(columns.block(head), head)
+
+
+def _rows(count: int, moving: int) -> tuple[NDArray[np.int64], int]:
+    """Rows of the trace that are shown, the last one always among them, and how many steps apart they are."""
+    every = max(1, math.ceil(count * max(1, moving) / _MOST_POSES))
+    rows = np.arange(0, count, every)
+    return (rows if rows[-1] == count - 1 else np.append(rows, count - 1)), every
+
+
+def _add_poses(columns: Columns, poses: NDArray[np.float64], quantum: float) -> None:
+    """``x``, ``y``, ``heading`` (moving objects, rows); headings go on beyond a full turn."""
+    columns.add("x", quantised(poses[:, :, 0].T, quantum), 2)
+    columns.add("y", quantised(poses[:, :, 1].T, quantum), 2)
+    headings = np.nan_to_num(poses[:, :, 2].T, posinf=0.0, neginf=0.0)
+    columns.add("heading", quantised(np.unwrap(headings, axis=1), _TURN_QUANTUM), 2)
+
+
+def _add_goals(columns: Columns, goal: NDArray[np.float64], quantum: float) -> None:
+    """``goal_row``, ``goal_object``, ``goal_set``, ``goal_x``, ``goal_y``, ``goal_heading``: from that row on."""
+    row, of = changes([goal[:, :, axis] for axis in range(3)])
+    values = goal[row, of]
+    there: NDArray[np.bool_] = np.isfinite(values[:, 0]) & np.isfinite(values[:, 1])
+    keep = there | (row > 0)
+    columns.add("goal_row", row[keep], 1)
+    columns.add("goal_object", of[keep], 1)
+    columns.add("goal_set", there[keep])
+    for axis, name in enumerate(("goal_x", "goal_y")):
+        columns.add(name, quantised(values[keep, axis], quantum), 1)
+    columns.add("goal_heading", quantised(values[keep, 2], _TURN_QUANTUM), 1)
+
+
+def _add_flags(columns: Columns, trace: Trace, rows: NDArray[np.int64]) -> None:
+    """``flag_row``, ``flag_object``, ``flags``: 1 arrived, 2 collided, 4 stopped, from that row on."""
+    flags = np.zeros((len(rows), len(trace.names)), dtype=np.int32)
+    for bit, told in ((1, trace.arrived), (2, trace.collided), (4, trace.stopped)):
+        flags[told[rows]] |= bit
+    row, of = changes([flags])
+    keep = (flags[row, of] != 0) | (row > 0)
+    columns.add("flag_row", row[keep], 1)
+    columns.add("flag_object", of[keep], 1)
+    columns.add("flags", flags[row, of][keep])
+
+
+def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: list[dict[str, Any]]) -> str:
+    """``scan0``, … (beams, rows) of recorded ranges; a number above :data:`_RANGE_STEPS` means that nothing was hit.
+
+    Returns:
+        ``none``, ``recorded`` or ``computed``: what the page shows of some or all of them.
+    """
+    if not lidars:
+        return "none"
+    keys = [lidar.pop("key") for lidar in lidars]
+    known = [block if block is not None and len(block) == len(trace) else None for block in map(trace.ranges.get, keys)]
+    if sum(0 if block is None else block.shape[1] * len(rows) for block in known) > _MOST_RANGES:
+        return "computed"
+    room, scans = _MOST_SCAN_BYTES, "recorded"
+    for number, (lidar, block) in enumerate(zip(lidars, known, strict=True)):
+        if block is None or block.shape[1] != lidar["beams"]:
+            scans = "computed"
+            continue
+        quantum = lidar["range_max"] / _RANGE_STEPS
+        parts = np.where(np.isfinite(block[rows]), block[rows] / quantum, _RANGE_STEPS + 1)
+        values = np.clip(np.rint(parts), 0, _RANGE_STEPS + 1).astype(np.int32).T
+        room -= len(zlib.compress(folded(values, 1), 1))
+        if room < 0:
+            return "computed"
+        columns.add(f"scan{number}", values, 1)
+        lidar["scan"] = f"scan{number}"
+        lidar["quantum"] = quantum
+    return scans
+
+
+def _ending(run: Run) -> dict[str, Any]:
+    result = run.result
+    if result is None:
+        return {"outcome": None, "summary": f"This run is {run.status}.", "reason": None}
+    reason = None if result.reason is None else clean(result.reason, 2000)
+    return {"outcome": result.outcome, "summary": clean(result.summary, 1000), "reason": reason}
+
+
+def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
+    """[step, kind, object, partner or -1, x, y] each, and how many of each kind are left out if there are too many."""
+    number = {name: row for row, name in enumerate(trace.names)}
+    last = int(trace.step[-1])
+    events = [event for event in run.events if event.step <= last and event.object in number]
+    count = len(events)
+    left = Counter(event.kind for event in events)
+    events = _most_important(events, {trace.names[k] for k, item in enumerate(objects) if item["role"] == "robot"})
+    left.subtract(event.kind for event in events)
+    told = [
+        [
+            event.step,
+            event.kind,
+            number[event.object],
+            number.get(event.partner, -1) if event.partner is not None else -1,
+            _number(event.x),
+            _number(event.y),
+        ]
+        for event in events
+    ]
+    return {"events": told, "event_count": count, "left_out": {kind: most for kind, most in left.items() if most}}
+
+
+def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
+    """As many as are shown: collisions of robots before others, then what concerns nobody else, waypoints last.
+
+    Those of a rank that do not all fit are thinned evenly.
+    """
+    ranks: dict[tuple[int, bool], list[int]] = {}
+    for place, event in enumerate(events):
+        others = event.object not in robots and (event.partner is None or event.partner not in robots)
+        ranks.setdefault((_RANKS.get(event.kind, len(_RANKS)), others), []).append(place)
+    chosen = list[int]()
+    for rank in sorted(ranks):
+        places = ranks[rank]
+        room = min(len(places), _MOST_EVENTS - len(chosen))
+        chosen += [places[k] for k in np.linspace(0, len(places) - 1, room).round().astype(int)]
+    return [events[place] for place in sorted(chosen)]
+
+
+def _number(value: float) -> float:
+    return round(value, 3) if math.isfinite(value) else 0.0

@@ -1,0 +1,60 @@
+"""``irsim.replay``: write the page of a recorded run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from irsim.common.files import check_suffix, write_atomically
+from irsim.common.text import clean
+from irsim.results.results import ReplayResult
+from irsim.runs.files import RunError
+from irsim.runs.reading import Run, open_run
+from irsim.runs.replay.data import pack_run
+from irsim.runs.replay.page import page
+from irsim.scenario.limits import Limits
+
+__all__ = ["replay"]
+
+SUFFIXES = (".html", ".htm")
+
+
+def replay(
+    run: str | Path | Run,
+    out: str | Path | None = None,
+    *,
+    workspace: str | Path | None = None,
+    limits: Limits | None = None,
+) -> ReplayResult:
+    """Write a recorded run as one HTML page: play, scrub, follow a robot, in any browser, without a network.
+
+    Args:
+        run: Its id, its folder, or ``last``.
+        out: File to write; by default ``<id>.html`` in the current directory. One that exists is replaced.
+        workspace: Folder whose ``.irsim/runs`` holds the run; the current directory by default.
+        limits: Limits of the reader of its scenario.
+
+    Raises:
+        RunError: There is no such run, it cannot be read, or the file cannot be written.
+        TargetError: The file has another suffix.
+        ScenarioError: The scenario of the run can't be used any more.
+    """
+    opened = run if isinstance(run, Run) else open_run(run, workspace)
+    target = Path(f"{opened.id}.html") if out is None else Path(out)
+    check_suffix(target, SUFFIXES)
+    packed = pack_run(opened, limits=limits)
+    text = page(packed.data, title=f"{clean(packed.head['title'])} · irsim replay")
+    try:
+        write_atomically(target, text)
+    except OSError as error:
+        what = f"'{target}' cannot be written: {error.strerror or error}"
+        raise RunError("file-access", what, "name another file with -o") from None
+    return ReplayResult(
+        run_id=opened.id,
+        file=str(target),
+        bytes=len(text.encode()),
+        objects=len(packed.head["objects"]),
+        last_step=packed.head["last_step"],
+        every=packed.head["every"],
+        scans=packed.head["scans"],
+        notes=packed.head["notes"],
+    )

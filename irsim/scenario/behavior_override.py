@@ -1,0 +1,185 @@
+"""One scenario under one behavior: the scenario as written, or with another behavior for every robot."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from irsim.common.arguments import as_given
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
+from irsim.diagnostics.errors import IrsimError
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.scenario.open import or_raise
+from irsim.scenario.read import read
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.scenario.yaml.document import Document
+from irsim.scenario.yaml.rewrite import yaml_flow
+
+__all__ = [
+    "AS_WRITTEN",
+    "BenchmarkError",
+    "behavior_of",
+    "check_known",
+    "read_with_behavior",
+    "text_of",
+    "with_behavior",
+]
+
+AS_WRITTEN = "as-written"
+"""Stands for the behaviors that the scenario itself gives its robots."""
+_FIX = "give a name such as orca, or {name: orca, timeHorizon: 5}, or as-written for the scenario's own"
+_KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
+"""What a robot is to do, whatever decides how: kept when its behavior is replaced."""
+
+
+class BenchmarkError(IrsimError, ValueError):
+    """A benchmark, or an episode with another behavior, that cannot be run as asked.
+
+    Attributes:
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
+        message: What is wrong.
+        fix: What to ask for instead.
+        where: Which argument it is about; None if there may be several.
+    """
+
+    code = "bad-argument"
+
+    def __init__(self, message: str, fix: str, where: str | None = None) -> None:
+        self.message, self.fix, self.where = message, fix, where
+        super().__init__(f"{self.code}: {message}. Fix: {fix}{'' if fix.endswith('?') else '.'}")
+
+
+def behavior_of(text: str) -> dict[str, Any] | None:
+    """What a behavior given as text stands for.
+
+    Args:
+        text: A name (``orca``), a name with options in YAML (``{name: orca, timeHorizon: 5}``), or ``as-written``.
+
+    Returns:
+        The mapping to write under ``behavior``; None for ``as-written``.
+
+    Raises:
+        BenchmarkError: It is neither.
+    """
+    text = text.strip()
+    if text == AS_WRITTEN:
+        return None
+    if not text.startswith("{"):
+        if not text or any(character in text for character in " :{}[],"):
+            raise BenchmarkError(f"{text!r} is no behavior", _FIX)
+        return {"name": text}
+    from irsim.scenario.yaml.document import load_text
+
+    document = load_text(text)
+    if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
+        raise BenchmarkError(f"{text!r} is no behavior", _FIX)
+    return dict(document.data)
+
+
+def text_of(behavior: str | Mapping[str, Any]) -> str:
+    """A behavior as a command line has it.
+
+    Raises:
+        BenchmarkError: It is neither text nor a mapping.
+    """
+    if isinstance(behavior, str):
+        return behavior.strip()
+    if isinstance(behavior, Mapping):
+        return yaml_flow(behavior)
+    raise BenchmarkError(f"{as_given(behavior)} is no behavior", _FIX)
+
+
+def check_known(behavior: str) -> None:
+    """Refuse a behavior that nobody has.
+
+    Raises:
+        BenchmarkError: There is none of that name.
+    """
+    known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
+    name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
+    if name not in known:
+        near = nearest(name, known)
+        fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
+        raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
+
+
+def with_behavior(document: Document, behavior: Mapping[str, Any] | None, *, strict: bool) -> ResolvedScenario:
+    """The scenario in which every robot that can move follows one behavior, see :func:`read_with_behavior`."""
+    return read_with_behavior(document, behavior, strict=strict)[0]
+
+
+def read_with_behavior(
+    document: Document, behavior: Mapping[str, Any] | None, *, strict: bool
+) -> tuple[ResolvedScenario, list[Diagnostic]]:
+    """The scenario in which every robot that can move follows one behavior, on its own.
+
+    Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``). All other
+    options are those given, or defaults: also of robots that have the behavior already, with other ones.
+
+    Args:
+        document: As written.
+        behavior: What to write under ``behavior`` of every robot; None leaves everything as it is.
+        strict: Refuse what IR-SIM would ignore.
+
+    Returns:
+        The scenario, and warnings and hints about it.
+
+    Raises:
+        ScenarioError: It cannot be used.
+        BenchmarkError: The behavior has an option that does not exist, or cannot be what it is, or cannot drive a robot
+            of this scenario.
+    """
+    if behavior is None or not isinstance(document.data, Mapping):
+        return or_raise(read(document, strict=strict, limits=document.limits))
+    data = copy.deepcopy(dict(document.data))
+    entries = data.get("robot")
+    for entry in entries if isinstance(entries, list) else [entries]:
+        if isinstance(entry, dict) and entry.get("kinematics") is not None:
+            _give(entry, behavior)
+    changed = read(replace(document, data=data, text=None, _root=None), strict=strict, limits=document.limits)
+    for item in changed.diagnostics:
+        _blame(item, behavior)
+    if changed.scenario is None:
+        or_raise(read(document, strict=strict, limits=document.limits))  # what it finds in the text has lines
+    return or_raise(changed)
+
+
+def _blame(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
+    """Raise what is found about the behavior that was given, which no file has: IR-SIM's leniency is not for it."""
+    owner = item.path.index("behavior") + 1 if item.path[:1] == ("robot",) and "behavior" in item.path else None
+    if owner is None:
+        return
+    keys = [part for part in item.path[owner:] if isinstance(part, str)]
+    wrong = item.severity == "error" or (item.tolerated and keys[:1] != ["name"])
+    if not wrong or (keys and keys[0] not in behavior):
+        return
+    place = format_path(item.path[:owner])
+    known = item.allowed if isinstance(item.allowed, str) else ", ".join(item.allowed or ())
+    fix = item.fix or (f"allowed is {known}" if known else "choose another behavior or other options")
+    named = f"{place}: " if keys[:1] in ([], ["name"]) else "" if keys[-1] in item.message else f"{'.'.join(keys)}: "
+    message = item.message.replace(f"'{place}'", f"behavior {behavior['name']}").replace(f"{place}.", "")
+    raise BenchmarkError(named + message.rstrip("."), fix.replace(f"{place}.", ""))
+
+
+def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
+    """Let the robots of an entry follow a behavior."""
+    own, group = entry.pop("behavior", None), entry.pop("group_behavior", None)
+    if isinstance(own, list):
+        entry["behavior"] = [_merged(one, group, behavior) for one in own]
+    else:
+        entry["behavior"] = _merged(own, group, behavior)
+
+
+def _merged(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
+    own, group = _mapping(own), _mapping(group)
+    kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
+    return {**kept, **behavior}
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    if isinstance(value, str):
+        return {"name": value}
+    return dict(value) if isinstance(value, Mapping) else {}

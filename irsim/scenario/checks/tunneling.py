@@ -1,0 +1,233 @@
+"""Steps that jump over walls: collisions are looked for after each step, not on the way."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import irsim._core as core
+from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.checks._context import Context
+from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.messages.findings import Finding, warning
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, segment_gap, thickness, top_speed
+from irsim.scenario.resolve.resolved import ObjectRecord
+
+Point = tuple[float, float]
+Segment = tuple[Point, Point]
+_PASSABLE = ("unobstructed", "reactive")
+_STRAYING = ("contact",)
+"""Modes of collision in which others push an object off its way."""
+_MOST_LEGS = 1000
+_TURNS = 2.0
+"""So many radii of the turning circle there is to be room for where the heading is to be found first."""
+_THINGS = {"map": "the map", "walls": "the walls round the world"}
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """One finding per entry: what is thinner than a step can be jumped over."""
+    world = context.scenario.world
+    if world.collision_mode in _PASSABLE:
+        return
+    dt, shapes = world.step_time, dict[int, _Shape]()
+    there = [
+        _Body(record, shapes.setdefault(id(record.shape), _Shape(record.shape)), top_speed(record))
+        for record in context.resolved.objects
+        if not record.unobstructed and has_fixed_shape(record.shape)
+    ]
+    fast = [
+        body
+        for body in there
+        if body.record.kinematics is not None
+        and 0 < body.speed < math.inf
+        and math.isfinite(body.shape.width)
+        and body.speed * dt > body.shape.width
+    ]
+    if not fast or len(there) < 2:
+        return
+    thin_first = sorted(there, key=lambda b: (b.shape.width, b.record.id))
+    drawn = {index for placement in context.resolved.placements for index in placement.objects}
+    told: set[Path] = set()
+    for one in fast:
+        own = 2 * one.shape.disc
+        if one.record.path in told or own == 0:  # a line moves along itself as well as across
+            continue
+        band = _band(context, one) if one.record.id not in drawn else None
+        found = None
+        for other in thin_first:
+            step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
+            if step <= own + other.shape.width and other.speed == 0:
+                break  # and all that follow are thicker, or slower
+            if other.record is one.record or step <= own + other.shape.width:
+                continue
+            if _may_meet(one, other, None if other.record.id in drawn else band, dt):
+                found = other, own + other.shape.width, step / dt
+                break
+        if found is not None:
+            told.add(one.record.path)
+            yield _told(context, one, *found)
+
+
+def _told(context: Context, one: _Body, other: _Body, least: float, speed: float) -> Finding:
+    dt = context.scenario.world.step_time
+    thing = _THINGS.get(other.record.shape.name, f"'{other.record.name}'")
+    together = "" if other.speed == 0 else f", and {thing} {other.speed * dt:.3g} m towards it"
+    longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
+    return warning(
+        "jumps-through",
+        context.entry_path(one.record, "vel_max") if context.given(one.record, "vel_max") else one.record.path,
+        f"'{one.record.name}' moves {one.speed * dt:.3g} m per step{together}: it can pass through {thing} "
+        f"({other.shape.width:.3g} m thick) without ever touching it",
+        given=one.record.vel_max,
+        fix=f"step_time: {min(longest, least / speed):.3g} or less, or a lower speed (limits are in m/s)",
+    )
+
+
+class _Shape:
+    """What is measured of a shape, once for all objects that have it [m]."""
+
+    def __init__(self, shape: Any) -> None:
+        self._shape = shape
+        self.width = thickness(shape)  # least extent
+
+    @cached_property
+    def parts(self) -> list[Any]:
+        return parts_of(self._shape)
+
+    @cached_property
+    def disc(self) -> float:
+        return inner_disc(self.parts)[2]
+
+    @cached_property
+    def reach(self) -> float:
+        return reach_of(self._shape)
+
+
+@dataclass(frozen=True)
+class _Body:
+    record: ObjectRecord
+    shape: _Shape
+    speed: float
+
+    @cached_property
+    def way(self) -> list[Segment]:
+        """Straight from its start to its goals."""
+        goals = [] if self.record.kinematics is None else self.record.goals
+        points = [(p[0], p[1]) for p in (self.record.state, *goals)]
+        if self.record.loop and len(points) > 1:
+            points.append(points[1] if len(points) > 2 else points[0])
+        return list(itertools.pairwise(points)) or [(points[0], points[0])]
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax of the way."""
+        x, y = zip(*(point for leg in self.way for point in leg), strict=True)
+        return min(x), min(y), max(x), max(y)
+
+
+@dataclass(frozen=True)
+class _Band:
+    """Where a dashing object can be.
+
+    Attributes:
+        far: No point of its body gets farther from the way [m].
+        parts: Where it can get, world frame: along the way, and round goals that it may hop over.
+    """
+
+    far: float
+    parts: Sequence[Any]
+
+
+def _may_meet(one: _Body, other: _Body, band: _Band | None, dt: float) -> bool:
+    """Whether they come near each other; anything may happen to who has no straight way."""
+    if other.speed > 0:
+        if one.record.behavior is None or other.record.behavior is None:
+            return False  # a program drives them: it knows
+        if not (_is_straight(one.record) and _is_straight(other.record)):
+            return True
+        return _are_near(one, other, one.shape.reach + other.shape.reach + (one.speed + other.speed) * dt)
+    if band is None:
+        return True
+    return _are_near(one, other, band.far + other.shape.reach) and core.intersects(
+        band.parts, (0.0, 0.0, 0.0), other.shape.parts, other.record.state[:3]
+    )
+
+
+def _are_near(one: _Body, other: _Body, gap: float) -> bool:
+    """Whether the ways come so near to each other; who does not move has only a place."""
+    others = other.way if other.speed > 0 else [(other.way[0][0], other.way[0][0])]
+    a, b = one.box, other.box if other.speed > 0 else (*others[0][0], *others[0][0])
+    if a[0] - gap > b[2] or b[0] - gap > a[2] or a[1] - gap > b[3] or b[1] - gap > a[3]:
+        return False
+    return min(segment_gap(leg, way) for leg in one.way for way in others) <= gap
+
+
+def _band(context: Context, body: _Body) -> _Band | None:
+    """None for who may be anywhere."""
+    world, record = context.scenario.world, body.record
+    driven = record.group_behavior is not None or record.group in context.driven_groups
+    if min(map(len, (record.vel_min, record.vel_max, record.acce))) < 2:  # told of as too short
+        return None
+    if not _is_straight(record) or driven or world.collision_mode in _STRAYING or world.control_mode != "auto":
+        return None
+    way = body.way
+    if len(way) > _MOST_LEGS:
+        return None
+    heading = record.state[2] if len(record.state) > 2 else 0.0
+    off = 0.0
+    for start, end in way:
+        off = max(off, _off(record, heading, start, end))
+        heading = math.atan2(end[1] - start[1], end[0] - start[0])
+    step = body.speed * world.step_time
+    side = body.shape.reach + record.goal_threshold + off
+    far = side
+    if step > 2 * record.goal_threshold:  # it may hop over the goal, and turn round
+        far += step + (_turning(record) if getattr(record.kinematics, "name", "") in ("diff", "acker") else 0.0)
+    if not math.isfinite(far):
+        return None
+    parts: list[Any] = [core.Circle(radius=side, center=list(way[0][0]))]
+    for (ax, ay), (bx, by) in way:
+        length = math.hypot(bx - ax, by - ay)
+        parts.append(core.Circle(radius=far, center=[bx, by]))
+        if length > 0:
+            u, v = side * (bx - ax) / length, side * (by - ay) / length
+            corners = [[ax + v, ay - u], [bx + v, by - u], [bx - v, by + u], [ax - v, ay + u]]
+            parts.append(core.Polygon(vertices=corners))
+    return _Band(far, parts)
+
+
+def _off(record: ObjectRecord, heading: float, start: Point, end: Point) -> float:
+    """How far off the straight way ``dash`` may get [m]; infinity where it is not straight."""
+    drive, length = record.kinematics, math.dist(start, end)
+    if length == 0:
+        return 0.0
+    error = abs(math.remainder(math.atan2(end[1] - start[1], end[0] - start[0]) - heading, 2 * math.pi))
+    name, tolerance = getattr(drive, "name", ""), getattr(record.behavior, "angle_tolerance", 0.0)
+    if getattr(drive, "noise", False):
+        return math.inf
+    if name in ("omni", "omni_angular"):
+        speeds = {abs(speed) for speed in (*record.vel_min[:2], *record.vel_max[:2])}
+        return 0.0 if len(speeds) == 1 and record.acce[0] == record.acce[1] == math.inf else math.inf
+    if name not in ("diff", "acker"):
+        return math.inf
+    if name == "acker" and (error > tolerance or any(record.state[3:])):
+        return math.inf
+    if error <= tolerance:  # not corrected, until it has grown
+        return length * math.sin(min(error, math.pi / 2))
+    return _turning(record) + length * math.sin(min(tolerance, math.pi / 2))
+
+
+def _turning(record: ObjectRecord) -> float:
+    """Room to turn in at full speed [m]; infinity where it is unknown."""
+    rate = abs(record.vel_max[1])
+    if getattr(record.kinematics, "name", "") != "diff" or rate == 0 or record.acce[1] < math.inf:
+        return math.inf
+    return _TURNS * abs(record.vel_max[0]) / rate
+
+
+def _is_straight(record: ObjectRecord) -> bool:
+    return getattr(record.behavior, "name", "") == "dash" and not record.wander and bool(record.goals)

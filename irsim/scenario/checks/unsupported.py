@@ -1,0 +1,84 @@
+"""What the language has and this version does not compute yet: said before anything runs, never silently left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from irsim.components.behaviors._options import CustomOptions
+from irsim.diagnostics.diagnostic import Path
+from irsim.options.registry import (
+    BEHAVIORS,
+    CUSTOM_BEHAVIORS,
+    CUSTOM_GROUP_BEHAVIORS,
+    KINEMATICS,
+    MAPS,
+    SENSORS,
+    SHAPES,
+    Registry,
+)
+from irsim.scenario.checks._context import Context
+from irsim.scenario.messages.findings import Finding, error
+
+
+def check(context: Context) -> Iterator[Finding]:
+    """Features without a kernel, and modes that nothing implements."""
+    world = context.scenario.world
+    name = getattr(world.obstacle_map, "name", None)
+    if name is not None and not _computed(MAPS, name):
+        yield _not_yet(("world", "obstacle_map"), f"maps of the kind '{name}'")
+    seen: set[tuple[Any, ...]] = set()
+    for path, feature in _uses(context):
+        if (path, feature) not in seen:
+            seen.add((path, feature))
+            yield _not_yet(path, feature)
+
+
+def _uses(context: Context) -> Iterator[tuple[Path, str]]:
+    """Paths of features that are only part of the language."""
+    for record in context.written:
+        for key, registry in (("kinematics", KINEMATICS), ("shape", SHAPES)):
+            options: Any = getattr(record, key)
+            if options is not None and not _computed(registry, options.name):
+                yield (*context.entry_path(record, key), "name"), f"the {registry.kind} '{options.name}'"
+        for key, own in (("behavior", CUSTOM_BEHAVIORS), ("group_behavior", CUSTOM_GROUP_BEHAVIORS)):
+            options = getattr(record, key)
+            drive = getattr(record.kinematics, "name", None)
+            if options is None or drive is None or isinstance(options, CustomOptions) or own.has(drive, options.name):
+                continue
+            if not _computed(BEHAVIORS, options.name):
+                yield (*context.entry_path(record, key), "name"), f"the behavior '{options.name}'"
+            local: Any = getattr(options, "local", None)
+            if options.name == "follow" and not _native(local):
+                yield (*context.entry_path(record, key), "local"), f"following a path with '{local.name}'"
+        for index, sensor in enumerate(record.sensors):
+            name: str = getattr(sensor, "name", "")
+            if not _computed(SENSORS, name):
+                yield (*context.entry_path(record, "sensors"), index), f"the sensor '{name}'"
+        if record.shape.name == "compound":
+            yield from _posed_random_parts(context.entry_path(record, "shape"), record.shape)
+
+
+def _posed_random_parts(path: Path, shape: Any) -> Iterator[tuple[Path, str]]:
+    for index, part in enumerate(shape.parts):
+        if part.name == "polygon" and part.random_shape and any(part.pose):
+            yield (*path, "parts", index, "pose"), "a pose of a random part"
+
+
+def _computed(registry: Registry, name: str) -> bool:
+    feature = registry.get(name)
+    return feature is not None and feature.simulated
+
+
+def _native(options: Any) -> bool:
+    feature = BEHAVIORS.get(options.name)
+    return feature is not None and feature.kernel is not None
+
+
+def _not_yet(path: Path, what: str) -> Finding:
+    return error(
+        "not-yet-simulated",
+        path,
+        f"this version does not simulate {what} yet",
+        fix="keep it and tell the user, or try a labelled copy without it",
+    )

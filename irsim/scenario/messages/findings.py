@@ -1,0 +1,97 @@
+"""Findings while a scenario is read: a diagnostic, and what carrying on in spite of it means."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, Severity
+
+__all__ = ["Finding", "error", "hint", "place", "warning"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A diagnostic, and the edit under which IR-SIM 2.12 would carry on (its reaction, not the best repair)."""
+
+    diagnostic: Diagnostic
+    carry_on: Edit | None = None
+
+    @property
+    def blocking(self) -> bool:
+        """Whether a scenario with this finding cannot be used at all."""
+        return self.diagnostic.severity == "error" and not self.diagnostic.tolerated
+
+
+def place(path: Path) -> str:
+    """A path without indices, robots and obstacles alike: ``entry.sensors.noise``."""
+    words = [part for part in path if isinstance(part, str)]
+    if words and words[0] in ("robot", "obstacle"):
+        words[0] = "entry"
+    return ".".join(words)
+
+
+def error(
+    code: str,
+    path: Path,
+    message: str,
+    *,
+    given: Any = None,
+    allowed: Sequence[str] | str | None = None,
+    fix: str | None = None,
+    edit: Edit | None = None,
+    tolerated: bool = False,
+    carry_on: Edit | None = None,
+) -> Finding:
+    """An error; ``carry_on`` makes it one that 2.12 tolerates, ``tolerated`` one that needs no edit for that."""
+    return _finding(
+        "error", code, path, message, given, allowed, fix, edit, tolerated or carry_on is not None, carry_on
+    )
+
+
+def warning(
+    code: str,
+    path: Path,
+    message: str,
+    *,
+    given: Any = None,
+    allowed: Sequence[str] | str | None = None,
+    fix: str | None = None,
+    edit: Edit | None = None,
+) -> Finding:
+    """Something that runs, but is likely not what was meant."""
+    return _finding("warning", code, path, message, given, allowed, fix, edit, False, None)
+
+
+def hint(
+    code: str,
+    path: Path,
+    message: str,
+    *,
+    given: Any = None,
+    fix: str | None = None,
+    edit: Edit | None = None,
+) -> Finding:
+    """Something worth knowing."""
+    return _finding("hint", code, path, message, given, None, fix, edit, False, None)
+
+
+def _finding(
+    severity: Severity,
+    code: str,
+    path: Path,
+    message: str,
+    given: Any,
+    allowed: Sequence[str] | str | None,
+    fix: str | None,
+    edit: Edit | None,
+    tolerated: bool,
+    carry_on: Edit | None,
+) -> Finding:
+    return Finding(
+        Diagnostic(
+            code, severity, path, message, given=given, allowed=allowed, fix=fix, edit=edit, tolerated=tolerated
+        ),
+        carry_on,
+    )

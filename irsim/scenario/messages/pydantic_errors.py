@@ -1,0 +1,357 @@
+"""One error of pydantic in the words of the scenario language."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from irsim.diagnostics.codes import CODES
+from irsim.diagnostics.diagnostic import Edit, Path, format_path, nearest, surely
+from irsim.options.vectors import is_vector
+from irsim.scenario.messages.findings import Finding, error, place
+from irsim.scenario.messages.leniency import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
+from irsim.scenario.messages.number_text import decimal_commas, read_number
+from irsim.scenario.messages.points import places_in, waypoints_meant
+from irsim.scenario.messages.synonyms import instead_of, vector_of
+from irsim.scenario.model.lookup import at, field_at, lengths_of, literals, model_at, unit_of
+from irsim.scenario.model.scenario import Scenario
+from irsim.scenario.yaml.document import Document
+from irsim.scenario.yaml.formatting import flow, number, shown
+
+__all__ = ["Explainer"]
+
+_EXPECTED = {
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "int_parsing": "a whole number",
+    "int_parsing_size": "a smaller number",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "string_type": "text",
+    "list_type": "a list",
+    "tuple_type": "a list",
+    "dict_type": "a mapping (key: value)",
+    "model_type": "a mapping (key: value)",
+    "model_attributes_type": "a mapping (key: value)",
+    "mapping_type": "a mapping (key: value)",
+}
+_NUMBERS = ("float_type", "float_parsing", "int_type", "int_from_float", "int_parsing")
+_BOOLEANS = {"1": True, "0": False, "yes": True, "no": False, "true": True, "false": False, "on": True, "off": False}
+_CONTROLS = ("entry.vel_min", "entry.vel_max", "entry.acce", "entry.velocity")
+_LARGE = 1e9
+_BOUNDS = {
+    "greater_than": ("gt", ">"),
+    "greater_than_equal": ("ge", "≥"),
+    "less_than": ("lt", "<"),
+    "less_than_equal": ("le", "≤"),
+}
+
+
+def _bounds_of(part: Any) -> dict[str, Any]:
+    """The bounds that a piece of field metadata holds."""
+    return {name: getattr(part, name, None) for name, _ in _BOUNDS.values()}
+
+
+class Explainer:
+    """Turns one error into a finding.
+
+    Args:
+        path: Where in the data.
+        item: The error as pydantic lists it.
+        data: What was validated.
+        document: Where it came from, to look at how values were written.
+    """
+
+    def __init__(self, path: Path, item: Any, data: Any, document: Document) -> None:
+        self.path, self.data, self.document = path, data, document
+        self.kind: str = item["type"]
+        self.value = item.get("input")
+        self.context: dict[str, Any] = item.get("ctx") or {}
+        self.message: str = item["msg"]
+        self.field = field_at(Scenario, path, data)
+
+    def finding(self) -> Finding:
+        """The finding."""
+        if self.kind in CODES:
+            return self._own()
+        if self.kind in ("extra_forbidden", "invalid_key"):
+            return self._unknown_key()
+        if self.kind == "missing":
+            key = self.path[-1]
+            return error("missing-key", self.path, f"'{key}' is missing", fix=f"add '{key}: ...' here")
+        if self.kind == "literal_error":
+            return self._choice()
+        if self.kind in _BOUNDS:
+            return self._bound()
+        if self.kind == "finite_number":
+            return self._not_finite()
+        if self.kind in ("too_short", "too_long"):
+            return self._length()
+        if self.kind in _EXPECTED:
+            return self._type()
+        return error("invalid-value", self.path, self.message.removeprefix("Value error, "), given=self.value)
+
+    def _own(self) -> Finding:
+        """Raised by the language's own validators: message, allowed and fix come with it."""
+        context = self.context
+        meant = context.get("replace")
+        sure = not isinstance(meant, str) or surely(self.value, meant)
+        edit = Edit("replace", self.path, meant, safe=sure) if meant is not None else None
+        carry_on = edit if context.get("tolerated") else self._carry_on()
+        if "tolerated_as" in context:
+            carry_on = Edit("replace", self.path, context["tolerated_as"])
+        if "rename" in context:
+            edit = Edit("rename", self.path, context["rename"])
+            carry_on = carry_on_group((*self.path[:-1], context["rename"]), self.data)
+        return error(
+            self.kind,
+            self.path,
+            context["message"],
+            given=self.value if not isinstance(self.value, Mapping) else None,
+            allowed=context.get("allowed"),
+            fix=context.get("fix"),
+            edit=edit,
+            carry_on=carry_on,
+        )
+
+    def _unknown_key(self) -> Finding:
+        key, parent = self.path[-1], self.path[:-1]
+        if self.kind == "invalid_key":  # a number or a YAML 1.1 boolean; the location has lost which
+            raw = next((k for k in at(self.data, parent) or () if not isinstance(k, str) and k == key), key)
+            key = str(raw)
+            self.path = (*parent, key)
+        model = model_at(Scenario, parent, self.data)
+        allowed = list(model.model_fields) if model is not None else []
+        meant = getattr(model, "also_called", {}).get(str(key).lower())
+        near = meant or nearest(key, allowed)
+        where = f"'{format_path(parent)}'" if parent else "a scenario"
+        written = at(self.data, parent)
+        other, like = (None, None) if meant else instead_of(self.path, self.data)
+        edit, fix = None, other
+        if (meant_number := self._after_comma(key, written)) is not None:
+            fix = f"a decimal comma? write {meant_number}"
+        elif like is not None:
+            edit = Edit("rename", self.path, like, safe=False)
+        elif other is None and near is not None and isinstance(written, Mapping) and near in written:
+            fix = f"'{near}' is what it is called, and stands there already: keep one of them"
+        elif other is None and near is not None:
+            fix, edit = f"rename it to '{near}'", Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
+        elif other is None:
+            fix, edit = "remove it", Edit("remove", self.path, safe=False)
+        return error(
+            "unknown-key",
+            self.path,
+            f"'{key}' is not a key of {where}",
+            given=key,
+            allowed=sorted(allowed),
+            fix=fix,
+            edit=edit,
+            carry_on=carry_on_unknown_key(self.path, written),
+        )
+
+    def _after_comma(self, key: Any, written: Any) -> str | None:
+        """What was meant by ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
+        keys = list(written) if isinstance(written, Mapping) else []
+        place = next((i for i, other in enumerate(keys) if str(other) == key), 0)
+        if not str(key).isdigit() or place == 0 or written[keys[place]] is not None:
+            return None
+        before = written[keys[place - 1]]
+        return (
+            f"{keys[place - 1]}: {before}.{key}" if isinstance(before, int) and not isinstance(before, bool) else None
+        )
+
+    def _choice(self) -> Finding:
+        allowed = literals(self.field) if self.field is not None else []
+        near = nearest(self.value, allowed)
+        return error(
+            "unknown-value",
+            self.path,
+            f"{shown(self.value)} is not one of the words this key takes",
+            given=self.value,
+            allowed=allowed,
+            fix=f"{self._key()}: {near}" if near else None,
+            edit=Edit("replace", self.path, near, safe=surely(self.value, near)) if near else None,
+            carry_on=carry_on_value("unknown-value", self.path, self.value),
+        )
+
+    def _bound(self) -> Finding:
+        limits = {}
+        for name, sign in _BOUNDS.values():
+            sources = [self.context, *(_bounds_of(part) for part in (self.field.metadata if self.field else ()))]
+            limit = next((source[name] for source in sources if source.get(name) is not None), None)
+            if limit is not None:
+                limits[name] = f"{sign} {number(limit)}"
+        return error(
+            "out-of-range",
+            self.path,
+            f"{shown(self.value)} is out of range",
+            given=self.value,
+            allowed=" and ".join(limits.values()) + self._unit(),
+            carry_on=self._carry_on(),
+        )
+
+    def _not_finite(self) -> Finding:
+        if isinstance(self.value, float) and math.isnan(self.value):
+            return error("not-a-number", self.path, "NaN is not a number", allowed="a number" + self._unit())
+        return error(
+            "infinite-number",
+            self.path,
+            "this key takes no infinity",
+            given=self.value,
+            allowed="a finite number" + self._unit(),
+        )
+
+    def _length(self) -> Finding:
+        least, most = lengths_of(self.field, self.context.get("min_length"), self.context.get("max_length"))
+        count = len(self.value) if isinstance(self.value, (list, tuple)) else 0
+        numbers = count > 0 and all(isinstance(v, (int, float)) for v in self.value)
+        wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
+        if not numbers:
+            return error("wrong-length", self.path, f"this list has {count} elements", allowed=f"{wanted} elements")
+        fix, edit = self._shorter(most)
+        return error(
+            "wrong-length",
+            self.path,
+            f"{count} number{'s' if count != 1 else ''}; this key takes {wanted}",
+            given=self.value,
+            allowed=f"{wanted} numbers",
+            fix=fix,
+            edit=edit,
+            carry_on=carry_on_value(self.kind, self.path, self.value, most),
+        )
+
+    def _shorter(self, most: int | None) -> tuple[str | None, Edit | None]:
+        """What a vector that is too long was meant to be."""
+        value, several = self.value, place(self.path) == "entry.waypoints"
+        if most is None or not isinstance(value, (list, tuple)) or len(value) <= most:
+            return None, None
+        text = self.document.source_text((*self.document.prefix, *self.path))
+        meant = decimal_commas(value, most, text, apart=several)
+        if meant is not None:
+            return f"decimal commas? write {meant}", None
+        if not several:
+            return None, None
+        places = waypoints_meant(self.path, self.data)
+        if places is None:
+            return "a place is [x, y] or [x, y, theta]", None
+        edit = Edit("replace", self.path[:-1], places.value, safe=places.sure)
+        own = places_in(value)
+        return f"one list per place: {shown(own.value if own else None)[1:-1]}", edit
+
+    def _type(self) -> Finding:
+        expected = _EXPECTED[self.kind]
+        if self.kind == "float_type" and isinstance(self.value, int) and not isinstance(self.value, bool):
+            return error("out-of-range", self.path, "this number is too large", allowed="a number" + self._unit())
+        if self.kind in _NUMBERS and isinstance(self.value, str):
+            return self._number_as_text(expected)
+        if self.kind in _NUMBERS and isinstance(self.value, (list, tuple)):
+            return self._list_for_number(expected)
+        if self.kind == "string_type" and isinstance(self.value, bool):
+            return self._boolean_as_text()
+        if self.kind == "bool_type" and isinstance(self.value, (list, tuple)):
+            return self._list_for_boolean()
+        fix, edit = self._repair(expected)
+        return error(
+            "wrong-type",
+            self.path,
+            f"{shown(self.value)} is not {expected}",
+            given=self.value,
+            allowed=expected + (self._unit() if self.kind in _NUMBERS else ""),
+            fix=fix,
+            edit=edit,
+            carry_on=carry_on_group(self.path, self.data) or carry_on_type(self.kind, self.path, self.value),
+        )
+
+    def _repair(self, expected: str) -> tuple[str | None, Edit | None]:
+        value, path = self.value, self.path
+        if expected == "text" and isinstance(value, (int, float)):
+            return f"quote it: '{value}'", Edit("replace", path, str(value))
+        if expected == "a whole number" and isinstance(value, float) and value.is_integer() and abs(value) < _LARGE:
+            return f"{self._key()}: {int(value)}", Edit("replace", path, int(value))
+        if expected == "a list" and (vector := vector_of(value)) is not None:
+            return f"write {flow(vector)}", Edit("replace", path, vector)
+        if expected == "a list" and isinstance(value, Mapping) and value and is_vector(list(value.values())):
+            return f"numbers alone, in a list: {flow(list(value.values()))}", None
+        if expected == "a list" and place(path) == "entry.waypoints" and is_vector(points := at(self.data, path[:-1])):
+            places = places_in(points)
+            if places is None:
+                return "a list of places: waypoints: [[x, y], [x, y]]", None
+            edit = Edit("replace", path[:-1], places.value, safe=places.sure)
+            return f"a list of places: waypoints: {shown(places.value, 200)}", edit
+        if expected == "a list" and isinstance(value, Mapping):
+            return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
+        if value is None:
+            return "give a value or remove the key", Edit("remove", path, safe=False)
+        if expected == "true or false" and str(value).strip().lower() in _BOOLEANS:
+            meant = _BOOLEANS[str(value).strip().lower()]
+            return f"write {str(meant).lower()}", Edit("replace", path, meant)
+        if expected == "a list" and isinstance(value, (int, float)) and place(path) in _CONTROLS:
+            return f"one number per control component: [{value}, {value}]", None
+        return None, None
+
+    def _number_as_text(self, expected: str) -> Finding:
+        reading = read_number(self.value, unit_of(self.field) if self.field is not None else None)
+        written = self.document.source_text((*self.document.prefix, *self.path))
+        plain_float = reading.is_number and written is not None and written[:1] not in "'\""
+        code = "yaml-number-text" if plain_float else "wrong-type"
+        why = "text, by the rules of YAML 1.1" if plain_float else f"text, not {expected}"
+        value: float | int | None = reading.value
+        if expected == "a whole number" and value is not None:
+            value = int(value) if float(value).is_integer() and abs(value) < _LARGE else None
+        # a plain 1e+308 would be text again
+        text = repr(value) if value is None or "e" not in repr(value) else number(value)
+        fix = None if value is None else f"write {text}{reading.note}"
+        return error(
+            code,
+            self.path,
+            f"{str(self.value)[:60] if plain_float else shown(self.value)} is {why}",
+            given=self.value,
+            allowed=expected + self._unit(),
+            fix=fix or reading.note or None,
+            edit=Edit("replace", self.path, value) if value is not None else None,
+        )
+
+    def _list_for_number(self, expected: str) -> Finding:
+        if place(self.path) in ("entry.state", "entry.goal", "entry.waypoints"):
+            message, fix = "the brackets are nested too deep here", "one vector is [x, y, theta]"
+        else:
+            message = f"this key takes {expected} for all objects of the entry, not a list"
+            fix = "write one entry per value, each with its own number"
+        return error("scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix)
+
+    def _list_for_boolean(self) -> Finding:
+        return error(
+            "scalar-list",
+            self.path,
+            "this key takes true or false for all objects of the entry; a list counts as true",
+            given=self.value,
+            allowed="true or false",
+            fix="write one entry per value, each with its own number",
+            carry_on=carry_on_type(self.kind, self.path, self.value),
+        )
+
+    def _boolean_as_text(self) -> Finding:
+        written = self.document.source_text((*self.document.prefix, *self.path)) or str(self.value).lower()
+        return error(
+            "yaml-boolean",
+            self.path,
+            f"YAML 1.1 reads {written} as {str(self.value).lower()}, not as text",
+            given=self.value,
+            allowed="text",
+            fix=f"quote it: '{written}'",
+            edit=Edit("replace", self.path, written),
+            carry_on=carry_on_type(self.kind, self.path, written),
+        )
+
+    def _carry_on(self) -> Edit | None:
+        return carry_on_group(self.path, self.data) or carry_on_value(self.kind, self.path, self.value)
+
+    def _key(self) -> str:
+        return next((part for part in reversed(self.path) if isinstance(part, str)), "value")
+
+    def _unit(self) -> str:
+        unit = unit_of(self.field) if self.field is not None else None
+        return f" [{unit}]" if unit else ""

@@ -1,0 +1,57 @@
+"""What pydantic found wrong, as findings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from pydantic import ValidationError
+
+from irsim.diagnostics.diagnostic import Path
+from irsim.options.vectors import UNION_TAGS
+from irsim.scenario.messages.findings import Finding
+from irsim.scenario.messages.pydantic_errors import Explainer
+from irsim.scenario.yaml.document import Document
+
+__all__ = ["translate"]
+
+
+def translate(failure: ValidationError, data: Any, document: Document, most: int) -> list[Finding]:
+    """Findings for the errors of a validation, at most ``most`` of them.
+
+    Args:
+        failure: The exception of ``Scenario.model_validate``.
+        data: What was validated.
+        document: Where it came from, to look at how values were written.
+        most: Upper bound of the result.
+    """
+    found: dict[tuple[str, Path], list[Finding]] = {}
+    for item in failure.errors(include_url=False):
+        path = _path(item["loc"])
+        siblings = found.setdefault((item["type"], _list_path(path)), [])
+        if siblings and _list_path(path) != path:
+            siblings.append(siblings[0])  # only counted
+        elif len(found) <= most:
+            siblings.append(Explainer(path, item, data, document).finding())
+    return [_with_count(siblings) for siblings in found.values() if siblings]
+
+
+def _path(location: tuple[Any, ...]) -> Path:
+    """A pydantic location without the tags of unions."""
+    return tuple(part for part in location if part not in UNION_TAGS)
+
+
+def _list_path(path: Path) -> Path:
+    """The list that an element of a vector or of a list of vectors belongs to; other paths as they are."""
+    end = len(path)
+    while end > 2 and isinstance(path[end - 1], int):
+        end -= 1
+    return path[:end]
+
+
+def _with_count(findings: list[Finding]) -> Finding:
+    first, more = findings[0], len(findings) - 1
+    if not more:
+        return first
+    message = f"{first.diagnostic.message} (and {more} more in this list)"
+    return replace(first, diagnostic=replace(first.diagnostic, message=message))

@@ -1,0 +1,1 @@
+"""The pydantic model of a scenario file."""

@@ -1,0 +1,156 @@
+"""One entry of ``robot`` or ``obstacle``: a group of objects that share their keys."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from irsim.components.behaviors._options import CustomOptions
+from irsim.options.angles import SpanAngle
+from irsim.options.base import Options
+from irsim.options.colors import ObjectColor
+from irsim.options.registry import (
+    BEHAVIORS,
+    CUSTOM_BEHAVIORS,
+    CUSTOM_GROUP_BEHAVIORS,
+    DISTRIBUTIONS,
+    KINEMATICS,
+    SENSORS,
+    SHAPES,
+)
+from irsim.options.selection import Select
+from irsim.options.units import Bool, Fraction, Integer, Meters, Number
+from irsim.options.vectors import Component, OrNull, PerObject, Pose, Range
+from irsim.scenario.model.plot import ObjectPlot
+
+__all__ = ["Entry"]
+
+Text = Annotated[str, Field(strict=True)]
+Unbounded = Annotated[float, Field(strict=True, ge=0)]  # infinity is fine, NaN is not
+State = Annotated[list[Component], Field(json_schema_extra={"x-units": ["m", "m", "rad"]})]
+Control = Annotated[list[Component], Field(min_length=1, json_schema_extra={"x-unit": "control units"})]
+Rates = Annotated[list[Unbounded], Field(min_length=1, json_schema_extra={"x-unit": "control units / s"})]
+Mass = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg"})]
+Inertia = Annotated[float, Field(strict=True, gt=0, json_schema_extra={"x-unit": "kg m^2"})]
+Grip = Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})]
+KinematicsField = Annotated[Any, Select(KINEMATICS, default="static", folded=True, null=True, empty=True)]
+ShapeField = Annotated[Any, Select(SHAPES, default="circle", folded=True, null=True)]
+BehaviorField = Annotated[
+    Any, Select(BEHAVIORS, custom=CUSTOM_BEHAVIORS, fallback=CustomOptions, null=True, empty=True)
+]
+GroupBehaviorField = Annotated[
+    Any,
+    Select(BEHAVIORS, custom=CUSTOM_GROUP_BEHAVIORS, fallback=CustomOptions, null=True, empty=True, trait="in_group"),
+]
+SensorField = Annotated[Any, Select(SENSORS, default="lidar2d", alias="type")]
+
+
+class Entry(Options):
+    """One or several objects (`number`) that share these keys."""
+
+    also_called: ClassVar[dict[str, str]] = {
+        "pose": "state",
+        "start": "state",
+        "position": "state",
+        "initial_state": "state",
+        "target": "goal",
+        "destination": "goal",
+        "path": "waypoints",
+        "route": "waypoints",
+        "drive": "kinematics",
+        "model": "kinematics",
+        "footprint": "shape",
+        "controller": "behavior",
+        "policy": "behavior",
+        "sensor": "sensors",
+        "lidar": "sensors",
+        "count": "number",
+        "max_speed": "vel_max",
+        "max_velocity": "vel_max",
+        "acceleration": "acce",
+        "tolerance": "goal_threshold",
+    }
+    schema_extra: ClassVar[dict[str, Any]] = {
+        "not": {
+            "required": ["goal", "waypoints"],
+            "properties": {"goal": {"not": {"type": "null"}}, "waypoints": {"not": {"type": "null"}}},
+        }
+    }
+
+    number: Annotated[Integer, Field(ge=0)] = 1
+    """How many objects this entry makes."""
+    distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
+    """How they are placed; null is `manual`: by `state` and `goal`."""
+    name: Annotated[Any, PerObject(Text | None)] = None
+    """Unique name; null is `<role>_<id>`."""
+    tags: Annotated[Any, PerObject(list[Text], "list")] = []
+    """Free words; `pedestrian` is what metrics count as human."""
+    role: Literal["robot", "obstacle"] | None = None
+    """The section's own name; accepted because it is documented."""
+    state: Annotated[Any, PerObject(State | None, "vector")] = None
+    """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
+    goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
+    """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; waypoints take
+    three levels of brackets, or `waypoints`."""
+    waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
+    """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
+    velocity: Annotated[Any, PerObject(Control | None, "vector")] = None
+    """Initial control; null is zero."""
+    kinematics: Annotated[Any, PerObject(KinematicsField)] = None
+    """How it moves; null never moves."""
+    shape: Annotated[Any, PerObject(ShapeField)] = None
+    """Its footprint; null is a circle of radius 1 m."""
+    behavior: Annotated[Any, PerObject(BehaviorField)] = None
+    """What it does when nobody commands it."""
+    group_behavior: Annotated[Any, PerObject(GroupBehaviorField)] = None
+    """What all members of its group do together; the first member's counts."""
+    sensors: Annotated[Any, PerObject(list[SensorField] | None, "list")] = None
+    """Its sensors; the first lidar is its `lidar`."""
+    plot: Annotated[Any, PerObject(ObjectPlot)] = ObjectPlot()
+    """How it is drawn."""
+    color: Annotated[Any, PerObject(ObjectColor | None)] = None
+    """Its colour, or `cycle` for one palette colour after the other; null depends on role and drive."""
+    description: Annotated[Any, PerObject(Text | None)] = None
+    """Picture drawn instead of the footprint: a bundled name or a file."""
+    static: Annotated[Bool, OrNull(False)] = False
+    """Never moves although it has kinematics."""
+    vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
+    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. Beginning with 0: no reverse."""
+    vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
+    """Upper limits of the controls, such as top speed and turn rate; null is 1 each.
+
+    diff: [m/s, rad/s]; omni: [forward, sideways] m/s; omni_angular: [m/s, m/s, rad/s]; acker: [m/s, steering rad].
+    """
+    acce: Annotated[Any, PerObject(Rates | None, "vector")] = None
+    """Largest change of each control component per second; null is unlimited."""
+    angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
+    """Interval of the heading, one turn wide; null is [-π, π]."""
+    goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
+    """Distance at which a goal counts as reached."""
+    arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
+    """What must match at the goal: the position, or the heading too."""
+    group: Integer | None = None
+    """Group number; objects with the same number form a group. Null numbers the entries."""
+    group_name: Annotated[Any, PerObject(Text | None)] = None
+    """Name of the group; null is `<role>_<group>`."""
+    unobstructed: Annotated[Bool, OrNull(False)] = False
+    """Others do not collide with it and lidars do not see it; it still collides with others."""
+    fov: SpanAngle | None = None
+    """Opening angle of the field of view; null is the lidar's."""
+    fov_radius: Annotated[Meters, Field(ge=0)] | None = None
+    """Reach of the field of view; null is the lidar's."""
+    fov_occlusion: Bool = False
+    """Things hidden behind others are not in the field of view."""
+    state_dim: Annotated[Integer, Field(ge=3, le=64)] | None = None
+    """Rows of the state; null is what the kinematics has. Surplus rows keep their value."""
+    vel_dim: Annotated[Integer, Field(ge=1, le=64)] | None = None
+    """Components of the control; null is what the kinematics has."""
+    mass: Annotated[Any, PerObject(Mass | None, "number")] = None
+    """For `collision_mode: contact`; null is 1 with kinematics and infinite without."""
+    friction: Annotated[Any, PerObject(Grip | None, "number")] = None
+    """Grip on the ground, for `collision_mode: contact`; null is the world's."""
+    inertia: Annotated[Any, PerObject(Inertia | None, "number")] = None
+    """Resistance to turning, for `collision_mode: contact`; null follows from shape and mass."""
+    restitution: Annotated[Any, PerObject(Fraction | None, "number")] = None
+    """Bounciness, for `collision_mode: contact`; null is the world's."""

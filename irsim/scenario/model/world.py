@@ -1,0 +1,176 @@
+"""The ``world`` section."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
+
+from irsim.options.base import Options, problem
+from irsim.options.colors import Color
+from irsim.options.registry import MAPS
+from irsim.options.selection import Select
+from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds
+from irsim.options.vectors import OrNull, Point, vector
+
+__all__ = ["SavedFigure", "WorldModel", "WorldPlot"]
+
+Text = Annotated[str, Field(strict=True)]
+
+
+def _trimmed(value: Any) -> Any:
+    return value.strip().lower() if isinstance(value, str) else value
+
+
+_VIEWPOINT = {
+    "anyOf": [
+        {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+        {"type": "string"},
+        {"type": "null"},
+    ],
+    "x-unit": "m",
+}
+
+
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 1e300
+
+
+def _viewpoint(value: Any) -> list[float] | str | None:
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
+        return [float(v) for v in value]
+    raise problem("wrong-type", "this is no viewpoint", allowed="[x, y] in metres, or the name of an object")
+
+
+class SavedFigure(Options):
+    """How figures and animation frames are saved."""
+
+    dpi: Annotated[Number, Field(gt=0, le=2400, json_schema_extra={"x-unit": "px/inch"})] = 100
+    """Resolution; also that of the window."""
+    bbox_inches: Text | None = "tight"
+    """`tight` cuts empty margins away; null keeps the whole figure."""
+    format: Text | None = None
+    """File format; null takes it from the file name."""
+    transparent: Bool = False
+    """Leave the background out."""
+    facecolor: Color | None = None
+    """Background colour."""
+    edgecolor: Color | None = None
+    """Border colour."""
+    pad_inches: Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "inch"})] = 0.1
+    """Margin left by `bbox_inches: tight`."""
+    metadata: dict[str, Any] | None = None
+    """Written into the file where the format has a place for it."""
+
+
+class WorldPlot(Options):
+    """How the world is drawn."""
+
+    figure_pixels: Annotated[list[Annotated[Number, Field(ge=1, le=20_000)]], vector(("px", "px"), 2)] = [1000, 800]
+    """Size of the figure: [width, height]."""
+    saved_figure: SavedFigure = SavedFigure()
+    """How figures and animation frames are saved."""
+    show_title: Bool = True
+    """Show a title: time and status, or `title`."""
+    title: Text | None = None
+    """A fixed title instead of time and status."""
+    no_axis: Bool = False
+    """Hide the axes."""
+    tight: Bool = True
+    """Use the whole figure for the world."""
+    viewpoint: Annotated[Any, PlainValidator(_viewpoint), WithJsonSchema(_VIEWPOINT)] = None
+    """Keep the view centred on a point [x, y], or follow the object of that name."""
+
+
+class _MapSelect(Select):
+    """Grid maps may also come as an array from Python."""
+
+    def validate(self, value: Any) -> Any:
+        if not isinstance(value, (Mapping, list, tuple)) and hasattr(value, "__array__"):
+            return value
+        return super().validate(value)
+
+
+class WorldModel(Options):
+    """Extent, time, modes and map of the world."""
+
+    also_called: ClassVar[dict[str, str]] = {
+        "dt": "step_time",
+        "timestep": "step_time",
+        "origin": "offset",
+        "map": "obstacle_map",
+        "grid_map": "obstacle_map",
+        "walls": "boundary",
+        "border": "boundary",
+        "max_time": "time_limit",
+        "duration": "time_limit",
+        "horizon": "time_limit",
+        "timeout": "time_limit",
+        "random_seed": "seed",
+    }
+
+    name: Text | None = None
+    """Name of the world; null is the name of the file."""
+    description: Text | None = None
+    """Free text about the scenario, kept as it is."""
+    metadata: dict[str, Any] | None = None
+    """Free data about the scenario, kept as it is."""
+    height: Annotated[Meters, Field(gt=0)] = 10
+    """Extent in y, not a vertical height: the world is flat."""
+    width: Annotated[Meters, Field(gt=0)] = 10
+    """Extent in x."""
+    depth: Annotated[Meters, Field(gt=0)] = 10
+    """Extent in z that the 3D view draws; the world is flat all the same."""
+    offset: Annotated[Point, OrNull([0.0, 0.0])] = [0.0, 0.0]
+    """Lower left corner of the world: [x, y]. Objects do not move with it."""
+    step_time: Annotated[Seconds, Field(gt=0)] = 0.1
+    """Period of one simulation step."""
+    sample_time: Annotated[Seconds, Field(gt=0)] | None = None
+    """Period of drawing and recording; null is every step."""
+    time_limit: Annotated[Seconds, Field(gt=0)] | None = None
+    """How long a run lasts at most when its caller does not say; null is derived from distances and speeds."""
+    seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
+    """Seed of everything random when the caller gives none; null draws a fresh one."""
+    step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_trimmed)] = "internal"
+    """Who moves the objects: the simulator, or the calling program, which sets their states."""
+    control_mode: Annotated[Literal["auto", "keyboard"], OrNull("auto")] = "auto"
+    """Who drives the robot chosen in `gui.keyboard`: its behavior or the keyboard."""
+    collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
+    """What a collision does: `stop` both objects, nothing (`unobstructed`, `reactive`), stop robots only
+    (`unobstructed_obstacles`), or push and slide (`contact`)."""
+    boundary: Literal["none", "walls"] = "none"
+    """What is at the world's edge: nothing, or four walls that collide, are seen and avoided."""
+    obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
+    """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
+    mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1
+    """Keep every so many rows and columns of the grid."""
+    fog_map: Annotated[Bool, OrNull(False)] = False
+    """Cover the world with fog that sensors clear."""
+    fog_map_resolution: Annotated[Meters, Field(gt=0)] | None = None
+    """Cell size of the fog; null is the map's, or 0.1 m without a map."""
+    gravity: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "m/s^2"})] = 9.81
+    """For `collision_mode: contact`."""
+    friction: Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})] = 0.5
+    """Default friction of objects, for `collision_mode: contact`."""
+    restitution: Fraction = 0.0
+    """Default bounciness of objects, for `collision_mode: contact`."""
+    drive_tau: Annotated[Seconds, Field(ge=0)] = 0.0
+    """Default lag of the drives, for `collision_mode: contact`."""
+    status: Annotated[Text, OrNull("None")] = "None"
+    """Label shown before the first step."""
+    plot: Annotated[WorldPlot, OrNull({})] = WorldPlot()
+    """How the world is drawn."""
+
+    @property
+    def center(self) -> list[float]:
+        """Middle of the world [m]."""
+        return [self.offset[0] + self.width / 2, self.offset[1] + self.height / 2]
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax [m]."""
+        x, y = self.offset
+        return x, y, x + self.width, y + self.height

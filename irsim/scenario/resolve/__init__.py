@@ -1,0 +1,1 @@
+"""From what a user wrote to one record for each object."""

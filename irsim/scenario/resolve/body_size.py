@@ -1,0 +1,180 @@
+"""How large bodies are: the disc inside, the circle around, the smallest extent; without a geometry library."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import irsim._core as core
+from irsim.components.behaviors._options import CustomOptions
+from irsim.options.registry import SHAPES
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+__all__ = ["has_fixed_shape", "inner_disc", "parts_of", "segment_gap", "thickness", "top_speed"]
+
+Point = tuple[float, float]
+_ROUNDS, _PER_SIDE = 4, 12
+"""Of the search for the largest disc: each round looks at so many points per side of a smaller square."""
+_MANY_CORNERS = 64
+
+
+def has_fixed_shape(shape: Any) -> bool:
+    """Whether the body is the same in every scene."""
+    if hasattr(shape, "fixed"):  # a map, or the walls round the world
+        return bool(shape.fixed)
+    parts = shape.parts if shape.name == "compound" else [shape]
+    return not any(getattr(part, "random_shape", False) for part in parts)
+
+
+def parts_of(shape: Any) -> list[Any]:
+    """Geometry for the core: body frame; of a map and the walls round the world the world frame."""
+    if hasattr(shape, "fixed"):
+        return list(shape.parts())
+    feature = SHAPES.get(shape.name)
+    if feature is None or feature.function is None:
+        return []
+    return list(feature.function(shape))
+
+
+def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:
+    """x, y, radius of a large disc inside of the body, body frame [m]; radius 0 where nothing is filled.
+
+    Of one part: of several that overlap, a larger disc may fit into their union.
+    """
+    best = (0.0, 0.0, 0.0)
+    for part in parts:
+        if isinstance(part, core.Circle):
+            found = (part.center[0], part.center[1], part.radius)
+        elif isinstance(part, core.Polygon):
+            found = _inside(tuple((x, y) for x, y in part.vertices))
+        else:
+            continue
+        if found[2] > best[2]:
+            best = found
+    return best
+
+
+def thickness(shape: Any) -> float:
+    """The least extent across the body [m]: 0 for lines, of several parts that of the thinnest; infinity if unknown."""
+    parts, cell = parts_of(shape), min(shape.grid.cell) if hasattr(shape, "grid") else math.inf
+    least = math.inf
+    for part in parts:
+        if isinstance(part, core.Circle):
+            least = min(least, 2 * part.radius)
+        elif isinstance(part, core.Polygon):
+            least = min(least, _width([(x, y) for x, y in part.vertices]))
+        elif isinstance(part, (core.Linestring, core.Room)):
+            return 0.0
+        elif isinstance(part, core.GridCells):
+            least = min(least, cell)
+    return least
+
+
+def segment_gap(first: tuple[Point, Point], second: tuple[Point, Point]) -> float:
+    """Distance between two segments [m]."""
+    (a, b), (c, d) = first, second
+
+    def side(p: Point, q: Point, r: Point) -> float:
+        return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+    if side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0:
+        return 0.0
+    return min(_gap(c, a, b), _gap(d, a, b), _gap(a, c, d), _gap(b, c, d))
+
+
+def _gap(p: Point, a: Point, b: Point) -> float:
+    """Distance from a point to a segment."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    length = dx * dx + dy * dy
+    t = min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length)) if length > 0 else 0.0
+    return math.hypot(p[0] - a[0] - t * dx, p[1] - a[1] - t * dy)
+
+
+def top_speed(record: Any) -> float:
+    """No behavior makes the object faster [m/s]; 0 without kinematics, infinity for drives of user code."""
+    drive = record.kinematics
+    if drive is None or record.static:
+        return 0.0
+    limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
+    options = record.behavior if record.group_behavior is None else record.group_behavior
+    options = getattr(options, "local", options)
+    built_in = not isinstance(options, CustomOptions | None)
+    if drive.name in ("omni", "omni_angular"):  # dash turns the limits into the direction of the goal
+        speed = max(limits[:2]) if getattr(options, "name", "") == "dash" else math.hypot(*limits[:2])
+    elif drive.name in ("diff", "acker"):  # no built-in behavior is faster backwards than forwards
+        speed = abs(record.vel_max[0]) if built_in and record.vel_max else limits[0]
+    else:
+        return math.inf
+    return min(speed, _own_limit(options))
+
+
+def _own_limit(options: Any) -> float:
+    """Speed that a behavior does not exceed of its own accord [m/s]."""
+    name = getattr(options, "name", "")
+    if name == "rvo":
+        return math.hypot(options.vxmax, options.vymax)
+    if name == "sfm":
+        return float(options.vmax)
+    return math.inf if name != "orca" or options.maxSpeed is None else float(options.maxSpeed)
+
+
+@lru_cache(maxsize=256)  # thousands of objects may have one shape
+def _inside(corners: tuple[tuple[float, float], ...]) -> tuple[float, float, float]:
+    """Centre and radius of nearly the largest disc inside of an outline."""
+    import numpy as np
+
+    square = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, _PER_SIDE + 1)] * 2), axis=-1).reshape(-1, 2)
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    middle, half = (low + high) / 2, (high - low) / 2
+    best = (float(middle[0]), float(middle[1]), max(0.0, float(_room(corners, middle[None])[0])))
+    for _ in range(_ROUNDS):
+        points = np.array(best[:2]) + square * half
+        room = _room(corners, points)
+        k = int(np.argmax(room))
+        if room[k] > best[2] * (1 + 1e-9):
+            best = (float(points[k, 0]), float(points[k, 1]), float(room[k]))
+        half = half * (2 / _PER_SIDE)
+    return best
+
+
+def _room(corners: Sequence[tuple[float, float]], points: Floats) -> Floats:
+    """(P,) distances from (P, 2) points to the outline, negative outside."""
+    import numpy as np
+
+    a = np.asarray(corners, dtype=np.float64)
+    edge = np.roll(a, -1, axis=0) - a
+    off = points[:, None] - a
+    with np.errstate(over="ignore", invalid="ignore"):  # corners may be anywhere
+        length = (edge**2).sum(axis=1)
+        along = np.clip((off * edge).sum(axis=2) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+        least = np.sqrt(((off - along[..., None] * edge) ** 2).sum(axis=2)).min(axis=1)
+        b = a + edge
+        y = points[:, 1, None]
+        crossed = (a[:, 1] > y) != (b[:, 1] > y)
+        rise = np.where(edge[:, 1] == 0, 1.0, edge[:, 1])
+        left = points[:, 0, None] < a[:, 0] + (y - a[:, 1]) / rise * edge[:, 0]
+    inside = np.count_nonzero(crossed & left, axis=1) % 2 == 1
+    signed: Floats = np.where(inside, least, -least)
+    return signed
+
+
+def _width(corners: list[tuple[float, float]]) -> float:
+    """Least distance between two parallel lines that hold the outline between them."""
+    if len(corners) > _MANY_CORNERS:
+        return math.inf
+    least = math.inf
+    for i, (ax, ay) in enumerate(corners):
+        for bx, by in corners[i + 1 :]:
+            length = math.hypot(bx - ax, by - ay)
+            if length == 0:
+                continue
+            across = [((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / length for x, y in corners]
+            least = min(least, max(across) - min(across))
+    return least

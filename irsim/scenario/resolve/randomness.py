@@ -1,0 +1,44 @@
+"""What a scenario leaves to chance."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from irsim.components.behaviors._options import CustomOptions
+from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+
+__all__ = ["random_parts"]
+
+_SAMPLING_PLANNERS = ("rrt", "rrt_star", "informed_rrt_star", "prm")
+
+
+def random_parts(scenario: ResolvedScenario) -> list[str]:
+    """What the seed decides, in words; empty if every seed gives the same run."""
+    found: dict[str, None] = {}
+    if scenario.placements:
+        found["placement"] = None
+    generator: Any = scenario.world.obstacle_map
+    if getattr(generator, "seed", 0) is None:
+        found["map"] = None
+    for record in scenario.objects:
+        found.update(dict.fromkeys(_of_object(record)))
+    return list(found)
+
+
+def _of_object(record: ObjectRecord) -> list[str]:
+    shape: Any = record.shape
+    drive: Any = record.kinematics
+    parts = shape.parts if shape.name == "compound" else [shape]
+    behaviors: list[Any] = [record.behavior, record.group_behavior]
+    planners = [getattr(behavior, "planner", None) for behavior in behaviors]
+    chances = {
+        "shapes": any(getattr(part, "random_shape", False) for part in parts),
+        "wander goals": record.wander and not record.static,
+        "motion noise": getattr(drive, "noise", False) and not record.static,
+        "sensor noise": any(
+            getattr(sensor, "noise", False) or getattr(sensor, "velocity_noise_std", 0.0) for sensor in record.sensors
+        ),
+        "planners": any(getattr(planner, "name", planner) in _SAMPLING_PLANNERS for planner in planners),
+        "user code": any(isinstance(behavior, CustomOptions) for behavior in behaviors),
+    }
+    return [name for name, chance in chances.items() if chance]

@@ -1,0 +1,127 @@
+"""The scenario with everything spread, defaulted and resolved: one record per object, ready to build or describe."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from irsim.components.maps._grid import MapGrid
+    from irsim.diagnostics.diagnostic import Path
+    from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
+
+__all__ = ["ObjectRecord", "Placement", "ResolvedScenario"]
+
+
+@dataclass(slots=True)
+class ObjectRecord:
+    """One object with all defaults applied (frames and units as in YAML).
+
+    ``state`` has ``state_dim`` numbers, limits have ``vel_dim`` numbers. ``kinematics``, ``shape``, ``behavior``,
+    ``group_behavior`` and ``sensors`` are validated options models of the registries; ``kinematics`` is None for an
+    object that never moves by itself. ``behavior`` may be a :class:`irsim.components.behaviors._options.CustomOptions`.
+    """
+
+    id: int
+    role: Literal["robot", "obstacle"]
+    name: str
+    group: int
+    group_name: str
+    path: Path  # of the entry: ("robot", 0) or ("robot",); ("world", key) of the map and the walls round the world
+    index: int  # among the objects of its entry
+    kinematics: BaseModel | None
+    shape: Any  # options model; for the map and the walls round the world what stands in for one
+    state: list[float]
+    goals: list[list[float]]
+    velocity: list[float]
+    vel_min: list[float]
+    vel_max: list[float]
+    acce: list[float]
+    state_dim: int
+    vel_dim: int
+    angle_range: tuple[float, float]
+    goal_threshold: float
+    arrive_mode: Literal["position", "state"]
+    static: bool  # effective: also true for what has neither kinematics nor a finite mass
+    unobstructed: bool
+    behavior: BaseModel | None
+    group_behavior: BaseModel | None
+    wander: bool
+    loop: bool
+    range_low: list[float]
+    range_high: list[float]
+    target_roles: Literal["all", "robot", "obstacle"]
+    sensors: list[BaseModel]
+    plot: ObjectPlot
+    color: str | tuple[float, ...]
+    description: str | None
+    fov: float | None  # effective: from the lidar when not given
+    fov_radius: float | None
+    fov_occlusion: bool
+    wheelbase: float | None  # effective: kinematics first, then shape
+    mass: float
+    friction: float
+    inertia: float | None
+    restitution: float
+    drive_tau: float  # effective: kinematics first, then world
+    tags: tuple[str, ...] = ()
+    joined: bool = True  # follows the behavior of its group, if that has one
+
+
+@dataclass(slots=True)
+class Placement:
+    """The objects of one entry with ``distribution: random``."""
+
+    objects: list[int]  # ids
+    range_low: list[float]
+    range_high: list[float]
+    min_distance: float
+    path: Path
+
+
+@dataclass(slots=True)
+class ResolvedScenario:
+    """A whole scenario, resolved.
+
+    ``objects`` stand in the order of the rows of a simulation. An object keeps its ``id`` when others are taken out, so
+    an id is a row only as long as that has not happened.
+    """
+
+    name: str
+    world: WorldModel
+    objects: list[ObjectRecord]
+    placements: list[Placement]
+    gui: Gui
+    custom: Any
+    document: dict[str, Any] = field(default_factory=dict)  # as parsed, for env.config
+    source: str | None = None  # path of the file
+    text: str | None = None
+    grid: MapGrid | None = None  # the map, whether or not any cell is occupied
+    map_files: dict[str, str] = field(default_factory=dict)  # by the name in the scenario, what the map was read from
+
+    def robots(self) -> Sequence[ObjectRecord]:
+        """The robots, in id order."""
+        return [o for o in self.objects if o.role == "robot"]
+
+    def parked(self, record: ObjectRecord) -> bool:
+        """Whether an object cannot move and no goal is written for it: the one that it has is only the default."""
+        return (record.kinematics is None or record.static) and not self.goal_written(record)
+
+    def goal_written(self, record: ObjectRecord) -> bool:
+        """Whether the entry of an object gives it a goal; else the one that it has may be only the default."""
+        entry: Any = self.document
+        for key in record.path:
+            if key not in _keys(entry):
+                return True
+            entry = entry[key]
+        return not isinstance(entry, Mapping) or any(entry.get(key) is not None for key in _GIVE_GOALS)
+
+
+_GIVE_GOALS = ("goal", "waypoints", "distribution")
+
+
+def _keys(value: Any) -> Any:
+    return value if isinstance(value, Mapping) else range(len(value) if isinstance(value, list) else 0)

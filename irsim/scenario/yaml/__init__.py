@@ -1,0 +1,1 @@
+"""YAML text: reading it with positions, and editing it without losing comments."""

@@ -1,0 +1,90 @@
+"""The comments of a YAML text, which its data do not have."""
+
+from __future__ import annotations
+
+import bisect
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+
+from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.yaml.document import Document
+from irsim.scenario.yaml.nodes import Node
+
+__all__ = ["comments", "keeps_comments", "places_of_comments"]
+
+_QUOTED_OR_COMMENT = re.compile(
+    r"""(?:(?<=[\s\[{,])|^)(?:"(?:\\.|[^"\\\n])*"|'(?:''|[^'\n])*')|(?P<comment>(?:(?<=\s)|^)\#.*)""", re.MULTILINE
+)
+
+
+def comments(text: str) -> list[str]:
+    """Comments of a YAML text, in order, each from its ``#`` on; a ``#`` inside quotes is none."""
+    found = (match["comment"] for match in _QUOTED_OR_COMMENT.finditer(text))
+    return [comment.strip() for comment in found if comment is not None]
+
+
+def keeps_comments(before: str, after: str) -> bool:
+    """Whether every comment of a text is there in another, too."""
+    return not Counter(comments(before)) - Counter(comments(after))
+
+
+def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
+    """The comments of a text, in order, and what each may be about.
+
+    That is all that stands on its line or, if it stands alone, on the line it goes with: the next line with something
+    on it or, for a comment that is indented more than that, the last one before that is not indented more than the
+    comment.
+
+    Args:
+        document: With its text.
+
+    Returns:
+        Comments with paths, in which a single robot or obstacle is the first of a list.
+    """
+    if document.text is None:
+        return []
+    there: dict[int, list[Path]] = defaultdict(list)
+    for path, line in _nodes(document.tree(), ()):
+        there[line].append(_listed(path[len(document.prefix) :], document))
+    occupied, lines = sorted(there), document.text.splitlines()
+    found: list[tuple[str, list[Path]]] = []
+    line, read, known = 1, 0, dict[tuple[int, int], int]()
+    for match in _QUOTED_OR_COMMENT.finditer(document.text):
+        if match["comment"] is None:
+            continue
+        line, read = line + document.text.count("\n", read, match.start("comment")), match.start("comment")
+        about = line
+        if line not in there:
+            spot = bisect.bisect(occupied, line), _indent(lines[line - 1])
+            if spot not in known:
+                known[spot] = _line_of(*spot, occupied, lines)
+            about = known[spot]
+        found.append((match["comment"].strip(), there.get(about, [])))
+    return found
+
+
+def _line_of(at: int, indent: int, occupied: list[int], lines: list[str]) -> int:
+    """The line that a comment is about which stands alone before the ``at``-th of those on which something starts."""
+    if at < len(occupied) and _indent(lines[occupied[at] - 1]) >= indent:
+        return occupied[at]
+    return next((k for k in reversed(occupied[:at]) if _indent(lines[k - 1], " -") <= indent), 0)
+
+
+def _nodes(node: Node | None, path: Path) -> Iterator[tuple[Path, int]]:
+    """Every path with the line on which it starts."""
+    if node is None:
+        return
+    for key, child in node.children.items():
+        below = (*path, key if isinstance(key, int) else str(key))
+        yield below, node.keys.get(key, child.mark).line
+        yield from _nodes(child, below)
+
+
+def _listed(path: Path, document: Document) -> Path:
+    single = path[:1] in (("robot",), ("obstacle",)) and isinstance(document.data.get(path[0]), dict)
+    return (path[0], 0, *path[1:]) if single else path
+
+
+def _indent(line: str, blank: str = " ") -> int:
+    return len(line) - len(line.lstrip(blank))

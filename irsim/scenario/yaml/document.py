@@ -1,0 +1,184 @@
+"""From a file, a text or a mapping to a :class:`Document`: data, what was wrong with it, and where things stand."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from irsim.diagnostics.diagnostic import Diagnostic, Path
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.yaml.compose import Composed, compose
+from irsim.scenario.yaml.nodes import Mark, Node
+
+__all__ = ["Document", "Mark", "load_data", "load_path", "load_text"]
+
+_NO_TEXT = bytes(set(range(32)) - {9, 10, 12, 13, 27})
+
+
+@dataclass
+class Document:
+    """A scenario as written.
+
+    Attributes:
+        data: The scenario (inside the ``irsim:`` wrapper where there is one); None if it could not be read.
+        problems: Findings of reading it as YAML.
+        fatal: Whether one of them makes the data unusable or wrong.
+        text: The text, None for a scenario given as data.
+        name: What to call it in messages.
+        path: Path of the file, None without one.
+        prefix: Keys that lead to the scenario in the text: ``("irsim",)`` in a file shared with another simulator.
+        limits: The limits it was read under.
+        maps: Files that stand in for maps, by their names: what a record has kept of them.
+    """
+
+    data: Any
+    problems: list[Diagnostic] = field(default_factory=list)
+    fatal: bool = False
+    text: str | None = None
+    name: str | None = None
+    path: str | None = None
+    prefix: Path = ()
+    limits: Limits = DEFAULT_LIMITS
+    maps: Mapping[str, str] = field(default_factory=dict)
+    _root: Node | None = field(default=None, repr=False)
+
+    def mark(self, path: Path, *, key: bool = False) -> Mark | None:
+        """Where the value at ``path`` stands (its key if ``key``), or the innermost part of the path that exists."""
+        node = self.tree()
+        if node is None:
+            return None
+        mark = node.mark
+        for depth, part in enumerate(path, 1):
+            raw = _raw_key(node, part)
+            if raw is None:
+                return mark
+            of_key, node = node.keys.get(raw), node.children[raw]
+            missing_below = depth < len(path) and _raw_key(node, path[depth]) is None
+            mark = of_key if of_key is not None and (key or missing_below) else node.mark
+        return mark
+
+    def source_text(self, path: Path) -> str | None:
+        """The characters of the scalar at ``path``, as written; None if there is no such single-line scalar."""
+        if self.text is None or (mark := self.mark(path)) is None:
+            return None
+        line = self.text.splitlines()[mark.line - 1]
+        return line[mark.column - 1 : mark.column - 1 + mark.length]
+
+    def tree(self) -> Node | None:
+        """Where everything stands, from the top of the text; None without a text, or one that is no YAML."""
+        if self._root is None and self.text is not None:
+            self._root = compose(self.text, self.limits, positions=True).root
+        return self._root
+
+
+def _raw_key(node: Node, part: str | int) -> Any:
+    """The key of ``node`` that a path part names; paths hold every key that is not an index as text."""
+    if part in node.children:
+        return part
+    return next((key for key in node.children if not isinstance(key, int) and str(key) == part), None)
+
+
+def load_path(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -> Document:
+    """Read a file. Whatever is wrong with it ends up in ``problems``, never in an exception."""
+    name = os.fspath(path)
+    content, problem = _content(name, limits)
+    if problem is not None:
+        return Document(None, [problem], True, name=name, path=name, limits=limits)
+    assert content is not None
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        return Document(None, [_not_text(name, content, error)], True, name=name, path=name, limits=limits)
+    if content.translate(None, _NO_TEXT) != content:
+        return Document(None, [_not_text(name, content, None)], True, name=name, path=name, limits=limits)
+    return load_text(text, name=name, path=name, limits=limits)
+
+
+def load_text(
+    text: str, name: str | None = None, *, path: str | None = None, limits: Limits = DEFAULT_LIMITS
+) -> Document:
+    """Read a scenario from YAML text."""
+    if len(text) > limits.bytes:
+        problem = _too_large(len(text), limits, name)
+        return Document(None, [problem], True, name=name, path=path, limits=limits)
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        problem = _half_a_character(text, error.start, name)
+        return Document(None, [problem], True, name=name, path=path, limits=limits)
+    composed: Composed = compose(text, limits)
+    document = Document(composed.data, composed.problems, composed.fatal, text, name, path, (), limits)
+    return _unwrapped(document)
+
+
+def load_data(data: Any, name: str | None = None, limits: Limits = DEFAULT_LIMITS) -> Document:
+    """A scenario that is data already, as :func:`irsim.make` accepts it: no positions, no limits of the text."""
+    return _unwrapped(Document(data, name=name, limits=limits))
+
+
+def _unwrapped(document: Document) -> Document:
+    """Look inside ``irsim: {...}``, which stands for the whole document in files shared with another simulator."""
+    if isinstance(document.data, Mapping) and isinstance(document.data.get("irsim"), Mapping):
+        document.data, document.prefix = document.data["irsim"], ("irsim",)
+    return document
+
+
+def _content(name: str, limits: Limits) -> tuple[bytes | None, Diagnostic | None]:
+    try:
+        status = os.stat(name)
+        if not stat.S_ISREG(status.st_mode):
+            kind = "a directory" if stat.S_ISDIR(status.st_mode) else "a device or pipe, not a file"
+            return None, Diagnostic(
+                "not-a-file", "error", (), f"'{name}' is {kind}", given=name, fix="name a YAML file", file=name
+            )
+        if status.st_size > limits.bytes:
+            return None, _too_large(status.st_size, limits, name)
+        with open(name, "rb") as file:
+            content = file.read(limits.bytes + 1)
+    except FileNotFoundError:
+        return None, Diagnostic("file-not-found", "error", (), f"there is no file '{name}'", given=name, file=name)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        return None, Diagnostic("unreadable", "error", (), f"'{name}' cannot be read: {reason}", given=name, file=name)
+    if len(content) > limits.bytes:
+        return None, _too_large(len(content), limits, name)
+    return content, None
+
+
+def _too_large(size: int, limits: Limits, name: str | None) -> Diagnostic:
+    return Diagnostic(
+        "file-too-large",
+        "error",
+        (),
+        f"{size:,} bytes; a scenario may have {limits.bytes:,}",
+        given=size,
+        allowed=f"at most {limits.bytes:,} bytes",
+        fix="write groups of objects with 'number' and 'distribution'",
+        file=name,
+    )
+
+
+def _half_a_character(text: str, place: int, name: str | None) -> Diagnostic:
+    return Diagnostic(
+        "not-text",
+        "error",
+        (),
+        f"half of a surrogate pair (character {place + 1}), which is no text",
+        line=text.count("\n", 0, place) + 1,
+        fix="remove it, or write the whole character",
+        file=name,
+    )
+
+
+def _not_text(name: str, content: bytes, error: UnicodeDecodeError | None) -> Diagnostic:
+    line = None
+    message = f"'{name}' is not a text file"
+    if error is not None and content.translate(None, _NO_TEXT) == content:
+        line = content.count(b"\n", 0, error.start) + 1
+        message = f"'{name}' is not UTF-8 text (byte {error.start})"
+    return Diagnostic(
+        "not-text", "error", (), message, line=line, given=name, fix="save the file as UTF-8 text", file=name
+    )

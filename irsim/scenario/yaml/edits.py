@@ -1,0 +1,71 @@
+"""Applying edits to the data of a scenario."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable
+from typing import Any
+
+from irsim.diagnostics.diagnostic import Edit, Path
+
+__all__ = ["applied", "removal"]
+
+
+def applied(data: Any, edits: Iterable[Edit]) -> Any:
+    """A copy of ``data`` with the edits made; one whose place is gone by then is left out."""
+    result = copy.deepcopy(data)
+    for edit in edits:
+        if not edit.path:
+            result = edit.value if edit.action == "replace" else result
+            continue
+        parent = _parent(result, edit.path)
+        if isinstance(parent, dict):
+            _edit_mapping(parent, edit)
+        elif isinstance(parent, list):
+            _edit_list(parent, edit)
+    return result
+
+
+def removal(path: Path) -> Edit:
+    """The edit that gets rid of what is wrong at ``path`` without shifting its neighbours.
+
+    Elements of lists take the whole key with them, except entries of ``robot`` and ``obstacle``, which become empty.
+    """
+    if len(path) == 2 and path[0] in ("robot", "obstacle"):
+        return Edit("replace", path, {}) if isinstance(path[1], int) else Edit("remove", path)
+    while path and not isinstance(path[-1], str):
+        path = path[:-1]
+    return Edit("remove", path)
+
+
+def _parent(data: Any, path: Path) -> Any:
+    for part in path[:-1]:
+        try:
+            data = data[part] if not isinstance(data, dict) else data[_key(data, part)]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data
+
+
+def _key(mapping: dict[Any, Any], part: str | int) -> Any:
+    """Paths hold every key as text; the document may have numbers or booleans as keys."""
+    return part if part in mapping else next((key for key in mapping if str(key) == part), part)
+
+
+def _edit_mapping(parent: dict[Any, Any], edit: Edit) -> None:
+    key = _key(parent, edit.path[-1])
+    if edit.action == "remove":
+        parent.pop(key, None)
+    elif edit.action == "rename":
+        if key in parent and edit.value not in parent:
+            parent[edit.value] = parent.pop(key)
+        else:
+            parent.pop(key, None)
+    else:
+        parent[key] = edit.value
+
+
+def _edit_list(parent: list[Any], edit: Edit) -> None:
+    index = edit.path[-1]
+    if isinstance(index, int) and 0 <= index < len(parent):
+        parent[index] = None if edit.action == "remove" else edit.value

@@ -1,0 +1,196 @@
+"""Applying an edit to the text of a scenario: the rest of the text, comments and layout included, stays as it is."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import yaml
+
+from irsim.diagnostics.diagnostic import Edit, Path
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.yaml.compose import compose
+from irsim.scenario.yaml.edits import applied
+from irsim.scenario.yaml.formatting import flow
+
+__all__ = ["rewritten", "yaml_flow"]
+
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def rewritten(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | None:
+    """The text with one edit made.
+
+    Args:
+        text: YAML of one document.
+        edit: What to do; its path leads from the top of the document.
+        limits: Of the loader.
+
+    Returns:
+        The new text; None where the edit can't be made without touching something else (values shared by an anchor, or
+        merged into a mapping): what the new text means is compared with what the edit means.
+    """
+    try:
+        root = yaml.compose(text, Loader=_Loader)
+        changed = _changed(text, root, edit)
+    except (yaml.YAMLError, LookupError, _NotPossible):
+        return None
+    before, after = compose(text, limits), compose(changed, limits)
+    if after.fatal or not _equal(after.data, applied(_unshared(before.data), [edit])):
+        return None
+    return changed
+
+
+class _NotPossible(Exception):
+    """The place does not exist in the text, or belongs to several values."""
+
+
+def yaml_flow(value: Any) -> str:
+    """A value on one line, as YAML reads it back."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{yaml_flow(str(key))}: {yaml_flow(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(yaml_flow(item) for item in value) + "]"
+    if isinstance(value, str):
+        dumped: str = yaml.safe_dump([value], default_flow_style=True, width=10**9, allow_unicode=True)
+        plain = dumped.strip()[1:-1]
+        return plain if value.isprintable() and "\n" not in plain else json.dumps(value)  # which YAML reads as well
+    return flow(value)
+
+
+def _changed(text: str, root: yaml.Node | None, edit: Edit) -> str:
+    parent, last = _node_at(root, edit.path[:-1]), edit.path[-1]
+    if isinstance(parent, yaml.SequenceNode):
+        if edit.action != "replace" or not isinstance(last, int):
+            raise _NotPossible
+        return _replace(text, parent.value[last], edit.value)
+    if not isinstance(parent, yaml.MappingNode):
+        raise _NotPossible
+    if edit.action == "add":
+        return _add(text, parent, str(last), edit.value)
+    index = next((i for i, (key, _) in enumerate(parent.value) if _is_key(key, last)), -1)
+    if index < 0:
+        raise _NotPossible
+    key, value = parent.value[index]
+    if value.start_mark.index < key.end_mark.index:
+        raise _NotPossible  # an alias: the node stands elsewhere
+    if edit.action == "rename":
+        if any(_is_key(other, str(edit.value)) for other, _ in parent.value):
+            raise _NotPossible
+        return text[: key.start_mark.index] + yaml_flow(str(edit.value)) + text[key.end_mark.index :]
+    if edit.action == "replace":
+        return _replace(text, value, edit.value, key)
+    return _remove(text, parent, index)
+
+
+def _is_key(node: yaml.Node, part: str | int) -> bool:
+    return isinstance(node, yaml.ScalarNode) and node.value == str(part)
+
+
+def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
+    for part in path:
+        if isinstance(node, yaml.MappingNode):
+            node = next((value for key, value in node.value if _is_key(key, part)), None)
+        elif isinstance(node, yaml.SequenceNode) and isinstance(part, int):
+            node = node.value[part]
+        else:
+            raise _NotPossible
+    if node is None:
+        raise _NotPossible
+    return node
+
+
+def _end(node: yaml.Node) -> int:
+    """Where the text of a node ends; the end that YAML gives for blocks includes the comments behind them."""
+    if isinstance(node, yaml.MappingNode) and not node.flow_style and node.value:
+        return max(_end(node.value[-1][1]), _end(node.value[-1][0]))
+    if isinstance(node, yaml.SequenceNode) and not node.flow_style and node.value:
+        return _end(node.value[-1])
+    return int(node.end_mark.index)
+
+
+def _replace(text: str, node: yaml.Node, value: Any, key: yaml.Node | None = None) -> str:
+    new = yaml_flow(value)
+    start, end = node.start_mark.index, _end(node)
+    while end > start and text[end - 1] in "\r\n":
+        end -= 1
+    block = isinstance(node, yaml.CollectionNode) and not node.flow_style
+    if key is not None and (block or start == end):
+        start = text.index(":", key.end_mark.index) + 1
+        new = f" {new}"
+    return text[:start] + new + text[end:]
+
+
+def _remove(text: str, parent: yaml.MappingNode, index: int) -> str:
+    pairs = parent.value
+    key, value = pairs[index]
+    start, end = key.start_mark.index, max(_end(value), key.end_mark.index)
+    if len(pairs) == 1:
+        if parent.flow_style:
+            return text[:start] + text[end:]
+        return text[:start] + "{}" + text[end:]
+    if parent.flow_style:
+        if index + 1 < len(pairs):
+            return text[:start] + text[pairs[index + 1][0].start_mark.index :]
+        return text[: _end(pairs[index - 1][1])] + text[end:]
+    line = text.rfind("\n", 0, start) + 1
+    if text[line:start].strip():  # behind the dash of a list: the next pair takes the place
+        if index + 1 >= len(pairs):
+            raise _NotPossible
+        return text[:start] + text[pairs[index + 1][0].start_mark.index :]
+    stop = text.find("\n", max(start, end - 1))
+    stop = len(text) if stop < 0 else stop + 1
+    behind = text[end:stop]
+    comment = text[line:start] + behind.lstrip() if behind.lstrip().startswith("#") else ""  # it stays, on its own
+    return text[:line] + comment + text[stop:]
+
+
+def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
+    if any(_is_key(other, key) for other, _ in parent.value):
+        raise _NotPossible
+    pair = f"{yaml_flow(key)}: {yaml_flow(value)}"
+    if not parent.value:
+        start, end = parent.start_mark.index, parent.end_mark.index
+        return f"{text[:start]}{{{pair}}}{text[end:]}"
+    last_key, last_value = parent.value[-1]
+    end = (
+        max(_end(last_value), last_key.end_mark.index) if last_value.start_mark.index >= last_key.end_mark.index else -1
+    )
+    if end < 0:
+        raise _NotPossible
+    if parent.flow_style:
+        return f"{text[:end]}, {pair}{text[end:]}"
+    while text[end - 1] in "\r\n":
+        end -= 1
+    stop = text.find("\n", end)
+    newline = "\r\n" if "\r\n" in text else "\n"
+    indent = " " * parent.value[0][0].start_mark.column
+    if stop < 0:
+        return f"{text}{newline}{indent}{pair}"
+    return f"{text[: stop + 1]}{indent}{pair}{newline}{text[stop + 1 :]}"
+
+
+def _unshared(value: Any) -> Any:
+    """A copy in which what an anchor shares is there once for each place."""
+    if isinstance(value, Mapping):
+        return {key: _unshared(item) for key, item in value.items()}
+    return [_unshared(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+def _equal(a: Any, b: Any) -> bool:
+    """Equal values of equal types (1 is not true, nor 1.0)."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping):
+        return set(a) == set(b) and all(_equal(a[key], b[key]) for key in a)
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return len(a) == len(b) and all(map(_equal, a, b))
+    if isinstance(a, float) and isinstance(b, float):
+        return a == b or abs(a - b) <= 1e-9 * abs(a)
+    if (
+        isinstance(a, (int, float))
+        and isinstance(b, (int, float))
+        and not isinstance(a, bool)
+        and not isinstance(b, bool)
+    ):
+        return a == b
+    return type(a) is type(b) and bool(a == b)

@@ -1,0 +1,42 @@
+"""What the YAML parser complains about, as a diagnostic."""
+
+from __future__ import annotations
+
+import yaml
+
+from irsim.diagnostics.diagnostic import Diagnostic, Path
+
+__all__ = ["syntax_problem"]
+
+
+def syntax_problem(error: yaml.YAMLError, text: str, path: Path) -> Diagnostic:
+    """The diagnostic for a parser's exception.
+
+    Args:
+        error: What the parser raised.
+        text: What it was reading.
+        path: How far the document was understood.
+    """
+    line = column = 1
+    message = " ".join(str(error).split())
+    if isinstance(error, yaml.MarkedYAMLError):
+        mark = error.problem_mark or error.context_mark
+        if mark is not None:
+            line, column = mark.line + 1, mark.column + 1
+        message = ", ".join(part for part in (error.context, error.problem) if part)
+    elif isinstance(error, yaml.reader.ReaderError):
+        position = error.position if isinstance(error.position, int) else 0
+        before = text[:position]
+        line, column = before.count("\n") + 1, position - before.rfind("\n")
+        message = "a character that YAML does not allow"
+    fix = None
+    if "cannot start any token" in message and _character(text, line, column) == "\t":
+        message, fix = "a tab is used for indentation", "indent with spaces"
+    elif "cannot start any token" in message and _character(text, line, column) == "`":
+        message, fix = "a Markdown fence is not part of the YAML", "leave out the lines with ```"
+    return Diagnostic("yaml-syntax", "error", path, message, line=line, column=column, fix=fix)
+
+
+def _character(text: str, line: int, column: int) -> str:
+    lines = text.splitlines()
+    return lines[line - 1][column - 1 : column] if 0 < line <= len(lines) else ""

@@ -1,0 +1,1 @@
+"""Worlds of the core, stepped from Python."""

@@ -1,0 +1,215 @@
+"""Resolved scenario → core world: every option of every object handed to the kernel that computes it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.components.behaviors.follow import Follow
+from irsim.components.maps._grid import MapCells, Walls
+from irsim.objects.shapely_geometry import compound_body
+from irsim.options.registry import (
+    BEHAVIORS,
+    CUSTOM_GROUP_BEHAVIORS,
+    KINEMATICS,
+    PLANNERS,
+    SENSORS,
+    SHAPES,
+    Feature,
+    Registry,
+)
+from irsim.simulation.fog import build_fog
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+
+__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
+
+COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
+PLACEMENT_ATTEMPTS = 1000
+_ROLES = {"robot": 0, "obstacle": 1}
+_TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
+_ARRIVE = {"position": 0, "state": 1}
+
+
+def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
+    """Three numbers: ``values`` cut or filled up with ``fill``."""
+    row = [float(v) for v in values[:3]]
+    return row + [fill] * (3 - len(row))
+
+
+def feature_of(registry: Registry, options: BaseModel) -> Feature:
+    """The registered feature an options model belongs to."""
+    feature = registry.get(str(getattr(options, "name", "")))
+    if feature is None:
+        raise LookupError(f"{type(options).__name__} is not a registered {registry.kind}")
+    return feature
+
+
+def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> Any:
+    """The core's options object for ``options``; ``resolved`` fills fields that depend on more than these options.
+
+    Returns None for features computed in Python.
+    """
+    kernel = feature_of(registry, options).kernel
+    if kernel is None:
+        return None
+    return kernel(**{name: resolved[name] if name in resolved else getattr(options, name) for name in kernel.fields})
+
+
+def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOptions]:
+    """Options of the native behavior that drives each group as a whole: the `group_behavior` of its first member.
+
+    Groups without one, or with one of user code, are left out; their members follow their own `behavior`.
+    """
+    leaders: dict[int, ObjectRecord] = {}
+    for record in records:
+        if record.joined:
+            leaders.setdefault(record.group, record)
+    found: dict[int, BehaviorOptions] = {}
+    for group, leader in leaders.items():
+        options = leader.group_behavior
+        if not isinstance(options, BehaviorOptions) or not options.in_group:
+            continue
+        feature = BEHAVIORS.get(options.name)
+        own = CUSTOM_GROUP_BEHAVIORS.has(getattr(leader.kinematics, "name", None), options.name)
+        if feature is not None and feature.kernel is not None and not own:
+            found[group] = options
+    return found
+
+
+def build_object(
+    record: ObjectRecord, group_behavior: BehaviorOptions | None = None, *, contact: bool = False
+) -> core.ObjectSpec:
+    """One object of the core's template world.
+
+    Args:
+        record: The object.
+        group_behavior: What drives its group (:func:`group_behaviors`); wins over its own behavior.
+        contact: Whether contacts will be resolved, which needs the centroid of compounds.
+    """
+    if isinstance(record.shape, (MapCells, Walls)):
+        parts = record.shape.parts()
+    else:
+        shape = feature_of(SHAPES, record.shape)
+        if shape.function is None:
+            raise LookupError(f"shape {shape.name!r} has no geometry")
+        parts = shape.function(record.shape)
+    drive = None
+    if record.kinematics is not None:
+        psi_max = getattr(record.kinematics, "psi_max", None)
+        drive = kernel_options(
+            KINEMATICS,
+            record.kinematics,
+            wheelbase=record.wheelbase or 1.0,
+            psi_max=float("inf") if psi_max is None else psi_max,
+        )
+    behavior = route = None
+    options: Any = record.behavior if group_behavior is None else group_behavior
+    if isinstance(options, Follow):
+        route, options = build_route(options), options.local
+    if (
+        options is not None
+        and record.kinematics is not None
+        and BEHAVIORS.get(str(getattr(options, "name", ""))) is not None
+    ):
+        behavior = kernel_options(BEHAVIORS, options)
+    return core.ObjectSpec(
+        number=record.id,
+        role=_ROLES[record.role],
+        group=record.group if record.joined else -1 - record.id,
+        drive=drive,
+        parts=parts,
+        static=record.static,
+        unobstructed=record.unobstructed,
+        wander=record.wander,
+        loop=record.loop,
+        pose=padded(record.state),
+        extra=[float(v) for v in record.state[3:]],
+        control=padded(record.velocity),
+        vel_min=padded(record.vel_min),
+        vel_max=padded(record.vel_max),
+        acce=padded(record.acce, float("inf")),
+        angle_range=record.angle_range,
+        goals=record.goals,
+        goal_threshold=record.goal_threshold,
+        arrive_mode=_ARRIVE[record.arrive_mode],
+        range_low=padded(record.range_low),
+        range_high=padded(record.range_high),
+        target_roles=_TARGETS[record.target_roles if group_behavior is None else group_behavior.target_roles],
+        behavior=behavior,
+        grouped=group_behavior is not None,
+        route=route,
+        sensors=[kernel_options(SENSORS, sensor) for sensor in record.sensors],
+        centroid=compound_body(parts) if contact and len(parts) > 1 else [],
+        mass=record.mass,
+        friction=record.friction,
+        inertia=math.nan if record.inertia is None else record.inertia,
+        restitution=record.restitution,
+        tau=record.drive_tau,
+        driven=record.kinematics is not None,
+    )
+
+
+def build_route(options: Follow) -> core.RouteOptions:
+    """How the core plans for an object with the behavior ``follow``."""
+    resolved = {"resolution": getattr(options.planner, "resolution", None) or 0.0}
+    return core.RouteOptions(
+        planner=kernel_options(PLANNERS, options.planner, **resolved),
+        replan=options.replan or 0.0,
+        lookahead=options.lookahead or 0.0,
+    )
+
+
+Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec]]
+"""What was built for a record, by its identity: the record, its group's behavior, the object."""
+
+
+def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None = None) -> core.World:
+    """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`.
+
+    Args:
+        scenario: What to build.
+        copies: Worlds.
+        built: What an earlier call built, taken again for the records that are still there; brought up to date.
+    """
+    groups = group_behaviors(scenario.objects)
+    contact = scenario.world.collision_mode == "contact"
+    row = {record.id: index for index, record in enumerate(scenario.objects)}
+    before = {} if built is None else built
+    now: Built = {}
+    for record in scenario.objects:
+        group_behavior = groups.get(record.group) if record.joined else None
+        known = before.get(id(record))
+        if known is None or known[0] is not record or known[1] is not group_behavior:
+            known = record, group_behavior, build_object(record, group_behavior, contact=contact)
+        now[id(record)] = known
+    if built is not None:
+        built.clear()
+        built.update(now)
+    world = core.World(
+        step_time=scenario.world.step_time,
+        collision_mode=COLLISION_MODES[scenario.world.collision_mode],
+        gravity=scenario.world.gravity,
+        objects=[now[id(record)][2] for record in scenario.objects],
+        placements=[
+            core.RandomPlacement(
+                objects=[row[number] for number in placement.objects if number in row],
+                range_low=placement.range_low,
+                range_high=placement.range_high,
+                min_distance=placement.min_distance,
+                attempts=PLACEMENT_ATTEMPTS,
+            )
+            for placement in scenario.placements
+        ],
+        copies=copies,
+        fog=build_fog(scenario),
+    )
+    x0, y0, x1, y1 = scenario.world.bounds
+    world.extent = x0, y0, x1, y1
+    return world

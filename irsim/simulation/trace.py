@@ -1,0 +1,191 @@
+"""Everything that happened in an episode, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["Rollout", "Trace", "joined", "next_rows", "present_row", "record", "record_rollout", "sensors"]
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """Arrays over T executed steps and N objects; row t is the state after step t + 1 of the rollout.
+
+    Attributes:
+        time: (T,) simulated time [s].
+        pose: (T, N, 3) x, y [m], heading [rad], world frame.
+        control: (T, N, 3) executed controls, command frame, zero padded.
+        arrived, collided: (T, N) flags.
+        names: Names of the objects, in order.
+    """
+
+    time: Floats
+    pose: Floats
+    control: Floats
+    arrived: Flags
+    collided: Flags
+    names: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Arrays over T rows and N objects; row 0 is the state at the start, each further row that after one more step.
+
+    Attributes:
+        step: (T,) steps executed, 0 at the start of the episode.
+        time: (T,) simulated time [s].
+        pose: (T, N, 3) x, y [m], heading [rad], world frame.
+        control: (T, N, 3) control executed in the step that led to the row, command frame, zero padded; of a run that
+            was read back, to single precision.
+        goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN where there is none.
+        arrived, collided, stopped: (T, N) flags.
+        ranges: (T, B) ranges [m] of each sensor, infinite where a beam hit nothing; by ``<object name>/<number of the
+            sensor among the object's native ones>``. Empty if scans were not kept; of a recorded run that was too large
+            to keep all of them there are as many rows as were kept.
+        names: Names of the objects, in order.
+        step_time: Period [s].
+    """
+
+    step: NDArray[np.int64]
+    time: Floats
+    pose: Floats
+    control: Floats
+    goal: Floats
+    arrived: Flags
+    collided: Flags
+    stopped: Flags
+    ranges: dict[str, NDArray[np.float32]]
+    names: tuple[str, ...]
+    step_time: float
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+
+def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
+    """Advance the only world of ``simulation`` and keep everything, the present state included.
+
+    Args:
+        simulation: One world.
+        steps: Periods at most.
+        until_done: End once every robot has arrived or stopped.
+        scans: Keep what native range sensors measure, too.
+
+    Raises:
+        ValueError: ``steps`` is negative.
+    """
+    return joined([present_row(simulation, scans), next_rows(simulation, steps, until_done=until_done, scans=scans)])
+
+
+def present_row(simulation: Simulation, scans: bool = False) -> Trace:
+    """The present state of the only world of ``simulation``, as a trace of one row."""
+    return _trace(simulation, int(simulation.count[0]), _present(simulation, scans), 1, scans)
+
+
+def next_rows(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
+    """Advance like :func:`record`; the trace holds the rows after the present one, none if nothing was left to do.
+
+    Rows are written inside the core where no Python takes part.
+    """
+    if steps < 0:
+        raise ValueError(f"steps is 0 or more, not {steps}")
+    begin = int(simulation.count[0])
+    if not simulation.in_python:
+        kept = core.rollout(simulation.world, simulation.state, steps, until_done=until_done, returns=scans)
+        rows: list[NDArray[Any]] = [
+            kept.pose,
+            kept.control,
+            kept.goal,
+            kept.arrived,
+            kept.collided,
+            kept.stopped,
+            kept.returns,
+        ]
+        return _trace(simulation, begin + 1, rows, len(kept.pose), scans)
+    taken: list[list[NDArray[Any]]] = []
+    for _ in range(steps):
+        if until_done and simulation.state.done(0):
+            break
+        simulation.step()
+        taken.append(_present(simulation, scans))
+    taken = taken or [[value[:0] for value in _present(simulation, scans)]]
+    columns = [np.concatenate([row[number] for row in taken]) for number in range(len(taken[0]))]
+    return _trace(simulation, begin + 1, columns, len(columns[0]), scans)
+
+
+def joined(parts: Sequence[Trace]) -> Trace:
+    """Traces that follow each other as one."""
+    if len(parts) == 1:
+        return parts[0]
+    first = parts[0]
+    stacked = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
+    }
+    ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
+    return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time)
+
+
+def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:
+    """Advance the only world of ``simulation`` by up to ``steps`` periods and keep poses, controls and flags."""
+    rows = next_rows(simulation, steps, until_done=until_done)
+    return Rollout(rows.time, rows.pose, rows.control, rows.arrived, rows.collided, rows.names)
+
+
+def _present(simulation: Simulation, scans: bool) -> list[NDArray[Any]]:
+    """Pose, control, goal, flags and ranges as they are, each with a leading axis of one."""
+    flags = (simulation.arrived, simulation.collided, simulation.stopped)
+    ranges = np.zeros(0, dtype=np.float32)
+    if scans:
+        ranges = np.where(simulation.valid.astype(bool), simulation.ranges, np.inf).astype(np.float32)
+    values: tuple[NDArray[Any], ...] = (simulation.pose, simulation.control, simulation.goal, *flags, ranges)
+    return [value[None].copy() for value in values]
+
+
+def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], count: int, scans: bool) -> Trace:
+    names = tuple(record.name for record in simulation.scenario.objects)
+    step_time = float(simulation.scenario.world.step_time)
+    step = np.arange(begin, begin + count, dtype=np.int64)
+    pose, control, goal, arrived, collided, stopped, ranges = columns
+    return Trace(
+        step=step,
+        time=step.astype(np.float64) * step_time,
+        pose=pose.astype(np.float64, copy=False),
+        control=control.astype(np.float64, copy=False),
+        goal=goal.astype(np.float64, copy=False),
+        arrived=arrived.astype(bool),
+        collided=collided.astype(bool),
+        stopped=stopped.astype(bool),
+        ranges={key: ranges[:, beams].astype(np.float32, copy=False) for key, beams in sensors(simulation)}
+        if scans
+        else {},
+        names=names,
+        step_time=step_time,
+    )
+
+
+def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
+    """Every sensor with beams as ``<object>/<number>``, and which of the ranges of a world are its own."""
+    records = simulation.scenario.objects
+    numbers: dict[int, int] = {}
+    found = []
+    for owner, first, count in simulation.world.scans():
+        number = numbers[owner] = numbers.get(owner, -1) + 1
+        found.append((f"{records[owner].name}/{number}", slice(first, first + count)))
+    return found

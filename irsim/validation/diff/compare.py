@@ -1,0 +1,79 @@
+"""What differs between two scenarios: in the files, by key, and in the worlds they become, by object."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from irsim.diagnostics.errors import PlacementError
+from irsim.results.results import KeyChange, ScenarioDiff, WorldChange
+from irsim.scenario.read import Reading
+from irsim.scenario.yaml.comments import comments
+from irsim.validation.diff.keys import changed_keys, data_of, entry_pairs, place
+from irsim.validation.diff.text import changed_comments, changed_lines, comments_told
+from irsim.validation.diff.worlds import changed_worlds
+
+__all__ = ["compare"]
+
+_NAMED = 6
+
+
+def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
+    """Compare two scenarios that have been read.
+
+    Args:
+        a: The one before.
+        b: The one after.
+        seed: Both worlds are built with it; default: the scenario's own, else 0.
+    """
+    keys = list(changed_keys(data_of(a.document), data_of(b.document), ()))
+    pairs = entry_pairs(a.document, b.document)
+    worlds, why = None, "one of the scenarios is invalid"
+    if a.scenario is not None and b.scenario is not None:
+        try:
+            worlds = changed_worlds(a.scenario, b.scenario, pairs, seed, keys)
+        except PlacementError as error:
+            why = error.diagnostics[0].message
+    lines = changed_lines(a.document.text, b.document.text)
+    lost, edited = changed_comments(a.document, b.document, pairs)
+    there = bool(comments(a.document.text or ""))
+    return ScenarioDiff(
+        before=a.document.name or "(text)",
+        after=b.document.name or "(text)",
+        same=not keys and not worlds,
+        summary=_summary(keys, worlds, why, comments_told(there, lost, edited)),
+        keys=keys,
+        world=worlds,
+        comments_lost=lost,
+        comments_changed=edited,
+        lines_removed=lines[0],
+        lines_added=lines[1],
+    )
+
+
+def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why: str, comments: str) -> str:
+    moved = [change for change in keys if change.change == "moved"]
+    written = [change for change in keys if change.change != "moved"]
+    if not written:
+        text = "no key differs but for the order" if moved else "no key differs"
+    else:
+        named = ", ".join(place(change.change, change.path) for change in written[:_NAMED])
+        more = f" and {len(written) - _NAMED} more" if len(written) > _NAMED else ""
+        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}{more}"
+    if moved:
+        told = ", ".join(f"{change.before} is now {change.after}" for change in moved[:_NAMED])
+        text += f"{'; the order differs' * bool(written)}: {told}"
+        text += f" and {len(moved) - _NAMED} more" if len(moved) > _NAMED else ""
+        if any(change.path.startswith(("robot[", "obstacle[")) and change.path.count("[") == 1 for change in moved):
+            text += ", which changes ids and labels"
+        if any(change.path.startswith("robot[") and change.path.count("[") == 1 for change in moved):
+            text += " and which robot env.step(action) drives"
+    if world is None:
+        text += f"; the worlds are not compared: {why}"
+    else:
+        further = list(dict.fromkeys(change.object or "the world" for change in world if not change.direct))
+        named = ", ".join(further[:_NAMED]) + (f" and {len(further) - _NAMED} more" if len(further) > _NAMED else "")
+        if further:
+            text += f"; which also changes {named}" if keys else f"; in the world: {named}"
+        elif not world:
+            text += "; the worlds are the same"
+    return text + (f"; {comments}" if comments else "")

@@ -1,0 +1,132 @@
+"""Which objects of two worlds are the same one, and in which facts two objects differ."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import defaultdict, deque
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from typing import Any
+
+from irsim.validation.diff.keys import Pairs, same
+
+__all__ = ["differing", "listed", "object_facts", "twins_of"]
+
+_SHIFTING = ("name", "entry", "index", "group", "group_members")
+"""Of an object's description: numbers and names that shift when others come or go."""
+_ALIKE, _MANY = 2, 2_500
+"""Objects that belong together although neither name nor place says so: differing facts, pairs that are looked at."""
+_NUMBERED = re.compile(r"(robot|obstacle)_\d+\Z")
+
+
+def twins_of(a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[str, Pairs]) -> list[tuple[int, int]]:
+    """Objects that are the same one in both worlds, whatever entries they are written in.
+
+    These are, one after the other: those of one name, equal ones, those with one number in entries that belong
+    together, and those of which only a fact or two differ.
+
+    Args:
+        a: Objects of one world, as described.
+        b: Of the other.
+        pairs: Entries of the files that belong together, by section.
+
+    Returns:
+        Places in ``a`` and ``b``, by those in ``a``.
+    """
+    places = {f"{role}[{i}]": f"{role}[{j}]" for role, found in pairs.items() for i, j in found if None not in (i, j)}
+    left, right = dict.fromkeys(range(len(a))), dict.fromkeys(range(len(b)))
+    twins = []
+
+    def take(of_a: Callable[[Any], Hashable], of_b: Callable[[Any], Hashable]) -> None:
+        """Pair those of one key, in order; None is no key."""
+        there = defaultdict[Hashable, deque[int]](deque)
+        for j in right:
+            there[of_b(b[j])].append(j)
+        for i in list(left):
+            key = of_a(a[i])
+            if key is not None and there[key]:
+                j = there[key].popleft()
+                twins.append((i, j))
+                del left[i], right[j]
+
+    facts = {id(item): _facts(item) for item in (*a, *b)}
+
+    def place_in_b(item: Any) -> Hashable:
+        entry = listed(item["entry"])
+        return (places[entry], item["index"]) if entry in places else None
+
+    def place(item: Any) -> Hashable:
+        return listed(item["entry"]), item["index"]
+
+    take(_written_name, _written_name)
+    take(lambda item: (place_in_b(item), facts[id(item)]), lambda item: (place(item), facts[id(item)]))
+    take(lambda item: (item["name"], facts[id(item)]), lambda item: (item["name"], facts[id(item)]))
+    take(lambda item: facts[id(item)], lambda item: facts[id(item)])
+    take(place_in_b, place)
+    if len(left) * len(right) <= _MANY:
+        alike = sorted(
+            (different, a[i]["name"] != b[j]["name"], i, j)
+            for i in left
+            for j in right
+            if (different := _difference(a[i], b[j])) <= _ALIKE
+        )
+        for _, _, i, j in alike:
+            if i in left and j in right:
+                twins.append((i, j))
+                del left[i], right[j]
+    return sorted(twins)
+
+
+def _written_name(item: Mapping[str, Any]) -> Hashable:
+    """The name of an object that has one of its own; the map and the walls have their place."""
+    if item["entry"].startswith("world"):
+        return str(item["entry"])
+    return None if _NUMBERED.match(item["name"]) else (item["role"], item["name"])
+
+
+def _facts(item: Mapping[str, Any]) -> str:
+    """What an object is, whatever its number."""
+    shown = {key: value for key, value in item.items() if key not in _SHIFTING}
+    return json.dumps([_written_name(item), shown], sort_keys=True)
+
+
+def _difference(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
+    """How many of their keys differ; objects of two roles are two, as are those that have two names."""
+    names = _written_name(a), _written_name(b)
+    if a["role"] != b["role"] or (None not in names and names[0] != names[1]):
+        return float("inf")
+    return len({re.split(r"[.\[]", key, maxsplit=1)[0] for key, _, _ in object_facts(a, b)})
+
+
+def object_facts(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
+    """Facts that differ between two objects; a footprint only if no other fact explains it."""
+    before, after = ({key: value for key, value in item.items() if key not in _SHIFTING} for item in (a, b))
+    found = list(differing(before, after))
+    if a["name"] != b["name"] and not (_NUMBERED.match(a["name"]) and _NUMBERED.match(b["name"])):
+        found.insert(0, ("name", a["name"], b["name"]))
+    explained = any(key.partition(".")[0] in ("pose", "shape", "wheelbase") for key, _, _ in found)
+    yield from (fact for fact in found if not (explained and fact[0].startswith("footprint")))
+
+
+def differing(a: Any, b: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Facts that differ; lists of numbers are one fact."""
+    if isinstance(a, Mapping) and isinstance(b, Mapping) and a.get("name") == b.get("name"):
+        for name in dict.fromkeys([*a, *b]):
+            yield from differing(a.get(name), b.get(name), f"{key}.{name}" if key else str(name))
+        return
+    if (
+        isinstance(a, list)
+        and isinstance(b, list)
+        and len(a) == len(b)
+        and all(isinstance(x, Mapping) for x in [*a, *b])
+    ):
+        for index, (x, y) in enumerate(zip(a, b, strict=True)):
+            yield from differing(x, y, f"{key}[{index}]")
+        return
+    if not same(a, b) and a != b:
+        yield key, a, b
+
+
+def listed(entry: str) -> str:
+    """Where an entry stands; a single one is the first of a list."""
+    return f"{entry}[0]" if entry in ("robot", "obstacle") else entry

@@ -1,0 +1,104 @@
+"""Robots that have somewhere to go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from irsim.diagnostics.diagnostic import Path
+from irsim.scenario.checks import Context
+from irsim.scenario.checks.overlap import reach_of
+from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, top_speed
+from irsim.scenario.resolve.resolved import ObjectRecord
+
+__all__ = ["Mover", "movers_of"]
+
+_MOST = 2000
+
+
+@dataclass(frozen=True)
+class Mover:
+    """A robot, or an obstacle with a behavior of its own.
+
+    Attributes:
+        record: It.
+        parts: Its body.
+        radius: Of the disc inside of its body; where that cannot be, it cannot be either [m].
+        offset: Middle of that disc, body frame [m].
+        around: Radius of the circle about that middle that holds its body [m].
+        speed: Highest [m/s].
+        path: Where its goals are written.
+        several: Whether a list of goals is written there.
+    """
+
+    record: ObjectRecord
+    parts: Sequence[Any]
+    radius: float
+    offset: tuple[float, float]
+    around: float
+    speed: float
+    path: Path
+    several: bool = False
+
+    def goal_path(self, index: int) -> Path:
+        """Where one of its goals is written."""
+        return (*self.path, index) if self.several else self.path
+
+    @property
+    def is_disc(self) -> bool:
+        """Whether the disc is all there is."""
+        return self.around <= self.radius * (1 + 1e-9)
+
+    @property
+    def reach(self) -> float:
+        """How far from a goal the middle of the disc may be on arrival [m]."""
+        return self.record.goal_threshold + math.hypot(*self.offset)
+
+    def centre(self, pose: Sequence[float]) -> tuple[float, float]:
+        """Middle of the disc at a pose of the body."""
+        cos, sin = math.cos(pose[2]), math.sin(pose[2])
+        x, y = self.offset
+        return pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y
+
+    @property
+    def behavior(self) -> str:
+        """Name of what drives it, "" for none."""
+        record = self.record
+        return str(getattr(record.behavior if record.group_behavior is None else record.group_behavior, "name", ""))
+
+
+def movers_of(context: Context) -> list[Mover]:
+    """Those with a body of which a part is filled, the same in every scene."""
+    found: list[Mover] = []
+    known: dict[int, tuple[list[Any], tuple[float, float, float]]] = {}
+    for record in context.written:
+        if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
+            continue
+        if record.role != "robot" and record.behavior is None:
+            continue
+        if record.behavior is None and record.group_behavior is None and not _has_goal(context, record):
+            continue  # a program drives it, and nobody said where
+        key = id(record.shape)
+        if key not in known:
+            parts = parts_of(record.shape)
+            known[key] = parts, inner_disc(parts)
+        parts, (x, y, radius) = known[key]
+        if radius <= 0 or len(found) >= _MOST:
+            continue
+        around = radius if record.shape.name == "circle" else reach_of(record.shape) + math.hypot(x, y)
+        path = _goal_path(context, record)
+        found.append(Mover(record, parts, radius, (x, y), around, top_speed(record), path, context.has_goals(path)))
+    return found
+
+
+def _has_goal(context: Context, record: ObjectRecord) -> bool:
+    return any(context.given(record, key) for key in ("goal", "waypoints", "distribution"))
+
+
+def _goal_path(context: Context, record: ObjectRecord) -> Path:
+    for key in ("waypoints", "goal"):
+        if context.given(record, key):
+            return context.entry_path(record, key)
+    return (*record.path, "distribution") if context.given(record, "distribution") else record.path

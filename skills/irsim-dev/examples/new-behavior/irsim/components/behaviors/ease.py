@@ -1,0 +1,25 @@
+"""``ease``: straight to the goal, slower the nearer it is."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.behaviors._options import BehaviorOptions
+from irsim.options.registry import BEHAVIORS
+from irsim.options.units import Meters
+
+
+class Ease(BehaviorOptions):
+    """Drive straight to the goal, and slow down within some distance of it, looking at nobody."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ease"}, {"name": "ease", "slow_radius": 2.0}]}
+
+    name: Literal["ease"] = "ease"
+    slow_radius: Annotated[Meters, Field(gt=0)] = 1.0
+    """Distance of the goal from which on the speed falls, in proportion to what is left."""
+
+
+BEHAVIORS.register(Ease, kernel=core.EaseOptions)

@@ -1,0 +1,35 @@
+"""``stadium``: a rectangle with round ends, as many carts have."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+import irsim._core as core
+from irsim.components.shapes._options import ShapeOptions
+from irsim.options.registry import SHAPES
+from irsim.options.units import Meters
+
+
+class Stadium(ShapeOptions):
+    """A rectangle with a half disc at the front and one at the back."""
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "stadium", "length": 1.0, "width": 0.4}]}
+
+    name: Literal["stadium"] = "stadium"
+    length: Annotated[Meters, Field(gt=0)] = 1.0
+    """Of the straight sides, along the heading; the ends come on top."""
+    width: Annotated[Meters, Field(gt=0)] = 0.4
+    """Across the heading; the ends have half of it as their radius."""
+
+
+@SHAPES.register(Stadium)
+def parts(options: Stadium) -> list[core.Part]:
+    """Geometry for the core, body frame: the origin is in the middle."""
+    x, y = options.length / 2, options.width / 2
+    return [
+        core.Polygon(vertices=[[-x, -y], [x, -y], [x, y], [-x, y]]),
+        core.Circle(radius=y, center=[x, 0.0]),
+        core.Circle(radius=y, center=[-x, 0.0]),
+    ]
