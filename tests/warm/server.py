@@ -198,6 +198,8 @@ if __name__ == "__main__":
         _known.json_schema._definitions = _known.definitions
         for _user_code in (True, False):
             _known.definitions(_user_code)
+        for _registry in _known.REGISTRIES.values():
+            _registry._plugins = None  # what is installed is looked up by each program
     gc.collect()
     gc.freeze()
     _program = serve(sys.argv[1])
