@@ -216,7 +216,7 @@ def test_shapes_of_the_next_scene_are_seen(make: Callable[..., Any]) -> None:
 
 def test_a_world_of_a_batch_can_be_looked_at(make: Callable[..., Any]) -> None:
     from irsim.objects.views import make_view
-from irsim.simulation.simulation import Simulation
+    from irsim.simulation.simulation import Simulation
 
     env = make(
         "robot: {kinematics: {name: diff}, behavior: {name: dash}, distribution: {name: random},"
