@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ("README.md", "CONTRIBUTING.md", "AGENTS.md", "evals/README.md", "irsim/core/README.md")
+PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "AGENTS.md", "evals/README.md", "irsim/core/README.md")
 TOP = r"(?:irsim|mcp_server|tests|skills|templates|schema|evals|\.ci|\.github)"
 each = pytest.mark.parametrize("name", PAGES)
 
