@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

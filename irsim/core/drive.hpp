@@ -7,7 +7,7 @@
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

@@ -1,8 +1,8 @@
 // The phases of one period of one world; `step` is their sequence.
 #pragma once
 
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

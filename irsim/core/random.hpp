@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 #ifdef _MSC_VER
 #include <intrin.h>
 #endif

@@ -5,9 +5,9 @@
 //   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, else none
 #pragma once
 
-#include "state.hpp"
-#include "workspace.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/workspace.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

@@ -1,7 +1,7 @@
 #include "behaviors/rvo.hpp"
 
-#include "surroundings.hpp"
-#include "velocity_obstacles.hpp"
+#include "rvo/velocity_obstacles.hpp"
+#include "surroundings/ego.hpp"
 
 namespace irsim {
 namespace {

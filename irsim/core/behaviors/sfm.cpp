@@ -1,7 +1,7 @@
 #include "behaviors/sfm.hpp"
 
 #include "geometry/predicates.hpp"
-#include "surroundings.hpp"
+#include "surroundings/ego.hpp"
 
 namespace irsim {
 namespace {

@@ -1,7 +1,7 @@
 // How far two footprints are from each other.
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

@@ -1,7 +1,7 @@
 // Exact test of two footprints (the narrow phase).
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

@@ -4,8 +4,8 @@
 
 #include "contact/triangulate.hpp"
 #include "geometry/predicates.hpp"
-#include "spec.hpp"
-#include "world.hpp"
+#include "world/spec.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 namespace {

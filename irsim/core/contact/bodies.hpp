@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

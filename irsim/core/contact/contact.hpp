@@ -7,7 +7,7 @@
 
 #include "contact/overlap.hpp"
 #include "contact/packing.hpp"
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

@@ -1,7 +1,7 @@
 // How far two convex pieces overlap, and where.
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

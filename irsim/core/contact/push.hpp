@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "drive.hpp"
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

@@ -1,7 +1,7 @@
 // Where points, segments and rings lie relative to each other. Touching counts as meeting.
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

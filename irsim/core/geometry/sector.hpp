@@ -1,7 +1,7 @@
 // Which footprints reach into a slice of a disc.
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

@@ -1,8 +1,8 @@
 // The half-planes of ORCA: which velocities avoid one other agent, or one wall, for some time.
 #pragma once
 
+#include "geometry/vec.hpp"
 #include "orca/half_planes.hpp"
-#include "vec.hpp"
 
 namespace irsim {
 

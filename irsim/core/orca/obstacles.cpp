@@ -1,7 +1,7 @@
 #include "orca/obstacles.hpp"
 
-#include "scene.hpp"
-#include "world.hpp"
+#include "world/scene.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 namespace {

@@ -6,7 +6,7 @@
 #include "geometry/predicates.hpp"
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
-#include "spec.hpp"
+#include "world/spec.hpp"
 
 namespace irsim {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

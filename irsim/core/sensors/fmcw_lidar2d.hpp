@@ -1,8 +1,8 @@
 // Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit (reference: section 7).
 #pragma once
 
-#include "beams.hpp"
 #include "fields.hpp"
+#include "sensing/beams.hpp"
 
 namespace irsim {
 

@@ -1,8 +1,8 @@
 // Planar lidar: exact ranges to the boundaries of everything that is not unobstructed (reference: section 7).
 #pragma once
 
-#include "beams.hpp"
 #include "fields.hpp"
+#include "sensing/beams.hpp"
 
 namespace irsim {
 

@@ -1,0 +1,52 @@
+// The state as Python holds it: the C++ state, its world, and the arrays that look into it.
+#pragma once
+
+#include <atomic>
+
+#include "bindings/helpers.hpp"
+#include "world/state.hpp"
+
+namespace irsim {
+
+using Seeds = nb::ndarray<const std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Mask = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+struct BoundState {
+  BoundState(World& world, const Seeds& seeds, bool history);
+  /// Goes on where `before` is, each object where it was in the state and row named for it.
+  BoundState(World& world, const BoundState& before, const std::vector<std::pair<BoundState*, int>>& origins);
+
+  World* world;
+  State state;
+  std::atomic<bool> busy{false};  // a thread is inside, without the GIL
+  nb::object pose, extra, control, twist, command, drive, contact_time, air_time, touching, given, arrived, collided,
+      stopped, radius, infeasible, goal, ranges, hits, valid, beam_angles, velocities, explored, count, scene, noise,
+      seed, failed_placement;
+
+  /// `state` for a call that names its world, too.
+  State& of(const World& named);
+  void check_row(int row) const;
+  void check_world(int w) const;
+  void check_mask(const Mask& mask) const;
+  void check_idle() const;
+
+ private:
+  void expose();
+};
+
+/// Claims the state for a call that releases the GIL; a second thread gets an error instead of torn memory.
+class Claim {
+ public:
+  explicit Claim(BoundState& state) : state_(state) {
+    state_.check_idle();
+    state_.busy = true;
+  }
+  ~Claim() { state_.busy = false; }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+
+ private:
+  BoundState& state_;
+};
+
+}  // namespace irsim

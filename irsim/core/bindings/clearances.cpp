@@ -1,0 +1,73 @@
+// Distances over recorded poses.
+#include "runs/clearances.hpp"
+#include "bindings/bound_state.hpp"
+
+namespace irsim {
+namespace {
+
+using Poses = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
+
+/// What both functions take, checked.
+std::vector<Company> kinds_of(const World& world, const Poses& poses, const std::vector<int>& robots,
+                              const Mask& company) {
+  const std::size_t n = world.objects;
+  if (poses.shape(1) != n) throw nb::value_error("poses must have the shape (rows, objects, 3)");
+  if (company.shape(0) != n) throw nb::value_error("company must have one entry per object");
+  for (const int robot : robots) {
+    if (robot < 0 || robot >= world.objects) throw nb::index_error("no such object");
+  }
+  std::vector<Company> kinds;
+  for (std::size_t i = 0; i < n; ++i)
+    kinds.push_back(static_cast<Company>(std::min<int>(company.data()[i], kCompanies)));
+  return kinds;
+}
+
+nb::tuple clearances_of(World& world, BoundState& bound, int w, const Poses& poses, const std::vector<int>& robots,
+                        const Mask& company) {
+  const State& state = bound.of(world);
+  bound.check_world(w);
+  const std::vector<Company> kinds = kinds_of(world, poses, robots, company);
+  const std::size_t rows = poses.shape(0), count = rows * robots.size() * kCompanies;
+  std::vector<double> distance(count);
+  std::vector<std::int32_t> partner(count);
+  const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
+  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  {
+    nb::gil_scoped_release free;
+    clearances(world, *shapes, *fixed, reinterpret_cast<const Pose*>(poses.data()), rows, robots, kinds,
+               distance.data(), partner.data());
+  }
+  const std::size_t each = robots.size(), kept = kCompanies;
+  return nb::make_tuple(own(std::move(distance), {rows, each, kept}), own(std::move(partner), {rows, each, kept}));
+}
+
+nb::tuple least_clearances_of(World& world, BoundState& bound, int w, const Poses& poses,
+                              const std::vector<int>& robots, const Mask& company, const std::vector<int>& ends) {
+  const State& state = bound.of(world);
+  bound.check_world(w);
+  const std::vector<Company> kinds = kinds_of(world, poses, robots, company);
+  const std::size_t each = robots.size(), rows = poses.shape(0);
+  if (ends.size() != each) throw nb::value_error("ends must have one entry per robot");
+  if (rows == 0) throw nb::value_error("there are no rows");
+  std::vector<double> distance(each);
+  std::vector<std::int32_t> partner(each), row(each);
+  const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
+  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  {
+    nb::gil_scoped_release free;
+    least_clearances(world, *shapes, *fixed, reinterpret_cast<const Pose*>(poses.data()), rows, robots, kinds, ends,
+                     distance.data(), partner.data(), row.data());
+  }
+  return nb::make_tuple(own(std::move(distance), {each}), own(std::move(partner), {each}), own(std::move(row), {each}));
+}
+
+}  // namespace
+
+void bind_clearance(nb::module_& m) {
+  m.def("clearances", &clearances_of, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("poses"),
+        nb::arg("robots"), nb::arg("company"));
+  m.def("least_clearances", &least_clearances_of, nb::arg("world"), nb::arg("state"), nb::arg("index"),
+        nb::arg("poses"), nb::arg("robots"), nb::arg("company"), nb::arg("ends"));
+}
+
+}  // namespace irsim
