@@ -54,7 +54,7 @@ void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
 void look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
   obstacles.clear();
   obstacles.horizon = kWallHorizon;
-  const double room = ego.route != nullptr ? ego.route->room : ego.radius;  // kept from walls
+  const double room = ego.route != nullptr ? ego.route->wall_radius : ego.radius;  // kept from walls
   const auto bar = [&](Vec2 a, Vec2 b, double radius) {
     a = a - ego.position, b = b - ego.position;
     const Vec2 nearest = nearest_on_segment(a, b, {});

@@ -193,7 +193,7 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // which leads past what stands still
-      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->room};
+      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
       avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, obstacles, inner, i, speed, all);
     } else {
       avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);

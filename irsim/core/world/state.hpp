@@ -78,7 +78,7 @@ struct State {
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
   /// Where the behavior of a row heads: its goal, or a point of its route there.
   const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
-  /// The route a row is on, null without one. What stands still is its business; behaviors keep `Route::room` from it.
+  /// The route a row is on, null without one. Routes avoid static objects; behaviors only keep `Route::wall_radius` off them.
   const Route* route_of(int row) const { return routes.empty() || routes[row].path.empty() ? nullptr : &routes[row]; }
   /// Cosine and sine of the heading of a row.
   Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
