@@ -49,4 +49,7 @@ class Claim {
   BoundState& state_;
 };
 
+/// Add the methods that read shapes of single rows.
+void bind_row_geometry(nb::class_<BoundState>& state);
+
 }  // namespace irsim

@@ -48,7 +48,7 @@ void bind_log(nb::module_& m) {
           [](Log& self, BoundState& bound) {
             bound.check_idle();
             if (bound.state.record.get() != &self) throw nb::value_error("this log is not attached to this state");
-            self.add(*bound.world, bound.state);
+            self.add(bound.state);
           },
           nb::arg("state"))
       .def("clear", &Log::clear)

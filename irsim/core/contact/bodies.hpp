@@ -26,8 +26,6 @@ struct Bodies {
   std::vector<double> inverse_mass;         // (N,) [1/kg], 0 for what cannot be pushed
   std::vector<double> gyration2;            // (N,) inertia by shape per mass [m^2]
   std::vector<double> inverse_inertia;      // (N,) [1/(kg m^2)]
-
-  int objects() const { return static_cast<int>(centroid.size()); }
 };
 
 std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shapes);

@@ -43,8 +43,6 @@ class OpenCells {
     if (!(known & kOpenKnown)) find(i, j);
     return known & kOpen;
   }
-  const Lattice& lattice() const { return lattice_; }
-  const Space& space() const { return space_; }
 
  private:
   static constexpr std::uint8_t kFreeKnown = 1, kFree = 2, kOpenKnown = 4, kOpen = 8;

@@ -29,7 +29,7 @@ long long run_world(const World& world, State& state, int w, Workspace& work, co
   while (executed < schedule.steps && !(schedule.until_done && done(world, state, w))) {
     step(world, state, w, work, schedule.external);
     ++executed;
-    if (w == 0 && state.record) state.record->add(world, state);
+    if (w == 0 && state.record) state.record->add(state);
     if (recording != nullptr) record(world, state, w, *recording, scans);
   }
   if (recording != nullptr) recording->steps = executed;

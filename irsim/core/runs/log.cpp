@@ -30,7 +30,7 @@ Log::Log(const World& world, std::vector<int> movers_, int columns_, bool scans_
       flags_now_(world.objects),
       ranges_now_(beams) {}
 
-void Log::add(const World& world, const State& state) {
+void Log::add(const State& state) {
   if (rows == 0) first = state.count[0];
   double* poses = pose.add(3 * movers.size());
   float* controls = control.add(columns * movers.size());

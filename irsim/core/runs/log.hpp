@@ -36,7 +36,7 @@ struct Log {
   Log(const World& world, std::vector<int> movers, int columns, bool scans);
 
   /// Write the present state down.
-  void add(const World& world, const State& state);
+  void add(const State& state);
   /// Begin anew; the next row has everything.
   void clear();
 
