@@ -19,7 +19,7 @@ BoundState::BoundState(World& world_, const Seeds& seeds, bool history)
 
 BoundState::BoundState(World& world_, const BoundState& before, const std::vector<std::pair<BoundState*, int>>& origins)
     : world(&world_), state(world_, before.state.seed.data, before.state.keep_history, false) {
-  if (world_.copies != 1 || before.world->copies != 1) throw nb::value_error("only single worlds can go on");
+  if (world_.copies != 1 || before.world->copies != 1) throw nb::value_error("only single worlds can be continued");
   if (static_cast<int>(origins.size()) != world_.objects) throw nb::value_error("one origin per object is needed");
   before.check_idle();
   std::vector<Origin> from;
@@ -27,7 +27,7 @@ BoundState::BoundState(World& world_, const BoundState& before, const std::vecto
     source->check_row(object);
     from.push_back({source->world, &source->state, object});
   }
-  go_on(world_, state, *before.world, before.state, from);
+  continue_from(world_, state, *before.world, before.state, from);
   expose();
 }
 

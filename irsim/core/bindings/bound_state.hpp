@@ -1,4 +1,4 @@
-// The state as Python holds it: the C++ state, its world, and the arrays that look into it.
+// The state as Python holds it: the C++ state, its world and the NumPy arrays that view it.
 #pragma once
 
 #include <atomic>
@@ -13,17 +13,17 @@ using Mask = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::devi
 
 struct BoundState {
   BoundState(World& world, const Seeds& seeds, bool history);
-  /// Goes on where `before` is, each object where it was in the state and row named for it.
+  /// Continue from `before`, with each object as it was in the state and row given for it.
   BoundState(World& world, const BoundState& before, const std::vector<std::pair<BoundState*, int>>& origins);
 
   World* world;
   State state;
-  std::atomic<bool> busy{false};  // a thread is inside, without the GIL
+  std::atomic<bool> busy{false};  // whether a thread works on the state without the GIL
   nb::object pose, extra, control, twist, command, drive, contact_time, air_time, touching, given, arrived, collided,
       stopped, radius, infeasible, goal, ranges, hits, valid, beam_angles, velocities, explored, count, scene, noise,
       seed, failed_placement;
 
-  /// `state` for a call that names its world, too.
+  /// The C++ state, after a check that it belongs to this world.
   State& of(const World& named);
   void check_row(int row) const;
   void check_world(int w) const;
@@ -34,7 +34,7 @@ struct BoundState {
   void expose();
 };
 
-/// Claims the state for a call that releases the GIL; a second thread gets an error instead of torn memory.
+/// Marks the state as busy during a call that releases the GIL, so that a second thread gets an error.
 class Claim {
  public:
   explicit Claim(BoundState& state) : state_(state) {

@@ -1,4 +1,4 @@
-// Options of kinematics, behaviors, sensors and shapes, generated from their field lists.
+// Options classes of kinematics, behaviors, sensors and shapes, generated from their lists of fields.
 #include "bindings/helpers.hpp"
 #include "world/spec.hpp"
 

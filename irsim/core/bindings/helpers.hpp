@@ -1,4 +1,4 @@
-// Helpers of the bindings.
+// Helpers of the bindings: arrays without copies, and classes from lists of fields.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -22,7 +22,7 @@ namespace irsim {
 
 namespace nb = nanobind;
 
-/// A NumPy array that looks at memory somebody else owns and keeps it alive.
+/// A NumPy array that views shared memory and keeps it alive.
 template <class T, class Element>
 nb::object view(const std::shared_ptr<Element>& memory, std::initializer_list<std::size_t> shape) {
   auto* kept = new std::shared_ptr<Element>(memory);
@@ -30,7 +30,7 @@ nb::object view(const std::shared_ptr<Element>& memory, std::initializer_list<st
   return nb::ndarray<nb::numpy, T>(reinterpret_cast<T*>(memory.get()), shape.size(), shape.begin(), owner).cast();
 }
 
-/// A NumPy array of its own memory.
+/// A NumPy array that owns its memory.
 template <class T>
 nb::object own(std::vector<T> values, std::initializer_list<std::size_t> shape) {
   auto kept = std::make_shared<std::vector<T>>(std::move(values));
@@ -51,7 +51,7 @@ void read_field(Owner& owner, const Choice<Owner, Enum, N>& field, nb::handle va
       return;
     }
   }
-  throw nb::value_error((std::string(field.name) + ": '" + word + "' is not a choice").c_str());
+  throw nb::value_error((std::string(field.name) + ": '" + word + "' is not one of the choices").c_str());
 }
 
 template <class Owner, class Value>
@@ -63,7 +63,7 @@ nb::object show_field(const Owner& owner, const Choice<Owner, Enum, N>& field) {
   return nb::cast(field.words[static_cast<std::size_t>(owner.*(field.member))]);
 }
 
-/// Fill the fields of `target` from keyword arguments: all of them, and no others.
+/// Fill the fields of `target` from keyword arguments, which must name all fields and nothing else.
 template <class T>
 void read_fields(T& target, const nb::kwargs& given) {
   std::size_t used = 0;
@@ -89,7 +89,7 @@ void read_fields(T& target, const nb::kwargs& given) {
   }
 }
 
-/// Bind a struct with `fields()`: keyword constructor, `fields`, read-only attributes.
+/// Bind a struct that has `fields()`, with a keyword constructor, the tuple `fields` and read-only attributes.
 template <class T>
 void bind_fields(nb::module_& m, const char* name) {
   nb::class_<T> bound(m, name);

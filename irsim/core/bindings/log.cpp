@@ -1,13 +1,13 @@
-// The record of a world, row by row.
+// The class `Log`: the record of a world, row by row.
 #include "runs/log.hpp"
 #include "bindings/bound_state.hpp"
 
 namespace irsim {
 namespace {
 
-/// A NumPy array that looks at a column; what is added later is not seen in it.
+/// A NumPy array that views a column as it is now; it does not show rows that are added later.
 template <class T, class Element>
-nb::object shown(const Column<Element>& column, std::initializer_list<std::size_t> shape) {
+nb::object column_view(const Column<Element>& column, std::initializer_list<std::size_t> shape) {
   if (column.size() == 0) return own(std::vector<T>(), shape);
   return view<T>(std::shared_ptr<Element>(column.numbers, column.numbers->data()), shape);
 }
@@ -16,7 +16,7 @@ std::shared_ptr<Log> make_log(const World& world, const std::vector<int>& movers
   for (const int i : movers) {
     if (i < 0 || i >= world.objects) throw nb::index_error("no such object");
   }
-  if (columns < 0 || columns > 3) throw nb::value_error("controls have up to three numbers");
+  if (columns < 0 || columns > 3) throw nb::value_error("a control has up to three columns");
   return std::make_shared<Log>(world, movers, columns, scans);
 }
 
@@ -55,28 +55,32 @@ void bind_log(nb::module_& m) {
       .def_ro("first", &Log::first)
       .def_ro("rows", &Log::rows)
       .def_prop_ro("bytes", &Log::bytes)
-      .def_prop_ro(
-          "pose",
-          [](const Log& s) { return shown<double>(s.pose, {static_cast<std::size_t>(s.rows), s.movers.size(), 3}); })
+      .def_prop_ro("pose",
+                   [](const Log& s) {
+                     return column_view<double>(s.pose, {static_cast<std::size_t>(s.rows), s.movers.size(), 3});
+                   })
       .def_prop_ro("control",
                    [](const Log& s) {
                      const std::size_t columns = s.columns;
-                     return shown<float>(s.control, {static_cast<std::size_t>(s.rows), s.movers.size(), columns});
+                     return column_view<float>(s.control, {static_cast<std::size_t>(s.rows), s.movers.size(), columns});
                    })
-      .def_prop_ro("goal_rows", [](const Log& s) { return shown<std::int64_t>(s.goal_rows, {s.goal_rows.size()}); })
+      .def_prop_ro("goal_rows",
+                   [](const Log& s) { return column_view<std::int64_t>(s.goal_rows, {s.goal_rows.size()}); })
       .def_prop_ro("goal",
                    [](const Log& s) {
                      const std::size_t n = s.objects;
-                     return shown<double>(s.goal, {s.goal_rows.size(), n, 3});
+                     return column_view<double>(s.goal, {s.goal_rows.size(), n, 3});
                    })
-      .def_prop_ro("flag_rows", [](const Log& s) { return shown<std::int64_t>(s.flag_rows, {s.flag_rows.size()}); })
+      .def_prop_ro("flag_rows",
+                   [](const Log& s) { return column_view<std::int64_t>(s.flag_rows, {s.flag_rows.size()}); })
       .def_prop_ro("flags",
                    [](const Log& s) {
                      const std::size_t n = s.objects;
-                     return shown<std::uint8_t>(s.flags, {s.flag_rows.size(), n});
+                     return column_view<std::uint8_t>(s.flags, {s.flag_rows.size(), n});
                    })
-      .def_prop_ro("scan_rows", [](const Log& s) { return shown<std::int64_t>(s.scan_rows, {s.scan_rows.size()}); })
-      .def_prop_ro("ranges", [](const Log& s) { return shown<float>(s.ranges, {s.scan_rows.size(), s.beams}); });
+      .def_prop_ro("scan_rows",
+                   [](const Log& s) { return column_view<std::int64_t>(s.scan_rows, {s.scan_rows.size()}); })
+      .def_prop_ro("ranges", [](const Log& s) { return column_view<float>(s.ranges, {s.scan_rows.size(), s.beams}); });
 }
 
 }  // namespace irsim

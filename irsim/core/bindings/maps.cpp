@@ -1,3 +1,4 @@
+// Occupancy grids and gradient noise.
 #include "bindings/bound_state.hpp"
 #include "bindings/helpers.hpp"
 #include "maps/occupancy.hpp"
@@ -10,7 +11,7 @@ namespace {
 using Occupied = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Two = std::array<double, 2>;
 
-/// (nx, ny) from Python, i along x; rows of the core run along x.
+/// Python hands over an (nx, ny) array with i along x, while the core stores rows along x.
 std::shared_ptr<OccupancyGrid> make_grid(const Occupied& occupied, const Two& origin, const Two& cell) {
   const std::size_t nx = occupied.shape(0), ny = occupied.shape(1);
   std::vector<std::uint8_t> rows(nx * ny);
@@ -44,9 +45,9 @@ nb::list outline(const OccupancyGrid& grid) {
 nb::object noise(const std::vector<int>& permutation, int columns, int rows, double complexity, double fill,
                  int fractal, double attenuation) {
   Permutation p;
-  if (permutation.size() != p.size()) throw nb::value_error("a permutation has 256 numbers");
+  if (permutation.size() != p.size()) throw nb::value_error("a permutation must have 256 numbers");
   for (std::size_t k = 0; k < p.size(); ++k) p[k] = static_cast<std::uint8_t>(permutation[k]);
-  if (columns < 1 || rows < 1) throw nb::value_error("a grid needs cells");
+  if (columns < 1 || rows < 1) throw nb::value_error("a grid needs at least one cell");
   const std::size_t nx = columns, ny = rows;
   const std::vector<std::uint8_t> cells = perlin_cells({columns, rows, complexity, fill, fractal, attenuation}, p);
   std::vector<std::uint8_t> out(nx * ny);

@@ -1,8 +1,8 @@
-// irsim._core: what Python sees of the engine (stub: irsim/_core.pyi).
+// The Python module irsim._core; irsim/_core.pyi declares its types.
 #include "bindings/helpers.hpp"
 
 NB_MODULE(_core, m) {
-  irsim::nb::set_leak_warnings(false);  // options kept by Python modules outlive this one at exit
+  irsim::nb::set_leak_warnings(false);  // at exit, options that Python modules hold outlive this module
   irsim::bind_log(m);
   irsim::bind_maps(m);
   irsim::bind_features(m);

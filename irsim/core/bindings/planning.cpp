@@ -1,4 +1,4 @@
-// Planning on maps that Python puts together.
+// Planning on maps that Python assembles.
 #include "bindings/helpers.hpp"
 #include "planning/clearance.hpp"
 #include "planning/plan.hpp"
@@ -13,7 +13,7 @@ using Parts = std::vector<PartSpec>;
 /// Origin, cell size, columns and rows.
 using Cells = std::tuple<Two, Two, int, int>;
 
-constexpr double kOpen = 1.0 - 1e-6;  // a cell without its edge
+constexpr double kOpen = 1.0 - 1e-6;  // share of a cell that leaves out its edge
 
 Terrain make_terrain(const std::array<double, 4>& bounds, const std::vector<std::pair<Parts, Three>>& things) {
   Terrain terrain({bounds[0], bounds[1], bounds[2], bounds[3]});
@@ -26,11 +26,12 @@ Terrain make_terrain(const std::array<double, 4>& bounds, const std::vector<std:
 
 Lattice lattice_of(const Cells& cells) {
   const auto& [origin, cell, nx, ny] = cells;
-  if (nx < 1 || ny < 1 || !(cell[0] > 0.0 && cell[1] > 0.0)) throw nb::value_error("a lattice needs cells");
+  if (nx < 1 || ny < 1 || !(cell[0] > 0.0 && cell[1] > 0.0))
+    throw nb::value_error("a lattice needs cells of positive size");
   return {nx, ny, {origin[0], origin[1]}, {cell[0], cell[1]}};
 }
 
-/// The body of these parts, or of one cell if there are none.
+/// A body of these parts; without parts, a body as large as one cell.
 Body body_of(const Parts& parts, double heading, const Lattice& lattice) {
   if (parts.empty()) return Body::box(0.5 * kOpen * lattice.cell.x, 0.5 * kOpen * lattice.cell.y);
   Shapes shapes;
@@ -103,7 +104,7 @@ Clearance make_clearance(const Terrain& terrain, const Cells& cells) {
   return Clearance(terrain.blockers(), lattice);
 }
 
-/// (nx, ny), i along x.
+/// (nx, ny) distances, i along x.
 nb::object distances(const Clearance& clearance) {
   const std::size_t nx = static_cast<std::size_t>(clearance.lattice().nx);
   const std::size_t ny = static_cast<std::size_t>(clearance.lattice().ny);

@@ -30,7 +30,7 @@ nb::object pieces(BoundState& self, int row) {
   return out;
 }
 
-/// Others whose bounding boxes meet that of a row, where everything is now.
+/// The other objects whose bounding boxes meet that of a row, at the present poses.
 std::vector<int> near_row(BoundState& self, int row) {
   self.check_row(row);
   const World& world = *self.world;
@@ -45,7 +45,7 @@ std::vector<int> near_row(BoundState& self, int row) {
   return found;
 }
 
-/// A part in the body frame, or at the present pose of the row.
+/// A part with its vertices in the body frame or at the present pose of the row.
 struct PlacedPart {
   Part part;
   std::vector<Vec2> vertices;
@@ -94,7 +94,7 @@ std::vector<std::string> parts(const BoundState& self, int row) {
   return out;
 }
 
-/// The cells of a row that is a map, or None.
+/// The cells of a row that is a map; None for other rows.
 nb::object cells_of(const BoundState& self, int row) {
   self.check_row(row);
   const Shapes& shapes = *self.state.scenes[row / self.world->objects].shapes;

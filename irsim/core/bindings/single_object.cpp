@@ -1,4 +1,4 @@
-// The phases for one object alone, and drives without a world.
+// The phases of a step for a single object, and drives without a world.
 #include "bindings/bound_state.hpp"
 #include "phases.hpp"
 #include "world/features.hpp"
@@ -9,14 +9,14 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// What `act(drive, wish, motion parts)` needs of a drive alone: a pose, extra rows, controls.
-struct Alone {
+/// The pose and extra rows that a drive needs where no world holds them.
+struct LoneObject {
   Pose pose;
   Numbers extra;
   Vec2 direction;
 
-  explicit Alone(const Numbers& state) {
-    if (state.size() < 3) throw nb::value_error("a state has at least three numbers");
+  explicit LoneObject(const Numbers& state) {
+    if (state.size() < 3) throw nb::value_error("a state must have at least three numbers");
     pose = {state[0], state[1], state[2]};
     extra.assign(state.begin() + 3, state.end());
     extra.resize(std::max<std::size_t>(extra.size(), 1));
@@ -31,25 +31,25 @@ Vec3 control_of(const Numbers& values) {
 }
 
 std::pair<Numbers, Numbers> drive_step(const Drive& drive, const Numbers& state, const Numbers& control, double dt) {
-  Alone alone(state);
+  LoneObject object(state);
   Vec3 twist;
   with(drive, [&](const auto& options) {
-    run(options, Motion{alone.pose, alone.extra.data(), twist, alone.direction, control_of(control), dt});
+    run(options, Motion{object.pose, object.extra.data(), twist, object.direction, control_of(control), dt});
   });
-  Numbers out{alone.pose.x, alone.pose.y, alone.pose.theta};
-  out.insert(out.end(), alone.extra.begin(), alone.extra.begin() + static_cast<std::ptrdiff_t>(state.size() - 3));
+  Numbers out{object.pose.x, object.pose.y, object.pose.theta};
+  out.insert(out.end(), object.extra.begin(), object.extra.begin() + static_cast<std::ptrdiff_t>(state.size() - 3));
   return {out, {twist[0], twist[1], twist[2]}};
 }
 
 Numbers drive_follow(const Drive& drive, const Numbers& state, const Numbers& velocity, double min_speed,
                      double tolerance, double guarantee_time, double max_rate) {
-  const Alone alone(state);
-  if (velocity.size() != 2) throw nb::value_error("a velocity has two numbers");
+  const LoneObject object(state);
+  if (velocity.size() != 2) throw nb::value_error("a velocity must have two numbers");
   const Turning turning{min_speed, tolerance, guarantee_time, max_rate};
   Vec3 control;
   with(drive, [&](const auto& options) {
     control =
-        follow(options, Wish{{velocity[0], velocity[1]}, alone.pose, alone.extra.data(), alone.direction, turning});
+        follow(options, Wish{{velocity[0], velocity[1]}, object.pose, object.extra.data(), object.direction, turning});
   });
   return {control[0], control[1], control[2]};
 }
@@ -60,7 +60,7 @@ Numbers drive_deviation(const Drive& drive, const Numbers& control) {
   return {sigma[0], sigma[1], sigma[2]};
 }
 
-/// A phase of one row.
+/// Bind a phase of a single row.
 template <class Phase>
 void bind_phase(nb::module_& m, const char* name, Phase phase) {
   m.def(
@@ -77,16 +77,16 @@ void bind_phase(nb::module_& m, const char* name, Phase phase) {
 
 void bind_object(nb::module_& m) {
   using W = const World&;
-  bind_phase(m, "renew_row", [](W world, State& s, int w, int i) { renew(world, s, w, i); });
+  bind_phase(m, "renew_row", [](W world, State& s, int w, int i) { renew_goals(world, s, w, i); });
   bind_phase(m, "decide_row", [](W world, State& s, int w, int i) { decide(world, s, w, s.workspaces.front(), i); });
   bind_phase(m, "limit_row", [](W world, State& s, int w, int i) { limit(world, s, w, i); });
   bind_phase(m, "integrate_row", [](W world, State& s, int w, int i) { integrate(world, s, w, i); });
   bind_phase(m, "remember_row", [](W world, State& s, int w, int i) { remember(s, w * world.objects + i); });
-  const Turning usual;
+  const Turning defaults;
   m.def("drive_step", &drive_step, nb::arg("drive"), nb::arg("state"), nb::arg("control"), nb::arg("dt"));
   m.def("drive_follow", &drive_follow, nb::arg("drive"), nb::arg("state"), nb::arg("velocity"),
-        nb::arg("min_speed") = usual.min_speed, nb::arg("tolerance") = usual.tolerance,
-        nb::arg("guarantee_time") = usual.guarantee_time, nb::arg("max_rate") = usual.max_rate);
+        nb::arg("min_speed") = defaults.min_speed, nb::arg("tolerance") = defaults.tolerance,
+        nb::arg("guarantee_time") = defaults.guarantee_time, nb::arg("max_rate") = defaults.max_rate);
   m.def("drive_deviation", &drive_deviation, nb::arg("drive"), nb::arg("control"));
 }
 

@@ -11,7 +11,7 @@ namespace {
 std::vector<Goal> to_goals(const std::vector<std::vector<double>>& lists) {
   std::vector<Goal> out;
   for (const auto& g : lists) {
-    if (g.size() < 2) throw nb::value_error("a goal needs two or three numbers");
+    if (g.size() < 2) throw nb::value_error("a goal must have two or three numbers");
     out.push_back({g[0], g[1], g.size() > 2 ? g[2] : kNone});
   }
   return out;
@@ -61,7 +61,7 @@ nb::object initial_state(const BoundState& self, int row) {
 
 nb::object trajectory(const BoundState& self, int row) {
   self.check_row(row);
-  if (!self.state.keep_history) throw nb::value_error("this state keeps no history");
+  if (!self.state.keep_history) throw nb::value_error("this state does not keep a history");
   const std::vector<double>& track = self.state.history[row];
   const std::size_t columns = 3 + static_cast<std::size_t>(self.state.extra_rows);
   return own(track, {track.size() / columns, columns});
@@ -179,7 +179,8 @@ void bind_state(nb::module_& m) {
           [](S& self, const Seeds& seeds, const Mask& mask) {
             self.check_mask(mask);
             self.check_idle();
-            if (static_cast<int>(seeds.shape(0)) != self.state.worlds) throw nb::value_error("one seed per world");
+            if (static_cast<int>(seeds.shape(0)) != self.state.worlds)
+              throw nb::value_error("one seed per world is needed");
             reseed(self.state, seeds.data(), mask.data());
           },
           nb::arg("seeds"), nb::arg("mask"))
@@ -220,7 +221,7 @@ void bind_state(nb::module_& m) {
           "moved",
           [](S& self, int row) {
             self.check_row(row);
-            moved(*self.world, self.state, row);
+            pose_changed(*self.world, self.state, row);
           },
           nb::arg("row"))
       .def(
@@ -237,7 +238,7 @@ void bind_state(nb::module_& m) {
           [](S& self, int row) {
             self.check_row(row);
             restart_row(*self.world, self.state, row);
-            moved(*self.world, self.state, row);
+            pose_changed(*self.world, self.state, row);
           },
           nb::arg("row"))
       .def(

@@ -1,4 +1,4 @@
-// advance, rollout and the phases of a step.
+// The functions `advance` and `rollout`, and the phases of a step.
 #include "bindings/bound_state.hpp"
 #include "contact/push.hpp"
 #include "phases.hpp"
@@ -13,10 +13,10 @@ struct Trace {
   nb::object pose, control, goal, arrived, collided, stopped, steps, ranges, returns;
 };
 
-/// (T, W * size) from what each world recorded; a world that rested keeps its last values.
+/// Join the recordings of all worlds to (T, W * size). A world that finished early keeps its last values.
 template <class T, class Element>
-nb::object joined(const std::vector<Recording>& all, std::vector<Element> Recording::* part, const Element* now,
-                  long long steps, std::size_t size, bool flat) {
+nb::object join_worlds(const std::vector<Recording>& all, std::vector<Element> Recording::* part, const Element* now,
+                       long long steps, std::size_t size, bool flat) {
   const std::size_t numbers = sizeof(Element) / sizeof(T), worlds = all.size();
   std::vector<T> out(static_cast<std::size_t>(steps) * worlds * size * numbers);
   for (std::size_t w = 0; w < worlds; ++w) {
@@ -53,21 +53,21 @@ Trace rollout(World& world, BoundState& bound, long long steps, int threads, boo
   Trace out;
   const std::size_t beams = world.beams_per_world;
   std::vector<float> last;
-  for (std::size_t b = 0; returns && b < state.ranges.size; ++b) last.push_back(returned(state, b));
-  out.pose = joined<double>(recordings, &Recording::pose, state.pose.data, most, n, false);
-  out.control = joined<double>(recordings, &Recording::control, state.control.data, most, n, false);
-  out.goal = joined<double>(recordings, &Recording::goal, state.goal.data, most, n, false);
-  out.arrived = joined<std::uint8_t>(recordings, &Recording::arrived, state.arrived.data, most, n, true);
-  out.collided = joined<std::uint8_t>(recordings, &Recording::collided, state.collided.data, most, n, true);
-  out.stopped = joined<std::uint8_t>(recordings, &Recording::stopped, state.stopped.data, most, n, true);
-  out.ranges = joined<double>(recordings, &Recording::ranges, state.ranges.data, ranges ? most : 0, beams, true);
-  out.returns = joined<float>(recordings, &Recording::returns, last.data(), returns ? most : 0, beams, true);
+  for (std::size_t b = 0; returns && b < state.ranges.size; ++b) last.push_back(returned_range(state, b));
+  out.pose = join_worlds<double>(recordings, &Recording::pose, state.pose.data, most, n, false);
+  out.control = join_worlds<double>(recordings, &Recording::control, state.control.data, most, n, false);
+  out.goal = join_worlds<double>(recordings, &Recording::goal, state.goal.data, most, n, false);
+  out.arrived = join_worlds<std::uint8_t>(recordings, &Recording::arrived, state.arrived.data, most, n, true);
+  out.collided = join_worlds<std::uint8_t>(recordings, &Recording::collided, state.collided.data, most, n, true);
+  out.stopped = join_worlds<std::uint8_t>(recordings, &Recording::stopped, state.stopped.data, most, n, true);
+  out.ranges = join_worlds<double>(recordings, &Recording::ranges, state.ranges.data, ranges ? most : 0, beams, true);
+  out.returns = join_worlds<float>(recordings, &Recording::returns, last.data(), returns ? most : 0, beams, true);
   const std::size_t worlds = executed.size();
   out.steps = own(std::move(executed), {worlds});
   return out;
 }
 
-/// A phase for every world.
+/// A phase that runs for every world.
 template <class Phase>
 auto all_worlds(Phase phase) {
   return [phase](World& world, BoundState& bound) {
@@ -145,7 +145,7 @@ void bind_steps(nb::module_& m) {
         if (sensor < 0 || sensor >= static_cast<int>(world.scans.size())) throw nb::index_error("no such sensor");
         Workspace& work = state.workspaces.front();
         place_moving(world, state, w);
-        note_velocities(world, state, w, work);
+        update_object_velocities(world, state, w, work);
         scan(world, state, w, world.scans[sensor], {pose[0], pose[1], pose[2]}, unit(pose[2]), work);
       },
       nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("sensor"), nb::arg("pose"));

@@ -1,3 +1,4 @@
+// The class `World` and the specifications it is made from.
 #include "world/world.hpp"
 #include "bindings/helpers.hpp"
 #include "world/features.hpp"

@@ -1,4 +1,4 @@
-// Exact test of two footprints (the narrow phase).
+// Narrow phase: the exact test of two footprints.
 #pragma once
 
 #include "geometry/shapes.hpp"

@@ -107,14 +107,14 @@ void ContactSolver::place_moving() {
   buffers_.boxes.resize(bodies_.pieces.size());
   for (int i = 0; i < world_.objects; ++i) {
     Buffers::Body& body = buffers_.bodies[i];
-    const Matter& matter = world_.matter[i];
+    const BodyDynamics& dynamics = world_.dynamics[i];
     body.moves = 0;
     body.moved = {};
     body.turned = 0.0;
     body.placed = false;
     buffers_.blocks[i].clear();
-    body.driven = matter.driven && matter.pushable;
-    body.passive = !matter.driven && matter.pushable;
+    body.driven = dynamics.driven && dynamics.pushable;
+    body.passive = !dynamics.driven && dynamics.pushable;
     body.start_velocity = world_.is_static[i] ? Vec2{} : velocity(i);
   }
   for (const int i : world_.moving) place(i);

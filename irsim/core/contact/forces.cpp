@@ -27,7 +27,7 @@ void ContactSolver::bounce() {
   }
   for (std::size_t k = 0; k < scene_.contacts.size(); ++k) {
     const Contact& contact = scene_.contacts[k];
-    const double e = 0.5 * (world_.matter[contact.a].restitution + world_.matter[contact.b].restitution);
+    const double e = 0.5 * (world_.dynamics[contact.a].restitution + world_.dynamics[contact.b].restitution);
     if (!(e > 0.0)) continue;
     const Buffers::Pair* pair = buffers_.pair_of[k];
     const auto weight = [&](int i, bool yields) {

@@ -8,7 +8,7 @@ namespace irsim {
 double ContactSolver::reach_per_step() const {
   double fastest = 0.0;
   for (const int i : world_.moving) {
-    double top = world_.matter[i].driven ? world_.vel_max[i][0] : 0.0;
+    double top = world_.dynamics[i].driven ? world_.vel_max[i][0] : 0.0;
     with(world_.drive[i], [&](const auto& drive) { top = travel_speed(drive, world_.vel_max[i]); });
     if (std::isfinite(top)) fastest = std::max(fastest, top);
     fastest = std::max(fastest, norm(buffers_.bodies[i].start_velocity));
@@ -46,7 +46,7 @@ void ContactSolver::collect_pairs(bool as_given) {
   }
   for (std::size_t k = 0; k < buffers_.found.size(); ++k) {
     const auto [i, j] = buffers_.found[k];
-    if (!world_.matter[i].pushable && !world_.matter[j].pushable) continue;
+    if (!world_.dynamics[i].pushable && !world_.dynamics[j].pushable) continue;
     if (as_given &&
         std::find(buffers_.found.begin(), buffers_.found.begin() + k, buffers_.found[k]) != buffers_.found.begin() + k)
       continue;
@@ -82,7 +82,7 @@ void ContactSolver::order_pairs(bool as_given) {
   buffers_.queue.clear();
   for (const Buffers::Pair& p : buffers_.pairs) {
     for (const int i : {p.a, p.b}) {
-      if (world_.matter[i].pushable || buffers_.distance[i] == 0) continue;
+      if (world_.dynamics[i].pushable || buffers_.distance[i] == 0) continue;
       buffers_.distance[i] = 0;
       buffers_.queue.push_back(i);
     }

@@ -142,7 +142,7 @@ bool ContactSolver::resolve(Buffers::Pair& pair) {
     if (pair.b_yields) displace(b, to_b.direction * scale, to_b.turn * scale);
     moved = depth > kMinCorrection;
   }
-  const double friction = 0.5 * (world_.matter[a].friction + world_.matter[b].friction);
+  const double friction = 0.5 * (world_.dynamics[a].friction + world_.dynamics[b].friction);
   // A body that can only turn blocks the other one, too.
   if (!(to_b.translation > 0.0) && bodies_.inverse_mass[a] > 0.0) add_block(a, o.normal, friction);
   if (!(to_a.translation > 0.0) && bodies_.inverse_mass[b] > 0.0) add_block(b, o.normal * -1.0, friction);

@@ -12,7 +12,7 @@ double twice_area(const std::vector<Vec2>& ring) {
 
 namespace {
 
-/// Of the area of a single part; `otherwise` for compounds, lines and what has no area.
+/// The centroid of a single polygon; `otherwise` for compounds, lines and shapes without area.
 Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
   if (outlines.size() != 1 || outlines[0].kind != Kind::polygon) return otherwise;
   const std::vector<Vec2>& ring = outlines[0].vertices;
@@ -26,7 +26,7 @@ Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
   return area != 0.0 ? ring[0] + sum * (1.0 / (3.0 * area)) : otherwise;
 }
 
-/// Corners of the outermost cells of each row.
+/// Add the corners of the outermost cells of each row.
 void add_extremes(const OccupancyGrid& grid, std::vector<PlainDisc>& discs) {
   for (int j = 0; j < grid.rows(); ++j) {
     int first = grid.next_occupied(j, 0, grid.columns() - 1), last = first;
@@ -85,7 +85,7 @@ void Shapes::copy(const Shapes& other, int object, bool fixed) {
   close(body.back(), fixed);
 }
 
-/// Give the last object, which begins at `first`, its place among the moving or the static ones.
+/// Give the last object, which begins at `first`, its slot among the moving or the static objects.
 void Shapes::close(const Slot& first, bool fixed) {
   const Slot end{objects(), static_cast<int>(parts.size()), static_cast<int>(vertices.size())};
   Slot& used = size[fixed ? 1 : 0];

@@ -1,4 +1,4 @@
-// Shapes of one world: body-frame parts (`Shapes`) and where they are now (`Outlines`).
+// Shapes of one world: parts in the body frame (`Shapes`) and at their poses in the world frame (`Outlines`).
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,14 @@
 
 namespace irsim {
 
-/// room: a closed line, solid outside; cells: those of a map, whose vertices are two corners of the box around them.
+/// A room is a closed line that is solid outside. Cells are those of a map; their vertices are two corners of the box
+/// around them.
 enum class Kind : std::uint8_t { circle, polygon, linestring, room, cells };
 
 /// Whether the last edge of a part leads back to its first vertex.
 inline bool is_closed(Kind kind) { return kind == Kind::polygon || kind == Kind::room; }
 
-/// A part as its shape file draws it: circle = one vertex (the centre) and a radius.
+/// A part as a shape header makes it. A circle has one vertex, its centre, and a radius.
 struct Outline {
   Kind kind;
   std::vector<Vec2> vertices;
@@ -26,19 +27,19 @@ struct Outline {
   std::shared_ptr<const OccupancyGrid> cells = nullptr;
 };
 
-/// Whether a shape is drawn per scene; those that are say so by an overload.
+/// Whether a shape is drawn for each scene; random shapes overload this function.
 template <class Shape>
 constexpr bool is_drawn(const Shape&) {
   return false;
 }
 
-/// Twice the area of a ring, positive counter-clockwise.
+/// Twice the area of a ring, positive if counter-clockwise.
 double twice_area(const std::vector<Vec2>& ring);
 
-/// One part inside `Shapes`. Closed kinds repeat their first vertex at the end, so edges are [k, k + 1] for all.
+/// One part in `Shapes`. Closed kinds repeat their first vertex at the end, so that edge k goes from vertex k to k + 1.
 struct Part {
   Kind kind;
-  int first, last;  // among the vertices of the object; a circle has one, all others at least two
+  int first, last;  // first and last vertex of the object; a circle has one vertex, other kinds at least two
   double radius;
   double turn;  // +1 counter-clockwise polygon, -1 clockwise, 0 no interior
   const OccupancyGrid* cells = nullptr;
@@ -51,22 +52,22 @@ struct Slot {
 
 /// Body-frame geometry of N objects.
 struct Shapes {
-  std::vector<Slot> body = {{}};  // (N + 1,) in the arrays below
+  std::vector<Slot> body = {{}};  // (N + 1,) first part and vertex of each object in the arrays below
   std::vector<Part> parts;
   std::vector<Vec2> vertices;
-  std::vector<Vec2> centre;    // (N,) of the minimum bounding circle
-  std::vector<Vec2> centroid;  // (N,) of the area of a circle or polygon; of other shapes the same as `centre`
+  std::vector<Vec2> centre;    // (N,) centre of the minimum bounding circle
+  std::vector<Vec2> centroid;  // (N,) centroid of a circle or polygon; equal to `centre` for other shapes
   std::vector<double> radius;  // (N,)
-  std::vector<Slot> placed;    // (N,) in the `Outlines` of the moving or of the static objects
-  Slot size[2];                // of those
-  std::vector<std::shared_ptr<const OccupancyGrid>> grids;  // of maps
+  std::vector<Slot> placed;    // (N,) slots in the `Outlines` of the moving or of the static objects
+  Slot size[2];                // sizes of these two
+  std::vector<std::shared_ptr<const OccupancyGrid>> grids;  // keeps the cells of maps alive
 
   int objects() const { return static_cast<int>(centre.size()); }
-  /// Whether an object is a map, which its pose does not move.
+  /// Whether an object is a map. The pose of a map does not move its cells.
   bool is_map(int object) const { return parts[body[object].part].kind == Kind::cells; }
   int part_count(int object) const { return body[object + 1].part - body[object].part; }
   void add(const std::vector<Outline>& outlines, bool fixed);
-  /// Add what `other` has for an object.
+  /// Add a copy of an object of `other`.
   void copy(const Shapes& other, int object, bool fixed);
 
  private:

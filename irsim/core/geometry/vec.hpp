@@ -9,7 +9,7 @@ namespace irsim {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kTurn = 2.0 * kPi;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // "there is no such number"
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // stands for a missing number
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Vec2 {
@@ -34,7 +34,7 @@ inline Vec2 unrotate(Vec2 a, Vec2 direction) {
 }
 inline Vec2 unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// Three numbers of a control, limit or velocity; what they mean is the drive's business.
+/// Three numbers of a control, limit or velocity. Their meaning depends on the drive.
 struct Vec3 {
   double value[3] = {0, 0, 0};
   double& operator[](int i) { return value[i]; }
@@ -66,7 +66,7 @@ inline Box box_around(Vec2 centre, double radius) {
   return {centre.x - radius, centre.y - radius, centre.x + radius, centre.y + radius};
 }
 
-/// ((a + pi) mod 2 pi) - pi, in [-pi, pi); 0 for what is not finite.
+/// ((a + pi) mod 2 pi) - pi, in [-pi, pi); 0 if `a` is not finite.
 inline double wrap(double a) {
   double m = a + kPi;
   if (m >= 0.0 && m < kTurn) return m - kPi;
@@ -77,7 +77,7 @@ inline double wrap(double a) {
   return m - kPi;
 }
 
-/// `a` shifted by whole turns into [low, high], both ends kept; `high - low` is a turn.
+/// `a` shifted by full turns into the closed interval [low, high], where `high - low` is a full turn.
 inline double into_range(double a, double low, double high) {
   if (!(a < low || a > high)) return a;
   if (std::fabs(a - low) > 8 * kTurn) a = low + wrap(a - low) + kPi;
@@ -86,7 +86,7 @@ inline double into_range(double a, double low, double high) {
   return a;
 }
 
-/// numpy.clip: `high` wins when the bounds cross.
+/// Like numpy.clip: the result is `high` if the bounds cross.
 inline double clip(double a, double low, double high) { return std::min(std::max(a, low), high); }
 
 }  // namespace irsim

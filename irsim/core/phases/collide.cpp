@@ -1,4 +1,4 @@
-// Who touches whom, and what the collision mode does about it.
+// Which objects touch, and what the collision mode does about it.
 #include <algorithm>
 
 #include "collision/touch.hpp"
@@ -32,7 +32,7 @@ void find_pairs(const World& world, State& state, int w) {
   if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
 }
 
-/// Contacts that began since the previous evaluation.
+/// Log contacts that began since the previous evaluation.
 void log_contacts(const World& world, State& state, int w) {
   const Scene& scene = state.scenes[w];
   auto old = scene.previous_pairs.begin();
@@ -40,7 +40,7 @@ void log_contacts(const World& world, State& state, int w) {
     while (old != scene.previous_pairs.end() && *old < pair) ++old;
     if (old != scene.previous_pairs.end() && *old == pair) continue;
     const auto [i, j] = pair;
-    // somebody who moves, or a robot, must have met something that stands in the way
+    // An event needs a moving object or a robot that has met something obstructing.
     const bool first = !world.unobstructed[j] && (!world.is_static[i] || world.is_robot[i]);
     const bool second = !world.unobstructed[i] && (!world.is_static[j] || world.is_robot[j]);
     if (!first && !second) continue;

@@ -1,4 +1,4 @@
-// Goals of those who have arrived are renewed, then behaviors choose.
+// Goals of objects that have arrived are renewed, then behaviors choose commands.
 #include <algorithm>
 
 #include "phases.hpp"
@@ -8,14 +8,14 @@
 namespace irsim {
 namespace {
 
-constexpr double kResting = 1e-9;  // turns by less in a step [rad]
+constexpr double kRestingTurn = 1e-9;  // an object that turns by less in a step counts as resting [rad]
 
-bool idle(const World& world, const State& state, int first, int object) {
+bool is_idle(const World& world, const State& state, int first, int object) {
   return world.is_static[object] || state.stopped[first + object];
 }
 
-/// With `arrive_mode: state` a drive that moves any way and turns does not rest, nor rock to and fro, before it has the
-/// heading of the goal that it stands at: where a behavior leaves it so, it turns as fast as ends exactly there.
+/// With `arrive_mode: state` an object at its goal must also reach the heading of the goal. Where the behavior of an
+/// `omni_angular` drive rests or oscillates before that, set the turn rate with which the turn ends at that heading.
 void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
   const Goal& goal = state.goal[row];
   if (!world.state_arrival[object] || !std::holds_alternative<OmniAngularOptions>(world.drive[object])) return;
@@ -23,18 +23,18 @@ void face_goal(const World& world, const State& state, int row, int object, Vec3
   if (std::isnan(goal.theta) || state.arrived[row] || !(gap <= threshold)) return;
   const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
   const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
-  if (turn > kResting && turn <= std::fabs(error) + enough) return;
+  if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
   const double acce = world.acce[object][2];
   double rate = std::fabs(error) / dt;
-  if (std::isfinite(acce) && acce > 0.0) {  // such that the turn can be ended in time
+  if (std::isfinite(acce) && acce > 0.0) {  // the turn must be able to stop at the wanted heading
     const double change = acce * dt;
     rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * std::fabs(error)));
   }
   control[2] = error > 0.0 ? rate : -rate;
 }
 
-/// Let `group` decide for the objects listed in `work.objects`.
-void choose(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
+/// Let the behavior of `group` decide for the objects listed in `work.objects`.
+void run_behavior(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
   const int first = w * world.objects, count = static_cast<int>(work.objects.size());
   if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
   const Decision decision{world, state, first, work.objects.data(), count, group.members, group.grouped, work};
@@ -53,7 +53,7 @@ void choose(const World& world, State& state, int w, const BehaviorGroup& group,
 
 }  // namespace
 
-void renew(const World& world, State& state, int w, int object) {
+void renew_goals(const World& world, State& state, int w, int object) {
   const int row = w * world.objects + object;
   if (world.wander[object]) return draw_wander_goal(world, state, w, object);
   GoalQueue& queue = state.goals[row];
@@ -71,7 +71,8 @@ Vec3 control_for(const World& world, const State& state, int w, int object, Vec2
   const int row = w * world.objects + object;
   const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
                   state.heading(row), turning};
-  Vec3 control{{velocity.x, velocity.y, 0.0}};  // whoever moves objects without a native drive turns it into controls
+  Vec3 control{
+      {velocity.x, velocity.y, 0.0}};  // for drives in Python, which turn the velocity into controls themselves
   with(world.drive[object], [&](const auto& drive) { control = follow(drive, wish); });
   return control;
 }
@@ -82,16 +83,16 @@ void decide(const World& world, State& state, int w, Workspace& work) {
   for (const int i : world.moving) {
     const int row = first + i;
     if (state.stopped[row]) continue;
-    if (state.arrived[row]) renew(world, state, w, i);
+    if (state.arrived[row]) renew_goals(world, state, w, i);
     if (!state.given[row]) state.command[row] = {};
   }
   find_routes(world, state, w, work);
   for (const BehaviorGroup& group : world.behaviors) {
     work.objects.clear();
     for (const int i : group.objects) {
-      if (!idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
+      if (!is_idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
     }
-    if (!work.objects.empty()) choose(world, state, w, group, work);
+    if (!work.objects.empty()) run_behavior(world, state, w, group, work);
   }
   keep_routes(world, state, w, work);
 }
@@ -103,7 +104,7 @@ void decide(const World& world, State& state, int w, Workspace& work, int object
   for (const BehaviorGroup& group : world.behaviors) {
     if (std::find(group.objects.begin(), group.objects.end(), object) == group.objects.end()) continue;
     work.objects.assign(1, object);
-    choose(world, state, w, group, work);
+    run_behavior(world, state, w, group, work);
   }
   keep_routes(world, state, w, work, object);
 }

@@ -37,7 +37,7 @@ void integrate(const World& world, State& state, int w, int object) {
     state.twist[row] = {};
     return;
   }
-  if (!world.matter[object].driven) return coast(world, state, row);
+  if (!world.dynamics[object].driven) return coast(world, state, row);
   with(world.drive[object], [&](const auto& drive) {
     Vec3 u = state.control[row];
     if (drive.noise) {

@@ -1,4 +1,4 @@
-// Every sensor takes its scan, and what robots see is no longer hidden by fog.
+// Every sensor takes its scan, and robots clear the fog where they see.
 #include "phases.hpp"
 #include "sensing.hpp"
 #include "sensing/fog.hpp"
@@ -26,7 +26,7 @@ void scan(const World& world, State& state, int w, const Scan& sensor, const Pos
   with(sensor.sensor, [&](const auto& options) { run(options, sensing); });
 }
 
-void note_velocities(const World& world, const State& state, int w, Workspace& work) {
+void update_object_velocities(const World& world, const State& state, int w, Workspace& work) {
   if (world.velocities_per_world == 0) return;
   work.velocities.resize(world.objects);
   for (int i = 0; i < world.objects; ++i) {
@@ -35,7 +35,7 @@ void note_velocities(const World& world, const State& state, int w, Workspace& w
 }
 
 void sense(const World& world, State& state, int w, Workspace& work) {
-  note_velocities(world, state, w, work);
+  update_object_velocities(world, state, w, work);
   for (const Scan& sensor : world.scans) {
     const int row = w * world.objects + sensor.mount.object;
     scan(world, state, w, sensor, state.pose[row], state.heading(row), work);

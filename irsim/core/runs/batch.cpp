@@ -19,7 +19,7 @@ void record(const World& world, const State& state, int w, Recording& out, Scans
   if (scans.ranges)
     out.ranges.insert(out.ranges.end(), state.ranges.data + w * beams, state.ranges.data + (w + 1) * beams);
   if (scans.returns) {
-    for (std::size_t b = w * beams; b < (w + 1) * beams; ++b) out.returns.push_back(returned(state, b));
+    for (std::size_t b = w * beams; b < (w + 1) * beams; ++b) out.returns.push_back(returned_range(state, b));
   }
 }
 
@@ -69,7 +69,7 @@ long long run_worlds(const World& world, State& state, const Schedule& schedule,
   try {
     for (int t = 1; t < threads; ++t) helpers.emplace_back(worker, t);
   } catch (const std::system_error&) {
-    // fewer threads than asked for; the others do the work
+    // The system gives no more threads; those that were started do the work.
   }
   worker(0);
   for (std::thread& helper : helpers) helper.join();

@@ -8,9 +8,9 @@
 namespace irsim {
 namespace {
 
-/// Add a block to `column`, and the row to `rows`, unless the block is the last one there, bit for bit.
+/// Add a block to `column` and its row to `rows`, unless it equals the last block bit for bit.
 template <class T>
-void add_if_new(Column<std::int64_t>& rows, Column<T>& column, std::int64_t row, const T* now, std::size_t count) {
+void add_if_changed(Column<std::int64_t>& rows, Column<T>& column, std::int64_t row, const T* now, std::size_t count) {
   if (count == 0) return;
   const bool same = column.size() >= count &&
                     std::memcmp(column.numbers->data() + column.size() - count, now, count * sizeof(T)) == 0;
@@ -38,13 +38,13 @@ void Log::add(const State& state) {
     poses = std::copy_n(&state.pose[i].x, 3, poses);
     for (int c = 0; c < columns; ++c) *controls++ = static_cast<float>(state.control[i].value[c]);
   }
-  add_if_new(goal_rows, goal, rows, state.goal.data, objects);
+  add_if_changed(goal_rows, goal, rows, state.goal.data, objects);
   for (int i = 0; i < objects; ++i) {
     flags_now_[i] = (state.arrived[i] ? 1 : 0) | (state.collided[i] ? 2 : 0) | (state.stopped[i] ? 4 : 0);
   }
-  add_if_new(flag_rows, flags, rows, flags_now_.data(), objects);
-  for (std::size_t b = 0; b < beams; ++b) ranges_now_[b] = returned(state, b);
-  add_if_new(scan_rows, ranges, rows, ranges_now_.data(), beams);
+  add_if_changed(flag_rows, flags, rows, flags_now_.data(), objects);
+  for (std::size_t b = 0; b < beams; ++b) ranges_now_[b] = returned_range(state, b);
+  add_if_changed(scan_rows, ranges, rows, ranges_now_.data(), beams);
   ++rows;
 }
 

@@ -5,11 +5,11 @@
 namespace irsim {
 namespace {
 
-constexpr double kAtOnce = 1e-4;      // stands for "now" in the penalty [s]
-constexpr double kStandstill = 1e-7;  // added to relative speeds [m/s]
-constexpr double kParallel = 1e-9;    // slower approaches do not count [m/s]
+constexpr double kMinTime = 1e-4;           // smallest time to a collision in the penalty [s]
+constexpr double kMinRelativeSpeed = 1e-7;  // added to relative speeds [m/s]
+constexpr double kParallel = 1e-9;          // slower approaches count as parallel motion [m/s]
 
-/// The best sample so far: least cost, then first in order.
+/// The best sample so far: the one of smallest cost, then the first in order.
 struct Best {
   double cost = kInfinity;
   int i = -1, j = -1;
@@ -19,10 +19,10 @@ struct Best {
   }
 };
 
-/// Calls `visit(i, distance2)` for the columns (or rows) of an axis from `middle` outwards, nearest to `v` first, while
-/// `go_on(distance2)`.
-template <class GoOn, class Visit>
-void outwards(const Axis& axis, double v, GoOn&& go_on, Visit&& visit) {
+/// Call `visit(i, distance2)` for the columns (or rows) of an axis in order of their distance from `v`, while
+/// `is_within(distance2)` holds.
+template <class Within, class Visit>
+void outwards(const Axis& axis, double v, Within&& is_within, Visit&& visit) {
   int left = axis.nearest(v), right = left + 1;
   const auto distance2 = [&](int i) {
     if (i < 0 || i >= axis.count) return kInfinity;
@@ -33,7 +33,7 @@ void outwards(const Axis& axis, double v, GoOn&& go_on, Visit&& visit) {
   while (true) {
     const bool go_left = dl <= dr;
     const double d = go_left ? dl : dr;
-    if (d == kInfinity || !go_on(d)) return;
+    if (d == kInfinity || !is_within(d)) return;
     if (go_left) {
       visit(left, d);
       dl = distance2(--left);
@@ -44,10 +44,10 @@ void outwards(const Axis& axis, double v, GoOn&& go_on, Visit&& visit) {
   }
 }
 
-/// Shrinks rows [low, high] to those where `holds(row)`, true for all rows on one side of `edge`, the ones above if
-/// `above`. The edge, in rows, is only nearly right.
+/// Shrink rows [low, high] to those where `holds(row)` is true: all rows above `edge` if `above`, else all below it.
+/// The edge, in rows, is subject to rounding errors.
 template <class Holds>
-void cut(double edge, bool above, int count, int& low, int& high, Holds&& holds) {
+void narrow_rows(double edge, bool above, int count, int& low, int& high, Holds&& holds) {
   if (above) {
     int j = static_cast<int>(clip(std::ceil(edge), 0.0, count));
     while (j > 0 && holds(j - 1)) --j;
@@ -61,47 +61,48 @@ void cut(double edge, bool above, int count, int& low, int& high, Holds&& holds)
   }
 }
 
-/// Rows low .. high of a column.
-struct Rows {
+/// Rows low to high of a column, both included.
+struct RowRange {
   int low, high;
 };
 
-/// Rows of the column at x that a cone blocks.
-Rows blocked_rows(const Cone& cone, double x, const Axis& y) {
+/// The rows of the column at x that a cone blocks.
+RowRange blocked_rows(const Cone& cone, double x, const Axis& y) {
   int low = 0, high = y.count - 1;
   const double across = x - cone.apex.x, inverse = 1.0 / y.spacing;
   const auto row_of = [&](Vec2 edge) { return (cone.apex.y + edge.y * across / edge.x - y.first) * inverse; };
   if (cone.left.x != 0.0) {
-    cut(row_of(cone.left), cone.left.x < 0.0, y.count, low, high, [&](int j) { return cone.under_left({x, y.at(j)}); });
+    narrow_rows(row_of(cone.left), cone.left.x < 0.0, y.count, low, high,
+                [&](int j) { return cone.under_left({x, y.at(j)}); });
   } else if (!cone.under_left({x, y.first})) {
     return {0, -1};
   }
   if (low > high) return {0, -1};
   if (cone.right.x != 0.0) {
-    cut(row_of(cone.right), cone.right.x > 0.0, y.count, low, high,
-        [&](int j) { return cone.over_right({x, y.at(j)}); });
+    narrow_rows(row_of(cone.right), cone.right.x > 0.0, y.count, low, high,
+                [&](int j) { return cone.over_right({x, y.at(j)}); });
   } else if (!cone.over_right({x, y.first})) {
     return {0, -1};
   }
   return {low, high};
 }
 
-/// First row of the column at x from j on, in direction `step`, that no cone blocks; beyond the column if there is
-/// none. Cones that block go to the front: they are likely to block the next column, too.
+/// The first row of the column at x, from j in direction `step`, that no cone blocks; a row outside the column if all
+/// are blocked. Cones that block move to the front, because they are likely to block the next column, too.
 int next_free(std::vector<Cone>& cones, double x, const Axis& y, int j, int step) {
   while (j >= 0 && j < y.count) {
     const Vec2 w{x, y.at(j)};
     std::size_t k = 0;
     while (k < cones.size() && !cones[k].blocks(w)) ++k;
     if (k == cones.size()) return j;
-    const Rows rows = blocked_rows(cones[k], x, y);
+    const RowRange rows = blocked_rows(cones[k], x, y);
     j = step > 0 ? rows.high + 1 : rows.low - 1;
     if (k > 0) std::swap(cones[k], cones[k / 2]);
   }
   return j;
 }
 
-Best nearest_free(VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desired) {
+Best nearest_free_sample(VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desired) {
   Best best;
   const int middle = y.nearest(desired.y);
   const auto column = [&](int i, double dx2) {
@@ -122,30 +123,30 @@ Best nearest_free(VelocityObstacles& o, const Axis& x, const Axis& y, Vec2 desir
   return best;
 }
 
-/// One over the time to the first collision at velocity w.
+/// The inverse of the time to the first collision at velocity w [1/s].
 double urgency(const VelocityObstacles& o, Vec2 w, bool walls) {
   double most = 0.0, urgent = 0.0;
   const Approach* first = nullptr;
   for (const Approach& other : o.approaches) {
     if (other.gap == 0.0) {
-      urgent = 1.0 / kAtOnce;
+      urgent = 1.0 / kMinTime;
       continue;
     }
     const double speed2 = squared(w * 2.0 - other.sum) * other.inverse2;
     if (speed2 >= most) most = speed2, first = &other;
   }
-  if (first != nullptr) urgent = std::max(urgent, (norm(w * 2.0 - first->sum) + kStandstill) / first->gap);
+  if (first != nullptr) urgent = std::max(urgent, (norm(w * 2.0 - first->sum) + kMinRelativeSpeed) / first->gap);
   for (const Stretch& line : o.stretches) {
     const double t = line.time(w);
-    urgent = std::max(urgent, 1.0 / (t == 0.0 ? kAtOnce : t));
+    urgent = std::max(urgent, 1.0 / (t == 0.0 ? kMinTime : t));
   }
   if (walls) {
-    for (const Barrier& wall : o.barriers) urgent = std::max(urgent, 1.0 / clip(wall.time(w), kAtOnce, kNever));
+    for (const Barrier& wall : o.barriers) urgent = std::max(urgent, 1.0 / clip(wall.time(w), kMinTime, kNever));
   }
   return urgent;
 }
 
-/// Search for the least penalty: blocks of samples that cannot hold it are left out as a whole.
+/// A search for the smallest penalty that skips blocks of samples which cannot contain it.
 class Penalties {
  public:
   Penalties(const VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor, bool walls)
@@ -158,12 +159,12 @@ class Penalties {
   }
 
  private:
-  static constexpr int kLeaf = 2;  // samples along each side of a block that is looked at one by one
+  static constexpr int kMaxLeaf = 2;  // blocks of at most this many columns and rows are searched one by one
   struct Block {
     int i0, i1, j0, j1;  // columns i0 .. i1 - 1, rows j0 .. j1 - 1
   };
 
-  /// No sample of a block costs less: both terms by their distance from its box.
+  /// Lower bound of the cost of all samples of a block, from the distances of both terms to its box.
   double least(const Block& b) const {
     const Vec2 low{x_.at(b.i0), y_.at(b.j0)}, high{x_.at(b.i1 - 1), y_.at(b.j1 - 1)};
     const auto beyond2 = [&](Vec2 p) {
@@ -174,7 +175,7 @@ class Penalties {
     double urgent = 0.0, most2 = 0.0;
     for (const Approach& other : o_.approaches) {
       if (other.gap == 0.0) {
-        urgent = 1.0 / kAtOnce;
+        urgent = 1.0 / kMinTime;
       } else {
         most2 = std::max(most2, beyond2(other.sum * 0.5) * other.inverse2);
       }
@@ -186,7 +187,7 @@ class Penalties {
   void visit(const Block& b, double bound) {
     if (bound > best_.cost) return;
     const int columns = b.i1 - b.i0, rows = b.j1 - b.j0;
-    if (columns <= kLeaf && rows <= kLeaf) {
+    if (columns <= kMaxLeaf && rows <= kMaxLeaf) {
       for (int i = b.i0; i < b.i1; ++i)
         for (int j = b.j0; j < b.j1; ++j) look_at(i, j);
       return;
@@ -224,7 +225,7 @@ class Penalties {
 }  // namespace
 
 double Stretch::time(Vec2 w) const {
-  const double offset = cross(along, a);  // the ego is on the right of the line if positive
+  const double offset = cross(along, a);  // positive if the ego is on the right of the line
   const double towards = offset > 0.0 ? cross(along, w) : -cross(along, w);
   if (!(towards > kParallel)) return kNever;
   const double t = std::max((std::fabs(offset) - radius) / towards, 0.0);
@@ -233,7 +234,7 @@ double Stretch::time(Vec2 w) const {
 }
 
 double Barrier::time(Vec2 w) const {
-  if (!(dot(w, nearest) > 0.0)) return kInfinity;  // not towards the nearest point: never nearer than now
+  if (!(dot(w, nearest) > 0.0)) return kInfinity;  // the ego moves away from the nearest point, and so from the wall
   if (gap <= 0.0) return 0.0;
   double first = kInfinity;
   const Vec2 edge = b - a;
@@ -279,7 +280,7 @@ bool VelocityObstacles::walled(Vec2 w) const {
 }
 
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor) {
-  Best best = nearest_free(obstacles, x, y, desired);
+  Best best = nearest_free_sample(obstacles, x, y, desired);
   if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, false).best();
   if (best.i < 0) best = Penalties(obstacles, x, y, desired, factor, true).best();
   return {x.at(best.i), y.at(best.j)};

@@ -1,4 +1,4 @@
-// Velocities that lead into others, and the best of a grid of velocities that does not.
+// Velocity obstacles: velocities that lead to collisions, and the best velocity of a grid outside all of them.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace irsim {
 
-/// Velocities w with cross(left, w - apex) <= 0 <= cross(right, w - apex): those that lead into somebody.
+/// Velocities w with cross(left, w - apex) <= 0 <= cross(right, w - apex): those that lead to a collision.
 struct Cone {
   Vec2 apex, left, right;  // [m/s]; unit vectors
 
@@ -16,26 +16,27 @@ struct Cone {
   bool over_right(Vec2 w) const { return right.x * (w.y - apex.y) - right.y * (w.x - apex.x) >= 0.0; }
 };
 
-/// What the penalty reads of a disc: the time to reach it at velocity w is gap / ||2 w - sum||.
+/// What the penalty needs about a disc. The time to reach it at velocity w is gap / ||2 w - sum||.
 struct Approach {
-  Vec2 sum;         // of both velocities [m/s]
-  double gap;       // length of the tangent to the disc [m], 0 inside
+  Vec2 sum;         // sum of both velocities [m/s]
+  double gap;       // length of the tangent to the disc [m]; 0 inside
   double inverse2;  // 1 / gap^2
 };
 
-/// A segment of a linestring, seen from the ego.
+/// A segment of a linestring relative to the ego.
 struct Stretch {
   Vec2 a, along;          // one end relative to the ego [m], unit vector to the other
   double length, radius;  // [m]
-  /// When the ego comes so near the line if it moves at w [s]; kNever if it does not, or beyond the ends.
+  /// Time until the ego is within `radius` of the line at velocity w [s]; kNever if that does not happen between its
+  /// ends.
   double time(Vec2 w) const;
 };
 
-/// A wall, seen from the ego.
+/// A wall relative to the ego.
 struct Barrier {
   Vec2 a, b, nearest;  // relative to the ego [m]
-  double radius, gap;  // of the ego; distance of its rim from the wall [m], negative inside
-  /// When the rim reaches the wall at velocity w [s]: 0 if it is there and does not go away, infinite if never.
+  double radius, gap;  // radius of the ego [m]; distance of its rim from the wall [m], negative inside
+  /// Time until the rim reaches the wall at velocity w [s]: 0 if it already does and comes nearer, infinite if never.
   double time(Vec2 w) const;
 };
 
@@ -52,21 +53,21 @@ struct Axis {
   int nearest(double v) const;
 };
 
-/// All that one object has to avoid; scratch memory.
+/// Everything that one object has to avoid; scratch memory.
 struct VelocityObstacles {
   std::vector<Cone> cones;
   std::vector<Approach> approaches;
   std::vector<Stretch> stretches;
   std::vector<Barrier> barriers;
-  double horizon = 0;  // a wall is in the way if it is reached sooner [s]
+  double horizon = 0;  // a wall blocks velocities that reach it sooner [s]
 
   void clear();
   bool walled(Vec2 w) const;
 };
 
-/// The sample of the grid nearest to `desired` that nothing blocks, the first in order of x, then y, of equally near
-/// ones. Where everything is blocked, the one with the least penalty: `factor` divided by the time to the first
-/// collision plus the distance to `desired`; walls are not entered if any sample avoids them.
+/// The sample of the grid nearest to `desired` outside all obstacles; among equally near ones the first by x, then y.
+/// If every sample is blocked, the one with the smallest penalty, which is `factor` divided by the time to the first
+/// collision plus the distance to `desired`. Samples that hit walls count only if no sample avoids them.
 Vec2 best_sample(VelocityObstacles& obstacles, const Axis& x, const Axis& y, Vec2 desired, double factor);
 
 }  // namespace irsim

@@ -1,4 +1,4 @@
-// What planar range sensors share: where their beams look, and what these meet.
+// What planar range sensors share: the directions of their beams, and casting them.
 #pragma once
 
 #include "sensing.hpp"
@@ -6,7 +6,8 @@
 
 namespace irsim {
 
-/// Evenly spaced from -angle_range / 2 to angle_range / 2, both ends included; a single beam looks straight ahead.
+/// Angles evenly spaced from -angle_range / 2 to angle_range / 2, both ends included; a single beam points straight
+/// ahead.
 inline std::vector<double> spread_beams(double angle_range, int number) {
   const int n = std::max(0, number);
   std::vector<double> angles(n, 0.0);
@@ -17,12 +18,12 @@ inline std::vector<double> spread_beams(double angle_range, int number) {
   return angles;
 }
 
-/// Aim every beam of a mount at its nominal angle; `heading`: cosine and sine of the sensor heading, world frame.
+/// Aim every beam of a mount at its nominal angle. `heading`: cosine and sine of the sensor heading, world frame.
 inline void aim_all(Fan& fan, const Mount& mount, Vec2 heading) {
   for (int i = 0; i < mount.count; ++i) fan.aim(i, rotate({mount.cosine[i], mount.sine[i]}, heading));
 }
 
-/// Cast at everything that is not unobstructed, but for `carrier`.
+/// Cast at all objects that are not unobstructed, except `carrier`.
 inline void cast_at_visible(Fan& fan, const World& world, const State& state, int w, int carrier) {
   for (const int object : world.visible) {
     if (object == carrier) continue;
@@ -32,8 +33,8 @@ inline void cast_at_visible(Fan& fan, const World& world, const State& state, in
   fan.cast([&](int object) { return state.footprint(world, w, object); });
 }
 
-/// One scan of a sensor with `offset`, `range_max`, `noise` and `angle_std`. With noise each beam strays by the normal
-/// draw `first_error + i`.
+/// Take a scan of a sensor that has the options `offset`, `range_max`, `noise` and `angle_std`. With noise, beam i
+/// deviates by `angle_std` times the normal draw `first_error + i`.
 template <class Options>
 Fan cast_beams(const Options& options, const Sensing& s, std::uint64_t first_error) {
   const int n = s.mount.count;

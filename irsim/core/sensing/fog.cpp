@@ -6,22 +6,22 @@
 namespace irsim {
 namespace {
 
-constexpr double kFarthest = 1e9;  // [m]
-constexpr int kBits = 40;          // after the point; fog has at most kMostFogCells cells along an axis
+constexpr double kMaxDistance = 1e9;  // beams that start or end farther away are ignored [m]
+constexpr int kFractionBits = 40;     // fraction bits of fixed-point coordinates; kMaxFogCells fits into the others
 
 struct Cells {
   std::uint8_t* explored;
   const Fog& fog;
   Vec2 origin, cell;
 
-  /// The cell at a point, in cells from the origin.
+  /// Mark the cell at a point, given in cells from the origin.
   void mark(double i, double j) const {
     if (i >= 0.0 && j >= 0.0 && i < fog.columns && j < fog.rows) {
       explored[static_cast<std::size_t>(i) * fog.rows + static_cast<std::size_t>(j)] = 1;
     }
   }
 
-  /// Distances along a beam between which it is over the fog.
+  /// Distances along a beam at which it enters and leaves the fog.
   std::pair<double, double> over(Vec2 from, Vec2 beam) const {
     double low = 0.0, high = kInfinity;
     const auto clip_axis = [&](double at, double rate, double size) {
@@ -37,13 +37,13 @@ struct Cells {
     return {low, high};
   }
 
-  /// The cells under samples half a cell apart, and under the end.
+  /// Mark the cells under samples of a beam that are half a cell apart, and under its end.
   void along(Vec2 from, Vec2 beam, double range) const {
     const double step = 0.5 * std::min(cell.x, cell.y);
     const double all = std::fabs(from.x) + std::fabs(from.y) + std::fabs(beam.x) + std::fabs(beam.y);
-    if (!(all < kFarthest)) return;  // a pose that is no number
+    if (!(all < kMaxDistance)) return;  // the pose is not finite, or much too far away
     const auto [low, high] = over(from, beam);
-    if (!(low <= high && high < kFarthest)) return;  // beside the world, or so far away that steps drown in rounding
+    if (!(low <= high && high < kMaxDistance)) return;  // the beam misses the fog, or is too far away for exact steps
     const double last = std::min(range, high + step);
     const Vec2 start{(from.x - origin.x) / cell.x, (from.y - origin.y) / cell.y};
     const Vec2 stride{beam.x * step / cell.x, beam.y * step / cell.y};
@@ -52,29 +52,29 @@ struct Cells {
     mark(start.x + beam.x * range / cell.x, start.y + beam.y * range / cell.y);
   }
 
-  /// The cells under `count` points, `stride` apart, of which no more than a few are beside the fog. Coordinates are
-  /// integers of 2^-40 cells here: many times as fast as to round two numbers for each point.
+  /// Mark the cells under `count` points that are `stride` apart. No more than a few at the ends may miss the fog.
+  /// Coordinates are integers in units of 2^-40 cells, which is much faster than rounding two numbers for each point.
   void samples(Vec2 start, Vec2 stride, std::int64_t count) const {
     const auto fixed = [](double at) {
-      return static_cast<std::int64_t>(at * (std::int64_t{1} << kBits) + std::copysign(0.5, at));
+      return static_cast<std::int64_t>(at * (std::int64_t{1} << kFractionBits) + std::copysign(0.5, at));
     };
     const auto inside = [&](std::int64_t x, std::int64_t y) {
-      return x >= 0 && y >= 0 && x >> kBits < fog.columns && y >> kBits < fog.rows;
+      return x >= 0 && y >= 0 && x >> kFractionBits < fog.columns && y >> kFractionBits < fog.rows;
     };
     std::int64_t x = fixed(start.x), y = fixed(start.y);
     const std::int64_t dx = fixed(stride.x), dy = fixed(stride.y), rows = fog.rows;
     for (; count > 0 && !inside(x, y); --count) x += dx, y += dy;
     while (count > 0 && !inside(x + (count - 1) * dx, y + (count - 1) * dy)) --count;
-    // both ends are inside, so all between are
+    // Both ends are inside, so all points between them are.
     for (; count > 0; --count) {
-      explored[(x >> kBits) * rows + (y >> kBits)] = 1;
+      explored[(x >> kFractionBits) * rows + (y >> kFractionBits)] = 1;
       x += dx, y += dy;
     }
   }
 
-  /// The cells whose centre is within reach and within half an opening angle of the heading.
+  /// Mark the cells whose centre is within reach and within half the opening angle of the heading.
   void sector(const Pose& pose, double angle, double reach) const {
-    if (!(std::fabs(pose.x) < kFarthest && std::fabs(pose.y) < kFarthest && reach >= 0.0)) return;
+    if (!(std::fabs(pose.x) < kMaxDistance && std::fabs(pose.y) < kMaxDistance && reach >= 0.0)) return;
     const auto index = [](double at, double size, int count) { return clip(std::floor(at / size), 0.0, count - 1.0); };
     const Vec2 at = pose.position() - origin;
     const int i0 = static_cast<int>(index(at.x - reach, cell.x, fog.columns));

@@ -1,4 +1,4 @@
-// Fog over the world: cells that no robot has seen yet (reference: section 9.3).
+// Fog: the cells of the world that no robot has seen yet (reference: section 9.3).
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@ struct State;
 struct Workspace;
 struct World;
 
-constexpr int kMostFogCells = 1 << 22;  // along an axis
+constexpr int kMaxFogCells = 1 << 22;  // largest number of cells along an axis
 
 /// A robot without lidar that clears the fog in its field of view.
 struct FogView {
   int object;
   double angle, reach;  // [rad], [m]
-  bool occlusion;       // what others hide stays in the fog
+  bool occlusion;       // whether cells that are hidden by objects stay in the fog
   static constexpr auto fields() {
     using V = FogView;
     return std::make_tuple(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
@@ -27,12 +27,12 @@ struct FogView {
   }
 };
 
-/// Cell (i, j), i along x, is number i * rows + j.
+/// Cells over the world. Cell (i, j), i along x, has the index i * rows + j.
 struct Fog {
   std::array<double, 2> origin, size;  // lower left corner, extent [m]
   int columns, rows;
-  std::vector<int> carriers;   // robots whose first lidar clears it
-  std::vector<FogView> views;  // and those that look without one
+  std::vector<int> carriers;   // robots that clear the fog with their first lidar
+  std::vector<FogView> views;  // robots that clear the fog without a lidar
   static constexpr auto fields() {
     using F = Fog;
     return std::make_tuple(field("origin", &F::origin), field("size", &F::size), field("columns", &F::columns),
@@ -43,7 +43,7 @@ struct Fog {
   Vec2 cell() const { return {size[0] / columns, size[1] / rows}; }
 };
 
-/// Mark in `state.explored` what the robots of world w see now.
+/// Mark the cells that the robots of world w see now in `state.explored`.
 void lift_fog(const World& world, State& state, int w, Workspace& work);
 
 }  // namespace irsim

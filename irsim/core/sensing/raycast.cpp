@@ -6,12 +6,12 @@
 namespace irsim {
 namespace {
 
-constexpr double kNearest = 1e-9;       // closer hits are not hits [m]
-constexpr double kSlack = 1e-12;        // an edge is this much longer, so that no beam slips through a corner
+constexpr double kMinRange = 1e-9;      // closer hits do not count [m]
+constexpr double kSlack = 1e-12;        // edges are extended by this share, so that no beam slips through a corner
 constexpr double kBearingError = 1e-4;  // bound on the error of `bearing` [rad]
-constexpr double kOutside = 1e-9;       // how far "just outside" an edge is, relative to the coordinates
+constexpr double kOutside = 1e-9;       // offset from an edge to a point just outside it, relative to the coordinates
 
-/// atan2 to within kBearingError: an odd polynomial fitted to atan on [0, 1], unfolded to the octants.
+/// atan2 with an error of at most kBearingError: an odd polynomial fitted to atan on [0, 1], unfolded to the octants.
 inline double bearing(Vec2 v) {
   const double ax = std::fabs(v.x), ay = std::fabs(v.y);
   const double large = std::max(ax, ay), small = std::min(ax, ay);
@@ -36,12 +36,12 @@ bool covered(const Footprint& body, int except, Vec2 p) {
 
 }  // namespace
 
-/// From a to b, both relative to the origin of the fan.
+/// An edge from a to b, both relative to the origin of the fan.
 struct Fan::Edge {
   const Footprint& body;
   int part, object;
   Vec2 a, b, along;
-  double area;  // a x along; 0: the origin is on the line
+  double area;  // a x along; 0 if the origin is on the line
 };
 
 Fan::Fan(BeamBuffers& buffers, Vec2 origin, Vec2 heading, const Mount& mount, double reach)
@@ -77,7 +77,7 @@ inline void Fan::between(double low, double high, Test&& test) const {
   };
   if (!ordered_ || !(high - low < turn_)) return run(0.0, count_);
   run(low, high);
-  if (high >= turn_) run(low - turn_, high - turn_);  // the bundle may reach across the rear
+  if (high >= turn_) run(low - turn_, high - turn_);  // the beams may extend across the rear
   if (low + turn_ < count_) run(low + turn_, high + turn_);
 }
 
@@ -86,7 +86,7 @@ void Fan::consider(int object, Vec2 centre, double radius) {
   const double distance2 = squared(d), reach = reach_ + radius;
   if (!(distance2 <= reach * reach && distance2 < kInfinity)) return;
   const double distance = std::sqrt(distance2);
-  const double edge = distance - radius * (1.0 + 1e-9) - 1e-9;  // everything is farther away than this
+  const double edge = distance - radius * (1.0 + 1e-9) - 1e-9;  // lower bound of the distance to the body
   BeamBuffers::Body body{edge, 0.0, turn_, object};
   if (edge > 0.0 && ordered_) {
     const double middle = beam_of(d), half = 0.5 * kPi * (radius / distance) * per_radian_;  // asin x <= x pi / 2
@@ -153,7 +153,7 @@ void Fan::cast_circle(const Footprint& body, int part, int object) {
     if (!(half2 >= 0.0)) return;
     const double half = std::sqrt(half2);
     for (const double range : {ahead - half, ahead + half}) {
-      if (!(range > kNearest) || !nearer(i, range, object)) continue;
+      if (!(range > kMinRange) || !nearer(i, range, object)) continue;
       const Vec2 outward = (beam * range - centre) * (1.0 / std::max(radius, 1e-300));
       if (body.count > 1 && !on_union(i, range, body, part, outward)) continue;
       buffers_.range[i] = range;
@@ -169,7 +169,7 @@ void Fan::cast_circle(const Footprint& body, int part, int object) {
 void Fan::cast_cells(const OccupancyGrid& grid, int object) {
   const CellWalk walk(grid, origin_);
   for (int i = 0; i < count_; ++i) {
-    const double range = walk.hit({buffers_.dx[i], buffers_.dy[i]}, kNearest, buffers_.range[i]);
+    const double range = walk.hit({buffers_.dx[i], buffers_.dy[i]}, kMinRange, buffers_.range[i]);
     if (!nearer(i, range, object)) continue;
     buffers_.range[i] = range;
     buffers_.hit[i] = object;
@@ -187,10 +187,10 @@ inline void Fan::test(int i, const Edge& edge) {
     range = edge.area * inverse;
   } else {
     if (edge.area != 0.0) return;
-    const double a = dot(edge.a, beam), b = dot(edge.b, beam);  // the beam runs along the edge: the nearest end ahead
-    range = std::min(a, b) > kNearest ? std::min(a, b) : std::max(a, b);
+    const double a = dot(edge.a, beam), b = dot(edge.b, beam);  // a beam along the edge hits the nearest end ahead
+    range = std::min(a, b) > kMinRange ? std::min(a, b) : std::max(a, b);
   }
-  if (!(range > kNearest) || !nearer(i, range, edge.object)) return;
+  if (!(range > kMinRange) || !nearer(i, range, edge.object)) return;
   if (edge.body.count > 1) {
     const double length = norm(edge.along), turn = edge.body.parts[edge.part].turn;
     const Vec2 outward = length > 0.0 ? Vec2{edge.along.y, -edge.along.x} * (turn / length) : Vec2{};
@@ -205,7 +205,7 @@ void Fan::cast_edges(const Footprint& body, int part, int object) {
   const Vec2* vertices = body.vertices + p.first;
   const int edges = p.last - p.first;
   const double half_turn = 0.5 * turn_, unsure = 4.0 * kBearingError * per_radian_;
-  // seen from outside, edges that face away are hidden, except from beams that pass their ends
+  // From outside, edges that face away are hidden, except from beams that pass their ends.
   const bool outside = body.count == 1 && squared(body.centre - origin_) > body.radius * body.radius * (1.0 + 1e-6);
   const double facing_away = outside ? p.turn : 0.0;
   Vec2 a = vertices[0] - origin_;
@@ -219,7 +219,7 @@ void Fan::cast_edges(const Footprint& body, int part, int object) {
     const double width = high - low;
     a = b, a_beam = b_beam;
     if (std::fabs(width - half_turn) <= unsure) {
-      high = low + turn_;  // passes so near the origin that either side may be the right one: all beams
+      high = low + turn_;  // The edge passes so near the origin that its side is uncertain, so all beams are tested.
     } else if (width > half_turn) {
       std::swap(low, high);
       high += turn_;

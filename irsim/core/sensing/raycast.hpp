@@ -1,4 +1,4 @@
-// A fan of beams from one point against footprints.
+// Ray casting: a fan of beams from one point against footprints.
 #pragma once
 
 #include "geometry/shapes.hpp"
@@ -7,21 +7,22 @@
 
 namespace irsim {
 
-/// Casts all beams of one scan. An edge is tested only against the beams between the bearings of its ends, bodies that
-/// are hidden behind what was hit already are skipped, and nearer bodies go first. Results are those of testing every
-/// beam against every edge: the nearest hit wins, of equal ones the one of the lowest object.
+/// Casts all beams of one scan. An edge is tested only against the beams between the bearings of its ends, nearer
+/// bodies are tested first, and bodies hidden behind earlier hits are skipped. The results equal those of testing every
+/// beam against every edge: the nearest hit counts, among equal ones that of the lowest object id.
 class Fan {
  public:
   /// `heading`: cosine and sine of the sensor heading, world frame; `reach` [m].
   Fan(BeamBuffers& buffers, Vec2 origin, Vec2 heading, const Mount& mount, double reach);
 
-  /// World-frame unit direction of beam i; `widen` tells how far beams may stray from their nominal angle.
+  /// Set the world-frame unit direction of beam i.
   void aim(int i, Vec2 direction) { buffers_.dx[i] = direction.x, buffers_.dy[i] = direction.y; }
+  /// Allow for beams that deviate from their nominal angle by `error` [rad].
   void widen(double error);
 
-  /// Note a body, by its bounding circle, if it is in reach and in view.
+  /// Remember a body for `cast` if its bounding circle is within reach and in view.
   void consider(int object, Vec2 centre, double radius);
-  /// Cast at all bodies noted; `footprint(object)` shows one.
+  /// Cast the beams at all bodies remembered; `footprint(object)` returns a body.
   template <class Footprints>
   void cast(Footprints&& footprint) {
     sort_by_distance();
@@ -37,9 +38,11 @@ class Fan {
 
  private:
   struct Edge;
-  double beam_of(Vec2 from_origin) const;  // nominal beam, fractional, that looks at a point
+  /// The nominal beam, as a fractional index, that points at a position relative to the origin.
+  double beam_of(Vec2 from_origin) const;
+  /// Call `test` for the beams from low to high, and for those that may be among them within the error of `beam_of`.
   template <class Test>
-  void between(double low, double high, Test&& test) const;  // the beams from low to high, and those too close to tell
+  void between(double low, double high, Test&& test) const;
   void sort_by_distance();
   bool hidden(const BeamBuffers::Body& body) const;
   void cast_body(const Footprint& body, int object);
@@ -54,8 +57,8 @@ class Fan {
   Vec2 origin_, heading_;
   int count_;
   double reach_, first_, per_radian_, turn_;  // angle of beam 0 [rad]; beams per radian and per turn
-  double blur_ = 0.0;                         // how wrong `beam_of` may be [beams]
-  bool ordered_;                              // beams are spaced by angle
+  double blur_ = 0.0;                         // largest error of `beam_of` [beams]
+  bool ordered_;                              // whether beams are evenly spaced in angle
 };
 
 }  // namespace irsim

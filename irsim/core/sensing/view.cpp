@@ -7,10 +7,10 @@
 namespace irsim {
 namespace {
 
-/// Bearings, relative to the axis of a sector, at which something may begin or end to be seen.
+/// Bearings, relative to the axis of a sector, at which the visibility of an object may change.
 class Bearings {
  public:
-  /// Of a sector, as far as a disc about a target is seen through it.
+  /// Start with the ends of the part of a sector through which a disc about the target is seen.
   Bearings(const Sector& sector, Vec2 centre, double radius) : sector_(sector), axis_(unit(sector.middle)) {
     list_ = {-std::min(sector.half, kPi), std::min(sector.half, kPi)};
     const double distance = norm(centre - sector.apex);
@@ -25,7 +25,7 @@ class Bearings {
     const double bearing = bearing_of(point);
     if (std::fabs(bearing) < sector_.half && std::fabs(wrap(bearing - target_)) <= width_) list_.push_back(bearing);
   }
-  /// Corners, and the outermost bearings of circles.
+  /// Add the bearings of corners and the outermost bearings of circles.
   void add_ends(const Footprint& body) {
     for (int k = 0; k < body.count; ++k) {
       const Part& part = body.parts[k];
@@ -45,13 +45,13 @@ class Bearings {
       add(sector_.apex + d * along - Vec2{-d.y, d.x} * aside);
     }
   }
-  /// Where boundaries cross.
+  /// Add the bearings at which boundaries cross.
   void add_crossings(const Footprint& a, const Footprint& b) {
     for (int i = 0; i < a.count; ++i) {
       for (int j = 0; j < b.count; ++j) cross_parts(a, a.parts[i], b, b.parts[j]);
     }
   }
-  /// Where a boundary leaves the reach of the sector.
+  /// Add the bearings at which a boundary leaves the reach of the sector.
   void add_rim(const Footprint& body) {
     for (int k = 0; k < body.count; ++k) {
       const Part& part = body.parts[k];
@@ -66,7 +66,7 @@ class Bearings {
       }
     }
   }
-  /// Sorted.
+  /// All bearings, in ascending order.
   const std::vector<double>& sorted() {
     std::sort(list_.begin(), list_.end());
     return list_;
@@ -77,7 +77,7 @@ class Bearings {
     const Vec2 p = unrotate(point - sector_.apex, axis_);
     return std::atan2(p.y, p.x);
   }
-  /// The edges between occupied and free cells within reach, each from the end at which it is seen to begin or to end.
+  /// Visit the edges between occupied and free cells within reach, in both directions.
   template <class Visit>
   void near_cells(const OccupancyGrid& grid, Visit&& visit) const {
     grid.any_in(box_around(sector_.apex, sector_.reach), [&](int i, int j) {
@@ -142,17 +142,17 @@ class Bearings {
 
   const Sector& sector_;
   Vec2 axis_;
-  double target_ = 0.0, width_ = kInfinity;  // of what is looked at
+  double target_ = 0.0, width_ = kInfinity;  // bearing and half width of the target [rad]
   std::vector<double> list_;
 };
 
 /// Whether a point lies inside a closed footprint.
-bool holds(const Footprint& body, Vec2 p) { return meets(body, {p, 0.0, kPi, 0.0}); }
+bool contains(const Footprint& body, Vec2 p) { return meets(body, {p, 0.0, kPi, 0.0}); }
 
-/// Beams between neighbouring bearings; each sees what is seen from one bearing to the next.
+/// One beam between each two neighboring bearings: it sees what is visible from one bearing to the next.
 Mount beams_between(const std::vector<double>& bearings) {
   Mount mount{0, 0, 0, 0, 0, 0, {}, {}, {}, {}};
-  mount.angle.push_back(0.0);  // two equal angles: the beams are not evenly spaced
+  mount.angle.push_back(0.0);  // two equal angles mark beams that are not evenly spaced
   mount.angle.push_back(0.0);
   for (std::size_t k = 1; k < bearings.size(); ++k) {
     if (bearings[k] - bearings[k - 1] > 1e-12) mount.angle.push_back(0.5 * (bearings[k - 1] + bearings[k]));
@@ -161,11 +161,11 @@ Mount beams_between(const std::vector<double>& bearings) {
   return mount;
 }
 
-/// Whether some part of `target` in the sector is nearer than everything before it, seen from the apex.
-bool unhidden(const World& world, const State& state, int w, int object, int target, const Sector& sector,
-              Workspace& work) {
+/// Whether some part of `target` in the sector is not hidden from the apex by other objects.
+bool is_partly_visible(const World& world, const State& state, int w, int object, int target, const Sector& sector,
+                       Workspace& work) {
   const Footprint body = state.footprint(world, w, target);
-  if (holds(body, sector.apex)) return true;
+  if (contains(body, sector.apex)) return true;
   const double far = norm(body.centre - sector.apex) + body.radius;
   std::vector<int> blockers;
   for (const int i : world.visible) {
@@ -221,7 +221,7 @@ std::vector<int> in_view(const World& world, State& state, int w, int object, co
   const Sector sector{pose.position(), pose.theta, view.angle >= kTurn ? kPi : 0.5 * view.angle, view.reach};
   for (int i = 0; i < world.objects; ++i) {
     if (i == object || !meets(state.footprint(world, w, i), sector)) continue;
-    if (!view.occlusion || unhidden(world, state, w, object, i, sector, work)) seen.push_back(i);
+    if (!view.occlusion || is_partly_visible(world, state, w, object, i, sector, work)) seen.push_back(i);
   }
   return seen;
 }

@@ -1,4 +1,4 @@
-// Fields of view: who is seen.
+// Fields of view: which objects are seen.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace irsim {
 
-/// Where an object looks: `angle` is the whole opening [rad], `reach` in metres from its origin along its heading.
+/// A field of view about the heading of an object: `angle` is the full opening angle [rad], `reach` the range from its
+/// origin [m].
 struct View {
   double angle, reach;
-  bool occlusion;  // parts hidden behind what is not unobstructed do not count
+  bool occlusion;  // whether parts hidden behind objects that are not unobstructed are left out
 };
 
-/// Ids, ascending, of the objects of world w of which some part lies in the view of `object`, at the present poses.
+/// Ids, ascending, of the objects of world w that are partly or wholly in the view of `object` at the present poses.
 std::vector<int> in_view(const World& world, State& state, int w, int object, const View& view, Workspace& work);
 
 }  // namespace irsim

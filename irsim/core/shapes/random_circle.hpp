@@ -1,4 +1,4 @@
-// A disc whose radius is drawn per scene.
+// A disc whose radius is drawn for each scene.
 #pragma once
 
 #include "fields.hpp"

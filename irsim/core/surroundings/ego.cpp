@@ -3,9 +3,9 @@
 namespace irsim {
 namespace {
 
-constexpr double kAtGoal = 0.1;  // nearer goals are not headed for [m]
+constexpr double kAtGoal = 0.1;  // objects nearer to their goal than this want to stand still [m]
 
-/// Top speeds along and across the way to the goal.
+/// Top speeds along the x and y axes of the wanted velocity.
 template <class Drive>
 Vec2 top_speeds(const Drive&, Vec3 top) {
   return {top[0], top[0]};

@@ -1,24 +1,24 @@
-// What one object sees of itself and of others when it decides (reference: 5.2).
+// What an object knows about itself and its surroundings when its behavior decides (reference: 5.2).
 #pragma once
 
 #include "decision.hpp"
 
 namespace irsim {
 
-constexpr double kPadding = 0.1;  // added to every radius that behaviors see [m]
+constexpr double kPadding = 0.1;  // margin added to every radius that behaviors see [m]
 
 /// Object k of a decision, world frame.
 struct Ego {
   int id, row;
-  Vec2 position, velocity;  // origin [m], present command at the present heading [m/s]
-  Vec2 desired;             // toward the goal at full speed [m/s]; zero within 0.1 m of it, and without goal
+  Vec2 position, velocity;  // origin [m], velocity of the present command at the present heading [m/s]
+  Vec2 desired;             // toward the goal at full speed [m/s]; zero without a goal or within 0.1 m of it
   double radius;            // padded [m]
-  const Route* route;       // the one it is on, or null
+  const Route* route;       // route that the object follows, or null
 };
 Ego ego_of(const Decision& decision, int k);
 
-/// Whether `other` is shown to `ego`: not itself, and of a role that the behavior targets or a member of its group.
-inline bool shown(const Decision& decision, int ego, int other) {
+/// Whether `ego` sees `other`: another object, either of a role that the behavior targets or a member of its group.
+inline bool is_shown(const Decision& decision, int ego, int other) {
   const World& world = decision.world;
   if (other == ego) return false;
   const int roles = world.target_roles[ego];
@@ -26,8 +26,8 @@ inline bool shown(const Decision& decision, int ego, int other) {
   return decision.grouped && world.group[other] == world.group[ego];
 }
 
-/// Calls `visit(disc)`, by ascending id, for every other disc whose centre is nearer than `reach`; radii as they are.
-/// Members of a group behavior know each other's origins and see those as the centres.
+/// Call `visit(disc)`, by ascending id, for every other disc whose centre is nearer than `reach`. Radii have no margin.
+/// Members of a group behavior know each other's origins, which are then the centres.
 template <class Visit>
 void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
   const World& world = decision.world;
@@ -35,7 +35,7 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   const Neighbors& near = neighbors(world, decision.state, decision.work, w);
   const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
   for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
-    if (!shown(decision, ego.id, other)) return;
+    if (!is_shown(decision, ego.id, other)) return;
     Disc disc = disc_of(world, decision.state, decision.work, w, other);
     if (decision.grouped && world.group[other] == world.group[ego.id]) {
       disc.centre = decision.state.pose[decision.first_row + other].position();
@@ -44,22 +44,22 @@ void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& v
   });
 }
 
-/// Calls `visit(line)` for the segments of linestrings that stand still and come within `reach`.
+/// Call `visit(line)` for the segments of static linestrings within `reach`.
 template <class Visit>
-void for_standing_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+void for_static_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
   const Walls& lines = decision.state.scenes[decision.w()].fixed->lines;
   for_walls(lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
-    if (shown(decision, ego.id, line.object)) visit(line);
+    if (is_shown(decision, ego.id, line.object)) visit(line);
   });
 }
 
-/// Calls `visit(a, b)` for the segments of linestrings that move, wherever they are.
+/// Call `visit(a, b)` for the segments of all moving linestrings, at any distance.
 template <class Visit>
 void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
   const int w = decision.w();
   const Scene& scene = decision.state.scenes[w];
   for (const int object : neighbors(decision.world, decision.state, decision.work, w).lines) {
-    if (!shown(decision, ego.id, object)) continue;
+    if (!is_shown(decision, ego.id, object)) continue;
     const Shapes& shapes = *scene.shapes;
     const int row = decision.first_row + object;
     const Vec2 origin = decision.state.pose[row].position(), direction = decision.state.heading(row);
@@ -71,12 +71,12 @@ void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
   }
 }
 
-/// Calls `visit(wall)` for the walls within `reach` that turn their outside to the ego.
+/// Call `visit(wall)` for the walls within `reach` whose outside faces the ego.
 template <class Visit>
 void for_facing_walls(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
   for_walls(walls, decision.work.walls, ego.position, reach, [&](const Wall& wall) {
-    if (shown(decision, ego.id, wall.object) && cross(wall.b - wall.a, ego.position - wall.a) <= 0.0) visit(wall);
+    if (is_shown(decision, ego.id, wall.object) && cross(wall.b - wall.a, ego.position - wall.a) <= 0.0) visit(wall);
   });
 }
 

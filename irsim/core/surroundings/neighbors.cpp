@@ -8,13 +8,13 @@
 namespace irsim {
 namespace {
 
-constexpr std::size_t kFew = 64;  // so few are looked at one by one
+constexpr std::size_t kMaxLinearObjects = 64;  // up to this many objects are searched one by one
 
 bool is_line(const Shapes& shapes, int object) {
   return shapes.parts[shapes.body[object].part].kind == Kind::linestring;
 }
 
-/// Cells of about half the reach, one of few sizes: behaviors with similar reach share a level.
+/// A grid with cells of about half the reach. The sizes are powers of 2, so that behaviors of similar reach share it.
 const Points& level_for(Neighbors& near, double reach) {
   const double cell = std::exp2(std::ceil(std::log2(std::max(reach, 1e-3)))) * 0.5;
   for (std::size_t k = 0; k < near.used; ++k) {
@@ -64,7 +64,7 @@ const std::vector<int>& neighbors_within(const World& world, const State& state,
   found.clear();
   const Fixed& fixed = *state.scenes[w].fixed;
   bool sorted = true;
-  if (near.bounds.size() <= kFew || !std::isfinite(reach)) {
+  if (near.bounds.size() <= kMaxLinearObjects || !std::isfinite(reach)) {
     const double reach2 = reach * reach;
     for (std::size_t m = 0; m < near.bounds.size(); ++m) {
       if (squared(near.bounds[m] - centre) <= reach2) found.push_back(world.moving[m]);

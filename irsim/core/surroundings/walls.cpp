@@ -9,9 +9,9 @@
 namespace irsim {
 namespace {
 
-constexpr double kCell = 4.0;          // of the grid of walls [m]
-constexpr int kCorners = 16;           // of the polygon that stands for a circle of a compound
-constexpr std::size_t kFewWalls = 24;  // so few are looked at one by one
+constexpr double kCell = 4.0;                // cell size of the grid of walls [m]
+constexpr int kCorners = 16;                 // corners of the polygon that stands for a circle of a compound
+constexpr std::size_t kMaxLinearWalls = 24;  // up to this many walls are searched one by one
 
 void add_part(Walls& walls, const Footprint& body, const Part& part, int object) {
   const Vec2* vertices = body.vertices + part.first;
@@ -20,7 +20,7 @@ void add_part(Walls& walls, const Footprint& body, const Part& part, int object)
       walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
     return;
   }
-  if (part.kind == Kind::room) {  // solid outside: clockwise
+  if (part.kind == Kind::room) {  // a room is solid outside, so its outline is clockwise
     std::vector<Vec2> ring(vertices, vertices + (part.last - part.first));
     if (twice_area(ring) > 0.0) std::reverse(ring.begin(), ring.end());
     return walls.add_ring(ring.data(), static_cast<int>(ring.size()), 1.0, object);
@@ -68,7 +68,7 @@ void Walls::within(Vec2 centre, double reach, std::vector<int>& found) const {
     const Vec2 nearest = nearest_on_segment(list[k].a, list[k].b, centre);
     return squared(nearest - centre) <= reach2;
   };
-  if (list.size() <= kFewWalls || !std::isfinite(reach)) {
+  if (list.size() <= kMaxLinearWalls || !std::isfinite(reach)) {
     for (int k = 0; k < static_cast<int>(list.size()); ++k)
       if (near(k)) found.push_back(k);
     return;
@@ -81,7 +81,7 @@ void Walls::within(Vec2 centre, double reach, std::vector<int>& found) const {
 
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed) {
   Walls walls;
-  // the outline of a map is long: only for those who look at it
+  // The outline of a map is long, so it is made only if a behavior uses it.
   const bool avoids = std::any_of(world.behaviors.begin(), world.behaviors.end(), [](const BehaviorGroup& group) {
     return !std::holds_alternative<DashOptions>(group.behavior);
   });

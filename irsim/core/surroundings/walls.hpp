@@ -1,4 +1,4 @@
-// Walls: the segments of what stands still and is not a circle.
+// Walls: the segments of static objects other than circles.
 #pragma once
 
 #include <vector>
@@ -13,35 +13,35 @@ struct Fixed;
 struct World;
 struct Shapes;
 
-/// A segment, world frame. Of an outline the inside is on the left of a -> b.
+/// A segment, world frame. The inside of an outline is on the left of a -> b.
 struct Wall {
   Vec2 a, b;
   int object;
-  int next, previous;  // walls that start at b and end at a; -1: none, a free end
+  int next, previous;  // walls that start at b and end at a; -1 at a free end
 };
 
-/// Segments and where they are.
+/// Segments and a grid to find them.
 struct Walls {
   std::vector<Wall> list;
   Grid grid;
 
-  /// A closed outline, `count` corners; `turn` < 0: given clockwise.
+  /// Add a closed outline of `count` corners, which are clockwise if `turn` < 0.
   void add_ring(const Vec2* corners, int count, double turn, int object);
-  /// An open polyline.
+  /// Add an open polyline.
   void add_chain(const Vec2* corners, int count, int object);
-  /// After the last wall; questions are possible afterwards.
+  /// Build the grid after the last wall was added; queries are possible afterwards.
   void build();
-  /// Indices, ascending, of the walls that come within `reach` [m] of `centre`, in `found`.
+  /// Write the indices, ascending, of the walls within `reach` [m] of `centre` to `found`.
   void within(Vec2 centre, double reach, std::vector<int>& found) const;
 };
 
-/// The outlines of static objects that are neither circles nor linestrings nor `unobstructed` (a circle that is part of
-/// a compound counts by a polygon about it; that of a map is left out where nobody has a behavior that avoids).
+/// The outlines of static objects that are neither circles nor linestrings nor `unobstructed`. A polygon stands for a
+/// circle that is part of a compound. Outlines of maps are left out if no behavior avoids obstacles.
 Walls make_walls(const World& world, const Shapes& shapes, const Fixed& fixed);
-/// The segments of static linestrings, `unobstructed` ones too.
+/// The segments of static linestrings, including `unobstructed` ones.
 Walls make_lines(const World& world, const Shapes& shapes, const Fixed& fixed);
 
-/// Calls `visit(wall)` for each wall within `reach` [m] of `centre`, by ascending index. `found` is scratch memory.
+/// Call `visit(wall)` for each wall within `reach` [m] of `centre`, by ascending index. `found` is scratch memory.
 template <class Visit>
 void for_walls(const Walls& walls, std::vector<int>& found, Vec2 centre, double reach, Visit&& visit) {
   if (walls.list.empty()) return;

@@ -1,4 +1,4 @@
-// A block of memory shared with the NumPy arrays that look at it.
+// A block of memory that NumPy arrays can view and keep alive.
 #pragma once
 
 #include <algorithm>

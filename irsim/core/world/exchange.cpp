@@ -7,7 +7,7 @@
 namespace irsim {
 namespace {
 
-/// Rows of two states, which may differ in the number of extra rows.
+/// Copy a row between states, which may differ in the number of extra rows.
 void copy_row(State& to, int row, const State& from, int old_row) {
   to.pose[row] = from.pose[old_row];
   to.control[row] = from.control[old_row];
@@ -34,7 +34,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.sync_goal(row);
 }
 
-/// What was recorded of a row, with another number of extra rows.
+/// The recorded history of a row, with the given number of extra rows.
 std::vector<double> track_of(const State& from, int row, int extra_rows) {
   if (!from.keep_history) return {};
   const std::vector<double>& old = from.history[row];
@@ -48,8 +48,8 @@ std::vector<double> track_of(const State& from, int row, int extra_rows) {
   return track;
 }
 
-/// Pairs of the old rows as pairs of the new ones; those of objects that are gone are left out.
-std::vector<Pair> renamed(const std::vector<Pair>& pairs, const std::vector<int>& new_row) {
+/// Pairs of old rows as pairs of new rows; pairs of removed objects are left out.
+std::vector<Pair> rename_pairs(const std::vector<Pair>& pairs, const std::vector<int>& new_row) {
   std::vector<Pair> out;
   for (const auto& [i, j] : pairs) {
     const int a = new_row[i], b = new_row[j];
@@ -59,8 +59,8 @@ std::vector<Pair> renamed(const std::vector<Pair>& pairs, const std::vector<int>
   return out;
 }
 
-/// After `scene.shapes` has changed: room for outlines, and everything where it stands.
-void settle(const World& world, State& state, int w) {
+/// Rebuild the geometry of all objects after `scene.shapes` has changed.
+void rebuild_geometry(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
   for (int i = 0; i < world.objects; ++i) state.radius[w * world.objects + i] = scene.shapes->radius[i];
   scene.moving.resize(scene.shapes->size[0]);
@@ -72,8 +72,8 @@ void settle(const World& world, State& state, int w) {
 
 }  // namespace
 
-void go_on(const World& world, State& state, const World& world_before, const State& before,
-           const std::vector<Origin>& origins) {
+void continue_from(const World& world, State& state, const World& world_before, const State& before,
+                   const std::vector<Origin>& origins) {
   state.count[0] = before.count[0];
   state.scene_index[0] = before.scene_index[0];
   state.noise[0] = before.noise[0];
@@ -96,8 +96,8 @@ void go_on(const World& world, State& state, const World& world_before, const St
   scene.shapes = std::move(shapes);
   scene.sweep.reset(world.moving);
   scene.contacts.clear();
-  scene.pairs = renamed(before.scenes[0].pairs, new_row);
-  settle(world, state, 0);
+  scene.pairs = rename_pairs(before.scenes[0].pairs, new_row);
+  rebuild_geometry(world, state, 0);
   sense(world, state, 0, state.workspaces.front());
 }
 
@@ -114,7 +114,7 @@ void reshape(const World& world, State& state, int row, const std::vector<Outlin
     }
   }
   scene.shapes = std::move(shapes);
-  settle(world, state, w);
+  rebuild_geometry(world, state, w);
 }
 
 }  // namespace irsim

@@ -1,4 +1,4 @@
-// Objects come and go, or change their shape, in the middle of an episode.
+// Objects that are added, removed or reshaped during an episode.
 #pragma once
 
 #include <vector>
@@ -7,20 +7,20 @@
 
 namespace irsim {
 
-/// The present state of an object: one row of a state of one world.
+/// Where an object comes from: a row of the state of a single world.
 struct Origin {
   const World* world;
   const State* state;
   int object;
 };
 
-/// Let `state`, new and of one world, go on where `before` is: its clock, keys, events and whatever else belongs to the
-/// world as a whole; each object with the pose, goals, flags, history and shape of its origin. Contacts and stops are
-/// those of the last step; sensors look again.
-void go_on(const World& world, State& state, const World& world_before, const State& before,
-           const std::vector<Origin>& origins);
+/// Let `state`, which is new and has one world, continue from `before`. Clock, keys and events are those of `before`;
+/// each object has the pose, goals, flags, history and shape of its origin. Flags are those of the last step; sensors
+/// take a new scan.
+void continue_from(const World& world, State& state, const World& world_before, const State& before,
+                   const std::vector<Origin>& origins);
 
-/// Give an object another body until the next scene is drawn.
+/// Replace the shape of an object until the next scene is drawn.
 void reshape(const World& world, State& state, int row, const std::vector<Outline>& outlines);
 
 }  // namespace irsim

@@ -1,4 +1,4 @@
-// All behaviors and sensors, and the lists of who uses them.
+// All behaviors and sensors, and which objects use them.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace irsim {
 
-/// Objects of the template with equal behavior, options and group. Of a group behavior, `members` are all objects of
-/// the group, those that cannot move too; else they are `objects`.
+/// Objects of the template with equal behavior, options and group. For a group behavior `members` are all objects of
+/// the group, including static ones; otherwise `members` equals `objects`.
 struct BehaviorGroup {
   Behavior behavior;
   int group;

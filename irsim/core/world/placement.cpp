@@ -1,4 +1,4 @@
-// Random placement: footprint-aware over everything placed so far (fixed objects first, then entries in file order).
+// Random placement. Footprints must not overlap those placed before: fixed objects first, then entries in file order.
 #include "collision/touch.hpp"
 #include "world/spec.hpp"
 #include "world/state.hpp"
@@ -6,9 +6,10 @@
 namespace irsim {
 namespace {
 
-constexpr std::uint64_t kGoalDraws = std::uint64_t{1} << 40;  // blocks of goals; those of states start at 0
+constexpr std::uint64_t kGoalDraws = std::uint64_t{1}
+                                     << 40;  // first block of draws for goals; draws for states start at 0
 
-/// A grid that is asked while it grows.
+/// A grid that answers queries while boxes are added.
 class GrowingGrid {
  public:
   explicit GrowingGrid(double cell) {
@@ -36,11 +37,11 @@ class GrowingGrid {
 
  private:
   Grid grid_;
-  std::vector<std::pair<int, Box>> recent_;  // not sorted into the grid yet
+  std::vector<std::pair<int, Box>> recent_;  // boxes that are not sorted into the grid yet
   std::size_t built_ = 0;
 };
 
-/// Points of one entry that keep a distance from each other.
+/// Points of one entry that keep a minimum distance from each other.
 class Spread {
  public:
   explicit Spread(double distance) : distance_(distance), grid_(distance) {}
@@ -59,7 +60,7 @@ class Spread {
   std::vector<Vec2> points_;
 };
 
-/// Footprints that are in each other's way.
+/// Footprints that must not overlap.
 class Crowd {
  public:
   Crowd(const World& world, const Shapes& shapes)
@@ -67,7 +68,7 @@ class Crowd {
     outlines_[0].resize(shapes.size[0]);
     outlines_[1].resize(shapes.size[1]);
   }
-  /// Whether the object has room at a pose; remembers the trial.
+  /// Whether the object fits at a pose, where its outline then stays.
   bool fits(int object, const Pose& pose) {
     if (world_.unobstructed[object]) return true;
     place(object, pose);
@@ -91,7 +92,7 @@ class Crowd {
   GrowingGrid grid_;
 };
 
-/// Draw until there is room. False if there never was; the last draw is kept.
+/// Draw poses until one fits. Returns false if none does; `pose` is then the last draw.
 bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first, int object,
                const Spread& spread, Crowd& crowd, Pose& pose) {
   const auto &low = entry.range_low, &high = entry.range_high;
@@ -112,7 +113,7 @@ void place_randomly(const World& world, State& state, int w) {
   const auto failed = [&](int object) {
     if (state.failed_placement[w] < 0) state.failed_placement[w] = object;
   };
-  // a scene in which somebody found no room is not used: the others need not look for any
+  // A scene in which an object does not fit is not used, so the objects after it are drawn only once.
   const auto attempts = [&](const RandomPlacement& entry) {
     return state.failed_placement[w] < 0 ? entry.attempts : 1;
   };
@@ -141,11 +142,12 @@ void place_randomly(const World& world, State& state, int w) {
   for (const int i : world.fixed_objects) still.add(i, state.initial_pose[first + i]);
   for (const RandomPlacement& entry : world.placements) {
     Spread spread(entry.min_distance);
-    Crowd goals = still;  // goals of other entries may be shared
+    Crowd goals = still;  // objects of different entries may have the same goal
     for (const int i : entry.objects) {
-      if (world.wander[i]) continue;  // drawn at every reset
+      if (world.wander[i]) continue;  // their goals are drawn at every reset
       Goal goal;
-      if (world.is_static[i] || !world.matter[i].driven) {  // never reached, but IR-SIM has it
+      if (world.is_static[i] ||
+          !world.dynamics[i].driven) {  // these objects never reach a goal, but IR-SIM gives them one
         const auto u = Draws(key, Stream::placement, world.number[i]).uniforms(kGoalDraws);
         const auto &low = entry.range_low, &high = entry.range_high;
         state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],

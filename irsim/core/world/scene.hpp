@@ -1,4 +1,4 @@
-// Geometry and records of one world.
+// Geometry, contacts and events of one world.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@ namespace irsim {
 
 using Pair = std::pair<int, int>;  // object ids, first < second
 
-/// Outlines of the static objects, where they are, and what never has to be asked again about them. Shared between
-/// worlds in which they stand alike.
+/// Outlines of the static objects at their poses, and everything that can be computed from them once. Worlds whose
+/// static objects have the same shapes and poses share it.
 struct Fixed {
-  std::vector<Pose> poses;  // of the static objects, in order
+  std::vector<Pose> poses;  // poses of the static objects, in order
   Outlines outlines;
   Grid grid;
-  std::vector<Pair> pairs;    // static objects that meet each other
-  Walls walls, lines;         // outlines that are in the way; linestrings
-  std::vector<int> disc_ids;  // of the circles
-  Points disc_points;         // centres of their bounding circles
-  Obstacles obstacles;        // all of these as `orca` sees them
+  std::vector<Pair> pairs;    // static objects that touch each other
+  Walls walls, lines;         // outlines of obstacles; segments of linestrings
+  std::vector<int> disc_ids;  // ids of the circles
+  Points disc_points;         // centres of these circles
+  Obstacles obstacles;        // all of these in the form that `orca` needs
 };
 
 enum class EventKind { arrival, waypoint, collision, no_path };
@@ -36,7 +36,7 @@ constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision", "no_p
 struct Event {
   EventKind kind;
   long long step;
-  int object, partner;  // their numbers; partner -1 unless a collision
+  int object, partner;  // World::number of both; partner is -1 unless the event is a collision
   double x, y;
 };
 
@@ -44,11 +44,11 @@ struct Scene {
   std::shared_ptr<const Shapes> shapes;
   std::shared_ptr<const Fixed> fixed;
   Outlines moving;
-  Sweep sweep;                              // of the moving objects
-  std::vector<Pair> pairs, previous_pairs;  // sorted
+  Sweep sweep;                              // broad phase of the moving objects
+  std::vector<Pair> pairs, previous_pairs;  // colliding objects now and one step before, sorted
   std::vector<Event> events;                // since the last reset
-  std::shared_ptr<const Bodies> bodies;     // of `shapes`; null until contacts are looked for
-  std::vector<Contact> contacts;            // of the last step, in the order they were found
+  std::shared_ptr<const Bodies> bodies;     // rigid bodies of `shapes`; null until they are needed
+  std::vector<Contact> contacts;            // contacts of the last step, in the order in which they were found
 };
 
 }  // namespace irsim

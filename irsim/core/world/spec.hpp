@@ -1,4 +1,4 @@
-// What Python hands over: one template world, object by object.
+// The template world that Python hands over, object by object.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace irsim {
 
-/// Body-frame outlines of the parts of an object; each part has its own range of draws.
+/// Body-frame outlines of the parts of an object. Each part has its own range of draws.
 inline std::vector<Outline> draw_outlines(const std::vector<PartSpec>& parts, const Draws& draws) {
   std::vector<Outline> outlines;
   for (const PartSpec& part : parts) {
@@ -23,7 +23,7 @@ inline std::vector<Outline> draw_outlines(const std::vector<PartSpec>& parts, co
 }
 
 struct ObjectSpec {
-  int number;  // names it in draws and events, whoever comes and goes; -1: its place in the list
+  int number;  // id in draws and events, the same when other objects come and go; -1: index in the list
   int role;    // 0 robot, 1 obstacle
   int group;
   Drive drive;
@@ -36,12 +36,12 @@ struct ObjectSpec {
   std::vector<double> range_low, range_high;
   int target_roles;  // 0 all, 1 robots, 2 obstacles
   Behavior behavior;
-  bool grouped;                       // the behavior is that of the group and decides for all its members at once
-  std::optional<RouteOptions> route;  // plans a path for its behavior to follow
+  bool grouped;                       // whether the behavior belongs to the group and decides for all members at once
+  std::optional<RouteOptions> route;  // how the object plans a path for its behavior to follow
   std::vector<Sensor> sensors;
-  std::vector<double> centroid;                      // x, y in the body frame, squared radius of gyration; or less
-  double mass, friction, inertia, restitution, tau;  // for contacts; inertia NaN: from shape and mass
-  bool driven;                                       // has a drive, native or not
+  std::vector<double> centroid;  // x, y in the body frame [m], then squared radius of gyration [m^2]; both optional
+  double mass, friction, inertia, restitution, tau;  // for contacts; an inertia of NaN follows from shape and mass
+  bool driven;                                       // whether the object has a drive, native or in Python
 
   static constexpr auto fields() {
     using S = ObjectSpec;
@@ -60,12 +60,12 @@ struct ObjectSpec {
   }
 };
 
-/// Objects whose poses and goals are drawn per scene.
+/// Objects whose poses and goals are drawn for each scene.
 struct RandomPlacement {
   std::vector<int> objects;
   std::array<double, 3> range_low, range_high;
   double min_distance;  // between objects, and between goals, of this placement [m]
-  int attempts;         // draws per object before it counts as unplaceable
+  int attempts;         // maximum number of draws for an object
   static constexpr auto fields() {
     using P = RandomPlacement;
     return std::make_tuple(field("objects", &P::objects), field("range_low", &P::range_low),

@@ -18,7 +18,7 @@ void evaluate(const World& world, State& state, int w, bool with_arrival) {
   sense(world, state, w, work);
 }
 
-void first_values(const World& world, State& state, int w) {
+void set_initial_values(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) {
     const ObjectSpec& spec = world.specs[i];
     const int row = w * world.objects + i;
@@ -98,13 +98,13 @@ void place_fixed(const World& world, State& state, int w) {
   std::vector<Pose> poses;
   poses.reserve(world.fixed_objects.size());
   for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
-  const auto stands = [&](const std::shared_ptr<const Fixed>& fixed) {
+  const auto is_current = [&](const std::shared_ptr<const Fixed>& fixed) {
     return fixed &&
            std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
                       [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
   };
-  if (stands(scene.fixed)) return;
-  if (scene.shapes == world.shapes && stands(world.fixed)) {
+  if (is_current(scene.fixed)) return;
+  if (scene.shapes == world.shapes && is_current(world.fixed)) {
     scene.fixed = world.fixed;
   } else {
     scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
@@ -118,7 +118,7 @@ void restart_row(const World& world, State& state, int row) {
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
   state.control[row] = state.initial_control[row];
   state.twist[row] = state.command[row] = {};
-  state.drive[row] = world.matter[i].driven ? state.control[row] : Vec3{};
+  state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
   state.contact_time[row] = state.air_time[row] = 0.0;
   state.touching[row] = 0;
   state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
@@ -150,7 +150,7 @@ void restart(const World& world, State& state, int w) {
 
 void draw_scene(const World& world, State& state, int w) {
   Scene& scene = state.scenes[w];
-  first_values(world, state, w);
+  set_initial_values(world, state, w);
   scene.shapes = world.shapes ? world.shapes : make_shapes(world, make_key(state.seed[w], state.scene_index[w], 0));
   scene.moving.resize(scene.shapes->size[0]);
   scene.sweep.reset(world.moving);
@@ -209,7 +209,7 @@ const Bodies& bodies_of(const World& world, State& state, int w) {
   return *scene.bodies;
 }
 
-void moved(const World& world, State& state, int row) {
+void pose_changed(const World& world, State& state, int row) {
   if (world.is_static[row % world.objects]) place_fixed(world, state, row / world.objects);
 }
 
@@ -224,7 +224,7 @@ Vec2 velocity_world(const World& world, const State& state, int row, std::vector
 
 Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 control, std::vector<double>& scratch) {
   const int object = row % world.objects;
-  if (!world.matter[object].driven) return {control[0], control[1]};
+  if (!world.dynamics[object].driven) return {control[0], control[1]};
   Vec3 twist = state.twist[row];
   with(world.drive[object], [&](const auto& drive) {
     Pose pose = state.pose[row];

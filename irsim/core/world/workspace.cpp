@@ -1,8 +1,8 @@
-// Members of structs that hold lists of features.
-#include "world/features.hpp"
+// Special members, for which `Intent` must be complete.
+#include "world/workspace.hpp"
 
 #include "decision.hpp"
-#include "world/workspace.hpp"
+#include "world/features.hpp"
 
 namespace irsim {
 

@@ -1,4 +1,4 @@
-// Scratch memory of one thread, so that a step allocates nothing.
+// Scratch memory of one thread, so that steps allocate no memory.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct Intent;
 
 struct BeamBuffers {
   struct Body {
-    double distance;   // nothing of it is nearer [m]
-    double low, high;  // beams that may see it
+    double distance;   // lower bound of the distance to the body [m]
+    double low, high;  // first and last beam that may hit it
     int object;
   };
   std::vector<double> dx, dy, range;
@@ -34,15 +34,15 @@ struct Workspace {
   std::vector<int> objects;
   std::vector<Intent> intents;
   BeamBuffers beams, blockers;
-  std::vector<Vec2> velocities;  // of the objects of a world
-  std::vector<double> extra;     // a row of State::extra
+  std::vector<Vec2> velocities;  // velocities of the objects of a world [m/s]
+  std::vector<double> extra;     // copy of a row of State::extra
   Neighbors neighbors;
   ContactBuffers contacts;
-  std::vector<int> walls;  // those near
+  std::vector<int> walls;  // walls found near an object
   VelocityObstacles velocity_obstacles;
   OrcaCrowd orca;
-  SearchMemory search;  // of planners
-  Outlines ghost;       // moving objects where they might be
+  SearchMemory search;  // memory of planners
+  Outlines ghost;       // outline of an object at a pose that is tried
 };
 
 }  // namespace irsim

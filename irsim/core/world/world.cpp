@@ -10,9 +10,8 @@
 namespace irsim {
 namespace {
 
-constexpr double kMostFogBeams = 20000.0;
-
-constexpr double kDiscCell = 2.0;  // of the grid of static circles [m]
+constexpr double kMaxFogBeams = 20000.0;  // largest number of beams of one view of the fog
+constexpr double kDiscCell = 2.0;         // cell size of the grid of static circles [m]
 
 Vec3 padded(const std::vector<double>& values) {
   Vec3 out;
@@ -65,7 +64,7 @@ void find_members(World& world) {
 
 Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
 
-/// `like`: a mount that may have the same beams.
+/// Set the nominal beams of a mount; those of `like` are copied if the angles are equal.
 void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nullptr) {
   mount.count = static_cast<int>(angles.size());
   if (like != nullptr && like->angle == angles) {
@@ -79,18 +78,19 @@ void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nul
   }
 }
 
-/// Beams so dense that none misses a cell of the fog within reach.
+/// Add views of the fog with beams so dense that they miss no cell within reach.
 void add_fog_beams(World& world) {
   const Fog& fog = *world.fog;
   if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
-  if (std::max(fog.columns, fog.rows) > kMostFogCells) throw std::invalid_argument("fog has too many cells");
+  if (std::max(fog.columns, fog.rows) > kMaxFogCells) throw std::invalid_argument("fog has too many cells");
   const double cell = std::min(fog.cell().x, fog.cell().y);
   for (const FogView& view : fog.views) {
-    if (view.object < 0 || view.object >= world.objects) throw std::invalid_argument("fog is seen by nobody");
+    if (view.object < 0 || view.object >= world.objects)
+      throw std::invalid_argument("a view of the fog names an object that does not exist");
     Mount mount = mount_of(view.object, 0);
     if (view.occlusion) {
       const double wanted = std::ceil(2.0 * view.angle * view.reach / cell);
-      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMostFogBeams))));
+      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMaxFogBeams))));
     }
     world.fog_beams.push_back(std::move(mount));
   }
@@ -98,7 +98,7 @@ void add_fog_beams(World& world) {
 
 void add_scans(World& world, int object, const ObjectSpec& spec) {
   for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
-    if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // not the core's
+    if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // this sensor is computed in Python
     Mount mount = mount_of(object, static_cast<int>(k));
     mount.first = world.beams_per_world, mount.first_velocity = world.velocities_per_world;
     with(spec.sensors[k], [&](const auto& options) {
@@ -113,7 +113,7 @@ void add_scans(World& world, int object, const ObjectSpec& spec) {
 
 void check(const ObjectSpec& spec) {
   if (spec.parts.empty()) throw std::invalid_argument("an object needs at least one part");
-  if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range needs two numbers");
+  if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range must have two numbers");
   if (std::isnan(spec.angle_range[0]) || std::isnan(spec.angle_range[1]) || spec.angle_range[0] >= spec.angle_range[1])
     throw std::invalid_argument("angle_range must be an interval");
   if (!(spec.mass > 0.0)) throw std::invalid_argument("mass must be positive");
@@ -130,8 +130,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       objects(static_cast<int>(specs_.size())),
       extra_rows(1),
       specs(std::move(specs_)),
-      placements(std::move(placements_)),
-      fog(std::move(fog_)) {
+      fog(std::move(fog_)),
+      placements(std::move(placements_)) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
@@ -155,7 +155,7 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     group.push_back(s.group);
     number.push_back(s.number < 0 ? i : s.number);
     drive.push_back(s.drive);
-    matter.push_back(
+    dynamics.push_back(
         {s.mass, s.friction, s.inertia, s.restitution, s.tau, s.driven, !s.is_static && std::isfinite(s.mass)});
     vel_min.push_back(padded(s.vel_min));
     vel_max.push_back(padded(s.vel_max));
