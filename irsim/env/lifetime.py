@@ -11,6 +11,7 @@ from irsim.env.drawing import finish_drawing, redraw
 from irsim.env.loop import log_collisions
 from irsim.env.objects import count_ids, restore_objects
 from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
+from irsim.env.queries import objects
 from irsim.env.state import EnvState
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.view import ObjectView
@@ -138,7 +139,7 @@ def quit_program(env: EnvState) -> NoReturn:
 
 
 def _objects_of(env: EnvState | None) -> list[ObjectView]:
-    return [] if env is None else list(env._objects)
+    return [] if env is None else objects(env)
 
 
 def _one_line(finding: Diagnostic) -> str:
