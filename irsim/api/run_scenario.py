@@ -20,7 +20,8 @@ from irsim.episodes.episode import (
     seed_of,
 )
 from irsim.episodes.run_report import command, region_words, run_result
-from irsim.results.results import RenderResult, RunResult, SnapshotResult
+from irsim.results.picture import RenderResult, SnapshotResult
+from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.validation.validate import diff, fix, validate

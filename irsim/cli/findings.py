@@ -11,7 +11,8 @@ from irsim.diagnostics.errors import IrsimError
 
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
-    from irsim.results.results import Finding, ValidationReport
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
@@ -103,7 +104,8 @@ def limits_for(max_objects: int | None) -> Limits | None:
 
 def not_found(file: str, message: str) -> ValidationReport:
     """The report on a file that does not exist."""
-    from irsim.results.results import Finding, ValidationReport
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
 
     finding = Finding(
         code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message

@@ -25,7 +25,7 @@ from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
     from irsim.env import Env
-    from irsim.results.results import RunResult
+    from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Recorder", "recording"]

@@ -16,7 +16,8 @@ from irsim.episodes.episode import horizon_of
 from irsim.episodes.out_of_bounds import MOST_LEFT, left_told, left_world
 from irsim.episodes.run_report import has_one_end, others_arrived
 from irsim.episodes.stuck import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading
-from irsim.results.results import DryRun, EventRecord, Stuck
+from irsim.results.run import EventRecord
+from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario

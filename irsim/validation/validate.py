@@ -8,7 +8,9 @@ from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.episode import as_finding, source_of
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import DryRun, Finding, Fix, ScenarioDiff, ValidationReport
+from irsim.results.diff import ScenarioDiff
+from irsim.results.findings import Finding
+from irsim.results.validation import DryRun, Fix, ValidationReport
 from irsim.scenario.autofix import mend
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import Reading, read
