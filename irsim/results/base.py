@@ -17,7 +17,7 @@ _UNUSUAL = re.compile(r"[^\n -~]")
 
 
 def _escaped(found: re.Match[str]) -> str:
-    """A character as it is or, if it is not printable, as the units of UTF-16 that JSON escapes."""
+    """Return a printable character as it is, any other as the UTF-16 units that JSON escapes."""
     if found[0].isprintable():
         return found[0]
     units = found[0].encode("utf-16-be").hex()
@@ -25,20 +25,20 @@ def _escaped(found: re.Match[str]) -> str:
 
 
 class Result(BaseModel):
-    """Base of all results: fields are documented, nothing else gets in.
+    """Base of all results: every field is documented, and unknown fields are refused.
 
     As with :class:`irsim.options.base.Options`, the documentation is read on demand, because every command and every
-    tool call starts with this module. Models are built at once: pydantic would otherwise read the local variables of
+    tool call imports this module. Models are built at once: pydantic would otherwise read the local variables of
     the first caller, and CPython 3.13.0 crashes on some of these.
     """
 
     model_config = ConfigDict(extra="forbid")
 
     def model_dump_json(self, **options: Any) -> str:
-        """The result as JSON, the same bytes in Python, ``--json`` and MCP; what is not printable is escaped.
+        """Return the result as JSON with unprintable characters escaped: the same bytes in Python, ``--json`` and MCP.
 
         Args:
-            **options: Those of pydantic, such as ``indent``.
+            **options: Options of pydantic, such as ``indent``.
         """
         text = super().model_dump_json(**options)
         return text if text.isprintable() else _UNUSUAL.sub(_escaped, text)

@@ -1,4 +1,4 @@
-"""The typed result of ``irsim.benchmark``: episodes, and what they come to by scenario and behavior."""
+"""The typed result of ``irsim.benchmark``: its episodes, and their summary by scenario and behavior."""
 
 from __future__ import annotations
 
@@ -16,58 +16,59 @@ class Proportion(Result):
     """A share of episodes."""
 
     count: int
-    """In how many."""
+    """Number of episodes in which it happened."""
     n: int
-    """Of how many."""
+    """Number of all episodes."""
     rate: float
-    """Share."""
+    """``count / n``."""
     low: float | None
-    """Lower end of the 95 % interval (Wilson); None where nothing is random: it cannot come out differently."""
+    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is then exact."""
     high: float | None
-    """Upper end of it."""
+    """Upper end of the interval."""
 
 
 class Estimate(Result):
-    """A number over episodes. Episodes in which it is undefined are left out."""
+    """A metric over episodes. Episodes in which it is undefined are left out."""
 
     n: int
-    """Episodes it is defined in."""
+    """Number of episodes in which it is defined."""
     mean: float | None = None
-    """Mean; None without any."""
+    """Mean; None without such episodes."""
     std: float | None = None
-    """Standard deviation of the sample; None for fewer than two."""
+    """Sample standard deviation; None for fewer than two episodes."""
     low: float | None = None
-    """Lower end of the 95 % interval of the mean: bootstrap (10,000 resamples, always the same draws); of metrics that
-    are 0 or 1 Wilson, None where nothing is random; of paired shares see ``paired``."""
+    """Lower end of the 95 % interval of the mean, by bootstrap (10,000 resamples, always the same draws); for metrics
+    that are 0 or 1 by Wilson, and None where nothing is random; for differences of shares see ``paired``."""
     high: float | None = None
-    """Upper end of it."""
+    """Upper end of the interval."""
 
 
 class BenchmarkRow(Result):
     """One scenario under one behavior, over all seeds."""
 
     scenario: str
-    """The file; ``(all)`` for all files together, where each has as many episodes, and several or the files are ten."""
+    """The file; ``(all)`` for all files together, if each has the same number of episodes, and that number is above
+    one or there are at least ten files."""
     behavior: str
-    """What the robots followed: a behavior, or ``as-written``."""
+    """The robots' behavior, or ``as-written``."""
     episodes: int
-    """How many."""
+    """Number of episodes."""
     success: Proportion
     """Every robot reached its goal without a collision before."""
     collision: Proportion
     """A robot was stopped by a collision, or arrived after one."""
     timeout: Proportion
-    """Neither, at the horizon."""
+    """Neither, when the time limit was reached."""
     metrics: dict[str, Estimate]
     """Metrics of the episodes by key: ``time_to_goal`` [s], ``path_length`` [m], ``velocity_avg`` [m/s], …"""
     paired: dict[str, Estimate] = Field(default_factory=dict)
-    """Differences to the first behavior, episode by episode with equal scenario and seed; ``success``, ``collision``
-    and ``timeout`` among them. The intervals of such shares are Newcombe's for pairs, which are right also where all
-    pairs agree."""
+    """Differences to the first behavior, paired by scenario and seed; ``success``, ``collision`` and ``timeout`` are
+    among them. The intervals of these three are Newcombe's for paired shares, which hold even where all pairs
+    agree."""
     failed: dict[str, list[int]] = Field(default_factory=dict)
     """Seeds that ended in ``collision`` and in ``timeout``; empty for ``(all)``."""
     failures: dict[str, int] = Field(default_factory=dict)
-    """In how many episodes a robot failed in which way, the ten most frequent: ``'car': timeout``; empty for
+    """Number of episodes by failing robot and kind of failure, the ten most frequent: ``'car': timeout``; empty for
     ``(all)``."""
 
 
@@ -77,21 +78,21 @@ class EpisodeRow(Result):
     scenario: str
     """The file."""
     behavior: str
-    """What the robots followed."""
+    """The robots' behavior, or ``as-written``."""
     seed: int
     """Its seed."""
     outcome: Literal["success", "collision", "timeout"]
     """As in :class:`RunResult`."""
     steps: int
-    """Executed steps."""
+    """Number of executed steps."""
     sim_time: float
     """Simulated time [s]."""
     time_limit: float
     """Horizon [s]."""
     unreachable: int
-    """Robots for which no way to their goal was found."""
+    """Number of robots for which no path to their goal was found."""
     failures: dict[str, str]
-    """What became of the first ten robots without success, by name: ``timeout``, or ``collision with 'crate'``."""
+    """How the first ten unsuccessful robots failed, by name: ``timeout``, or ``collision with 'crate'``."""
     metrics: dict[str, float | None]
     """Metrics of the episode by key; None where undefined."""
 
@@ -108,16 +109,16 @@ class BenchmarkResult(Result):
     step_time: dict[str, float]
     """Period of each scenario [s]: metrics are sampled at every step."""
     random: dict[str, list[str]]
-    """What the seed decides in each scenario; one where it decides nothing is run with the first seed only."""
+    """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
     rows: list[BenchmarkRow]
-    """By scenario, then behavior; then all scenarios together, if there are several with as many episodes each."""
+    """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes."""
     episodes: list[EpisodeRow]
     """Every episode."""
     notes: list[str]
-    """What to know before reading on."""
+    """Remarks that matter for reading the numbers."""
     warnings: dict[str, list[Finding]]
-    """What is odd about the scenarios."""
+    """Warnings about the scenarios."""
     version: str
     """Version of irsim."""
     reproduce: str
-    """Command that gives the same again."""
+    """Command that reproduces this result."""

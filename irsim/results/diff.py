@@ -13,9 +13,9 @@ class KeyChange(Result):
     """A key that differs between two files."""
 
     change: Literal["added", "removed", "changed", "moved"]
-    """``moved``: an entry that stands before or after others now; ``before`` and ``after`` are its places."""
+    """``moved``: an entry whose place in its list changed; ``before`` and ``after`` are the two places."""
     path: str
-    """Where it is now; where it was if it was removed."""
+    """Its path in the new file; in the old file if it was removed."""
     before: Any = None
     after: Any = None
 
@@ -24,14 +24,14 @@ class WorldChange(Result):
     """A fact that differs between two worlds."""
 
     object: str | None
-    """Name of the object (its new one); None for the world itself."""
+    """Name of the object in the new world; None for the world itself."""
     change: Literal["added", "removed", "changed"]
     key: str | None = None
-    """Which fact of it: ``pose``, ``sensors[0].number``."""
+    """Which of its facts: ``pose``, ``sensors[0].number``."""
     before: Any = None
     after: Any = None
     direct: bool = False
-    """It is what a changed key says, no more; lists for people have only the key."""
+    """Whether it only repeats a changed key; texts for people then show only the key."""
 
 
 class CommentChange(Result):
@@ -47,14 +47,14 @@ class ScenarioDiff(Result):
     before: str
     after: str
     same: bool
-    """Neither a key nor a fact differs; comments and layout may."""
+    """True if neither a key nor a fact differs; comments and layout may differ."""
     summary: str
     keys: list[KeyChange]
-    """Changes of the files; entries are recognised by name or likeness when others come or go before them."""
+    """Changes of the files; entries are matched by name or similarity when others are added or removed before them."""
     world: list[WorldChange] | None
-    """Changes of the worlds, both built with one seed; None if one of the scenarios is invalid."""
+    """Changes of the worlds, which are built with the same seed; None if one of the scenarios is invalid."""
     comments_lost: list[str]
-    """Comments that are gone; one that says something else now is not among them."""
+    """Comments that were removed; edited ones are in ``comments_changed``."""
     comments_changed: list[CommentChange]
     """Comments that were edited."""
     lines_removed: int

@@ -1,4 +1,4 @@
-"""A diagnostic, and the edit that repairs it, as typed results."""
+"""A diagnostic and the edit that repairs it, as typed results."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ class Finding(Result):
     column: int | None
     """Column in the line, from 1."""
     length: int = 1
-    """Characters that are meant, from there."""
+    """Number of characters to underline, from that column on."""
     message: str
     """What is wrong."""
     given: Any = None
-    """The value as written; of a long one the beginning, as text."""
+    """The value as written; a long one is cut and given as text."""
     allowed: list[str] | str | None = None
     """What would be accepted."""
     fix: str | None = None
     """What to write instead."""
     edit: Edit | None = None
-    """The same for programs, where nothing has to be guessed; ``irsim validate --fix`` makes it."""
+    """The fix as an edit that a program can make without guessing, as ``irsim validate --fix`` does."""
     tolerated: bool = False
-    """Whether ``irsim run`` goes on in spite of it, as IR-SIM does."""
+    """Whether ``irsim run`` continues in spite of it, as IR-SIM does."""
     in_base: bool | None = None
-    """Whether the scenario it was compared with has it too; None without one."""
+    """Whether the scenario compared with has it too; None without a comparison."""

@@ -20,17 +20,17 @@ class RenderResult(Result):
     seed: int
     """Seed that was used."""
     steps: int
-    """Executed steps."""
+    """Number of executed steps."""
     frames: int
-    """Pictures drawn."""
+    """Number of pictures drawn."""
     size: tuple[int, int]
     """Width and height [px]."""
     files: list[str]
     """Files written."""
     warnings: list[Finding]
-    """What is odd about the scenario."""
+    """Warnings about the scenario."""
     reproduce: str
-    """Command that gives the same again."""
+    """Command that reproduces this result."""
 
 
 class RobotPose(Result):
@@ -38,13 +38,13 @@ class RobotPose(Result):
 
     name: str
     label: str
-    """What stands beside it in the picture; beside its goal that with ``G-`` before it."""
+    """Its label in the picture; its goal's label is the same with the prefix ``G-``."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
     goal: tuple[float, float] | None
     """Present goal [m]; None without one."""
     status: Literal["under way", "arrived", "collided"]
-    """What became of it so far."""
+    """Its state at that moment."""
 
 
 class MovingPose(Result):
@@ -54,26 +54,27 @@ class MovingPose(Result):
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad]."""
     velocity: tuple[float, float]
-    """Along x and y of the world [m/s]; an omni drive need not move where it heads."""
+    """Velocity along x and y of the world [m/s]; an omni drive need not move in the direction of its heading."""
 
 
 class RobotPlan(Result):
-    """The way that a robot would take over its goals."""
+    """The path that a robot would take through its goals."""
 
     name: str
     label: str
-    """What stands beside it in the picture."""
+    """Its label in the picture."""
     own: bool
-    """Its own behavior has planned it; else it is a shortest way round what stands still, which it may not know."""
+    """Whether the robot's own behavior planned it; otherwise it is a shortest path round everything static, which the
+    robot itself may not know."""
     length: float
-    """Of the way, as far as there is one [m]."""
+    """Length of the path, as far as one was found [m]."""
     margin: float | None
-    """About the least distance between what stands still and a disc inside of the robot's body [m]; None where nothing
-    stands."""
+    """Smallest distance, approximately, between a disc inside the robot's body and anything static [m]; None if
+    nothing is static."""
     tightest: tuple[float, float]
-    """Where that is [m]."""
+    """Position of that smallest distance [m]."""
     lost: tuple[float, float] | None
-    """A goal that it cannot get to [m]; None if it gets to all of them."""
+    """First goal that it cannot reach [m]; None if it reaches all of them."""
 
 
 class SnapshotResult(Result):
@@ -86,15 +87,15 @@ class SnapshotResult(Result):
     random: list[str]
     """What the seed decides; empty if every seed gives the same run."""
     steps: int
-    """Executed steps."""
+    """Number of executed steps."""
     sim_time: float
     """Simulated time [s]."""
     extent: tuple[float, float, float, float]
-    """The world: least and greatest x, least and greatest y [m]."""
+    """Bounds of the world [m]: x_min, x_max, y_min, y_max."""
     obstacles: int
-    """How many obstacles there are: those of entries."""
+    """Number of obstacles from entries, without the boundary and the map."""
     contents: str
-    """The obstacles in words: with the boundary and the map."""
+    """The obstacles in words, with the boundary and the map."""
     robots: list[RobotPose]
     """One entry per robot."""
     moving: list[MovingPose]
@@ -102,12 +103,12 @@ class SnapshotResult(Result):
     moments: list[int] = []
     """Steps in the picture, from left to right and top to bottom, if it shows several."""
     plans: list[RobotPlan] = []
-    """The ways of robots, if they were asked for."""
+    """Planned paths of the robots, if requested."""
     size: tuple[int, int]
     """Width and height [px]."""
     warnings: list[Finding]
-    """What is odd about the scenario."""
+    """Warnings about the scenario."""
     reproduce: str
-    """Command that draws the same moment."""
+    """Command that draws the same picture."""
     png: bytes = Field(default=b"", exclude=True, repr=False)
     """The picture."""

@@ -12,26 +12,26 @@ from irsim.results.findings import Finding
 __all__ = ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable"]
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
-"""Who says how long a run may last."""
+"""Where the time limit of a run comes from."""
 
 
 class EventRecord(Result):
     """Something that happened in an episode."""
 
     kind: Literal["arrival", "waypoint", "collision", "no_path"]
-    """``collision`` is reported when contact begins; ``no_path`` when ``follow`` finds none."""
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path."""
     time: float
     """Simulated time [s]."""
     step: int
     """Steps executed; 0 is the initial state."""
     object: str
-    """Name of the object, or of the first of the two that touch."""
+    """Name of the object; in a collision, of the first of the two."""
     partner: str | None
-    """Name of the other one in a collision."""
+    """Name of the other object in a collision."""
     x: float
-    """Where [m]."""
+    """Position of the object [m]."""
     y: float
-    """Where [m]."""
+    """Position of the object [m]."""
 
 
 class Left(Result):
@@ -39,7 +39,7 @@ class Left(Result):
 
     name: str
     time: float
-    """When [s]."""
+    """Time when it left [s]."""
     x: float
     y: float
 
@@ -49,23 +49,24 @@ class RobotResult(Result):
 
     name: str
     outcome: Literal["success", "collision", "timeout"]
-    """Exactly one: arrived without a collision before; stopped by a collision, or arrived after one; neither."""
+    """``success``: arrived without a collision before; ``collision``: stopped by one, or arrived after one;
+    ``timeout``: neither."""
     time_to_goal: float | None
     """Time of first arrival [s]; None when it never arrived."""
     collision_count: int
-    """Contacts that began."""
+    """Number of contacts that began."""
     infeasible_steps: int | None = None
-    """Steps in which its behavior found no velocity that avoids everybody (only ``orca`` says so); None
+    """Steps in which its behavior found no velocity that avoids all others (only ``orca`` reports this); None
     if there were none."""
     path_length: float
-    """Distance travelled [m], to the end of the run."""
+    """Distance travelled until the end of the run [m]."""
     distance_to_goal: float | None
     """Distance to the present goal at the end [m]; None without a goal."""
     min_clearance: float | None = None
-    """Least distance to anything it could hit, until it arrived, edge to edge [m]; negative: overlap; None where there
-    is nothing, and in runs of more than two million poses."""
+    """Smallest distance, edge to edge, to anything it could hit, until it arrived [m]; negative: overlap; None if
+    there is nothing to hit, and in runs of more than two million poses."""
     nearest: str | None = None
-    """Name of what that was."""
+    """Name of that nearest object."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad] at the end."""
 
@@ -80,60 +81,60 @@ class RunResult(Result):
     random: list[str]
     """What the seed decides; empty if every seed gives the same run."""
     behavior: str | None = None
-    """What every robot followed instead of its own behavior; None: the scenario as written."""
+    """Behavior of every robot instead of its own; None: the scenario as written."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
-    """One sentence: who arrived, who did not and why."""
+    """One sentence: which robots arrived, which did not, and why."""
     reason: str | None = None
-    """Why it is no success: the first collision, and what robots that did not arrive were doing; None if it is one."""
+    """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
     steps: int
-    """Executed steps."""
+    """Number of executed steps."""
     sim_time: float
     """Simulated time [s]."""
     time_limit: float
-    """Horizon [s]: from the file, from ``--steps``, or max(30 s, 4 x longest way / top speed)."""
+    """Time limit [s]: from the file, from ``--steps``, or max(30 s, 4 x longest path / top speed)."""
     time_limit_from: HorizonSource
-    """Where the horizon comes from; ``limits``: cut to the most steps of one run."""
+    """Where the time limit comes from; ``limits``: cut to the maximum number of steps of one run."""
     robots: list[RobotResult]
     """One entry per robot."""
     parked: list[str] = Field(default_factory=list)
     """Robots that cannot move and have no goal of their own; they never arrive."""
     jammed: list[str] = Field(default_factory=list)
-    """Moving obstacles that stand at the end since they hit another obstacle."""
+    """Moving obstacles that a collision with another obstacle has stopped."""
     left: list[Left] = Field(default_factory=list)
-    """Moving objects whose position left the world, the first ones; ``world.boundary: walls`` keeps them in."""
+    """The first moving objects whose position left the world; ``world.boundary: walls`` keeps objects in."""
     events: list[EventRecord]
-    """The first events in order; of the arrivals of an object at the same goal only the first."""
+    """The first events, in order; repeated arrivals of an object at the same goal count once."""
     event_count: int
-    """How many such events there were."""
+    """Number of such events."""
     warnings: list[Finding]
-    """What is odd about the scenario."""
+    """Warnings about the scenario."""
     files: list[str] = Field(default_factory=list)
     """Files written."""
     version: str
     """Version of irsim."""
     reproduce: str
-    """Command that gives the same again."""
+    """Command that reproduces this result."""
     run_id: str | None = None
-    """Name of the record of this run, for ``irsim inspect``; None if it was not recorded."""
+    """Id of the recorded run, for ``irsim inspect``; None if it was not recorded."""
     artifacts: dict[str, str] = Field(default_factory=dict)
     """Files of the record by name."""
     notes: list[str] = Field(default_factory=list)
-    """What the record lacks, because there was too much of it."""
+    """What the record leaves out because there was too much of it."""
 
 
 class RunTable(Result):
     """What ``irsim inspect`` found in a recorded run."""
 
     run_id: str
-    """Which run."""
+    """Id of the run."""
     status: Literal["running", "finished", "cancelled", "interrupted"]
-    """``interrupted``: cut short, nobody writes it any more; what there is, is shown."""
+    """``interrupted``: cut short, no process writes it any more; the table shows what was recorded."""
     outcome: Literal["success", "collision", "timeout"] | None
     """How it ended; None if it has no result."""
     summary: str
-    """One sentence about it."""
+    """One sentence about the run."""
     view: str
     """What the table shows."""
     columns: list[str]
@@ -141,35 +142,35 @@ class RunTable(Result):
     rows: list[list[float | int | str | bool | None]]
     """The rows."""
     total: int
-    """How many rows there are in all."""
+    """Number of rows on all pages together."""
     every: int
-    """Every how many-th step is shown."""
+    """Every Nth step is shown."""
     from_step: int
-    """First step looked at."""
+    """First step of the table."""
     to_step: int
-    """Last step looked at."""
+    """Last step of the table."""
     next_cursor: str | None
-    """Where the next page begins; None on the last one."""
+    """Cursor of the next page; None on the last one."""
     notes: list[str] = Field(default_factory=list)
-    """What the record lacks, because there was too much of it, so that the table lacks it, too."""
+    """What the record, and so the table, leaves out because there was too much of it."""
 
 
 class ReplayResult(Result):
     """The page that ``irsim replay`` wrote."""
 
     run_id: str
-    """The run it shows."""
+    """Id of the run it shows."""
     file: str
     """The page."""
     bytes: int
-    """Its size."""
+    """Size of the page [bytes]."""
     objects: int
-    """Robots and obstacles in it."""
+    """Number of robots and obstacles in it."""
     last_step: int
     """Last step in it."""
     every: int
-    """Every how many-th step it shows; 1: all."""
+    """It shows every Nth step; 1: all."""
     scans: Literal["none", "recorded", "computed"]
-    """Whether scans are as recorded, or computed in the page from the shapes it draws."""
+    """Whether scans are taken from the record, or computed in the page from the shapes it draws."""
     notes: list[str] = Field(default_factory=list)
-    """What the record lacks, because there was too much of it."""
+    """What the record leaves out because there was too much of it."""

@@ -25,67 +25,67 @@ class Fix(Result):
 
 
 class Stuck(Result):
-    """A robot that gets nowhere."""
+    """A robot that makes no progress."""
 
     name: str
     doing: Literal["stands", "circles its goal"] = "stands"
     since: float
-    """When it began [s]."""
+    """Time when it began [s]."""
     x: float
     y: float
     why: str
 
 
 class DryRun(Result):
-    """What happened in a first look: some steps, nothing kept."""
+    """What happened in a dry run: the first steps, of which no record is kept."""
 
     seed: int
     random: list[str]
-    """What the seed decides; empty if every seed gives the same."""
+    """What the seed decides; empty if every seed gives the same run."""
     steps: int
     sim_time: float
     """Simulated time [s]."""
     ended: Literal["done", "horizon", "budget"]
-    """``done``: every robot arrived or stopped; ``horizon``: the episode was over; ``budget``: the work of a look was
-    done, which is estimated from the scenario, so the same steps are tried on every machine (``summary`` says so if it
-    was the clock after all)."""
+    """``done``: every robot arrived or stopped; ``horizon``: the time limit was reached; ``budget``: the work allowed
+    for a dry run was used up. That work is estimated from the scenario, so every machine runs the same number of
+    steps; ``summary`` says so if the clock ended it instead."""
     summary: str
     arrived: list[str]
     """Robots that reached their last goal."""
     collisions: list[EventRecord]
-    """The first ones, in order."""
+    """The first collisions, in order."""
     stuck: list[Stuck]
-    """The first ones; ``summary`` has how many there are."""
+    """The first stuck robots; ``summary`` has their number."""
     left: list[Left]
     parked: list[str] = Field(default_factory=list)
     """Robots that cannot move and have no goal of their own."""
     jammed: list[str] = Field(default_factory=list)
-    """Moving obstacles that stand at the end since they hit another obstacle."""
+    """Moving obstacles that a collision with another obstacle has stopped."""
 
 
 class ValidationReport(Result):
-    """What ``irsim validate`` found in one file."""
+    """What ``irsim validate`` found in one scenario."""
 
     file: str
     """The file, or the name given to a text."""
     valid: bool
-    """No errors."""
+    """True if there are no errors."""
     summary: str
-    """One line: what the scenario holds, or how much is wrong with it."""
+    """One line: what the scenario contains, or how many problems it has."""
     errors: int
-    """How many errors."""
+    """Number of errors."""
     warnings: int
-    """How many warnings."""
+    """Number of warnings."""
     hints: int
-    """How many hints."""
+    """Number of hints."""
     findings: list[Finding]
     """All findings, errors first."""
     counts: dict[str, int] = Field(default_factory=dict)
-    """Robots, obstacles (those of entries) and sensors of a valid scenario; ``boundary`` if there are walls round it;
-    of a map ``map_columns``, ``map_rows`` and, unless the seed decides, ``map_occupied`` cells."""
+    """Number of robots, obstacles (from entries) and sensors of a valid scenario; ``boundary`` if it has walls at the
+    edge; for a map ``map_columns``, ``map_rows`` and, unless the seed decides them, ``map_occupied`` cells."""
     fixes: list[Fix] = Field(default_factory=list)
-    """Repairs that were made; the findings are those that are left."""
+    """Repairs that were made; ``findings`` has what remains."""
     changes: ScenarioDiff | None = None
-    """What differs from the scenario it was compared with."""
+    """Differences from the scenario compared with."""
     dry_run: DryRun | None = None
-    """What happened when it was tried."""
+    """What happened in the dry run."""
