@@ -23,7 +23,7 @@ STEPS = (
     (r"irsim/core/.*\.(cpp|hpp)|.*\.cmake", "pip install -e ."),
     (MODELS, "irsim schema"),
     (
-        rf"{MODELS}|irsim/diagnostics/codes\.py|irsim/lookup/.*|irsim/env.*|irsim/metrics/.*",
+        rf"{MODELS}|irsim/diagnostics/codes/.*|irsim/lookup/.*|irsim/env.*|irsim/metrics/.*",
         "python -m irsim.lookup.reference",
     ),
     (r"irsim/cli/.*", "python -m irsim.cli.overview README.md"),
