@@ -1,4 +1,4 @@
-"""The closed list of codes of diagnostics and errors, by subject; ``irsim describe CODE`` shows title and explanation."""
+"""The closed list of codes of diagnostics and errors, by subject; ``irsim describe CODE`` explains a code."""
 
 from irsim.diagnostics.codes.code import Code
 from irsim.diagnostics.codes.file_and_yaml import FILE_AND_YAML
