@@ -8,21 +8,13 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["TargetError", "check_suffix", "write_atomically", "write_new"]
 
 
-class TargetError(IrsimError, ValueError):
-    """A file that will not be written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+class TargetError(CodedError, ValueError):
+    """A file cannot be written under the given name."""
 
 
 def check_suffix(target: Path, known: Iterable[str]) -> None:

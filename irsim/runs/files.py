@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = [
     "TEMPORARY",
@@ -34,19 +34,8 @@ _NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
 _MOST_TEXT = 32 * 1024**2
 
 
-class RunError(IrsimError, ValueError):
-    """A run that cannot be opened, read or written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to do instead.
-        where: Argument it is about, if it is not the run itself.
-    """
-
-    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
-        self.code, self.message, self.fix, self.where = code, message, fix, where
-        super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
+class RunError(CodedError, ValueError):
+    """A run cannot be opened, read or written."""
 
 
 def unreadable(what: str) -> RunError:
