@@ -223,7 +223,7 @@ def render(
 
 def _written(sheet: SnapshotResult, target: Path) -> RenderResult:
     """Write a picture of several moments."""
-    from irsim.graphics.encoding.picture_files import replacing
+    from irsim.common.files import replacing
 
     with replacing(target) as temporary:
         temporary.write_bytes(sheet.png)

@@ -1,13 +1,11 @@
-"""Where pictures go, and writing them so that no half-written file is ever left."""
+"""Paths of picture files."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["PICTURE_FORMATS", "picture_path", "replacing"]
+__all__ = ["PICTURE_FORMATS", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
 """What a figure can be saved as."""
@@ -44,18 +42,3 @@ def picture_path(
         raise ValueError(f"cannot save a figure as {suffix!r}: choose one of {', '.join(PICTURE_FORMATS)}")
     index = "" if count is None else f"_{count:04d}"
     return Path(folder) / f"{stem}{index}.{suffix}"
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place when all went well and vanishes when not.
-
-    The folder is made if need be.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
