@@ -193,7 +193,7 @@ class KeyboardControl:
         """The logger of the environment."""
         return self.env_ref.logger
 
-    # effects of keys ----------------------------------------------------------------------------------------------------
+    # effects of keys ------------------------------------------------------------------------------------------------
     def press(self, key: str) -> None:
         """Handle a key press; keys have Matplotlib's names: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""
         plain = _without_modifiers(key)

@@ -1,4 +1,4 @@
-"""Where pictures go, and writing them so that no half-written file is ever left."""
+"""Paths of picture files, and writing them so that no incomplete file is ever left behind."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 __all__ = ["PICTURE_FORMATS", "picture_path", "replacing"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
-"""What a figure can be saved as."""
+"""File formats of figures."""
 
 
 def picture_path(
@@ -22,18 +22,18 @@ def picture_path(
     format: str | None = None,
     default_format: str | None = None,
 ) -> Path:
-    """The file a figure is saved to.
+    """Return the path of the file that a figure is saved to.
 
     Args:
-        folder: For names that are not absolute.
-        name: Name with or without suffix; None takes ``default``.
-        default: Name of the world.
+        folder: Folder of names that are not absolute.
+        name: File name with or without suffix; None stands for ``default``.
+        default: Default file name, such as the name of the world.
         count: Step number to append as ``_0042``.
-        format: Format wanted whatever the name says.
+        format: File format; it replaces the suffix of the name.
         default_format: Format of names without suffix (default png).
 
     Raises:
-        ValueError: A format nothing writes.
+        ValueError: The format is not supported.
     """
     given = str(name) if name is not None and str(name) else default
     stem, dot, suffix = given.rpartition(".")
@@ -48,9 +48,9 @@ def picture_path(
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place when all went well and vanishes when not.
+    """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
 
-    The folder is made if need be.
+    The folder is made if it does not exist.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
