@@ -19,7 +19,7 @@ from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView, che
 from irsim.graphics.scene.palette import Palette
 from irsim.objects.actions import assign_actions, beyond_limits
 from irsim.objects.extensions.attach import attach_python
-from irsim.objects.view import views
+from irsim.objects.views import make_view, views
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.active_env import use
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from irsim.env.factory import EnvConfig, ObjectFactory
+    from irsim.objects.base import SimObject
     from irsim.objects.view import ObjectView
     from irsim.runs.recorder import Recorder
 
@@ -135,6 +136,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         simulation = Simulation(scenario, [seed], history=True)
         simulation.report = self.logger.error_once
         simulation.owner = ref(self)
+        simulation.make_view = make_view
         attach_python(simulation)
         self.scenario, self._seed, self._simulation = scenario, seed, simulation
         self._originals = views(simulation)
@@ -195,7 +197,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
             simulation.step()
         self._after_step()
 
-    def _tell_of_limits(self, view: ObjectView, control: list[float]) -> None:
+    def _tell_of_limits(self, view: SimObject, control: list[float]) -> None:
         """Say, once per object, that its limits cut an action."""
         if view.static or not beyond_limits(view, control):
             return

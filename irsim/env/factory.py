@@ -10,7 +10,8 @@ import numpy as np
 
 from irsim.env.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import alone
-from irsim.objects.view import ObjectView, views
+from irsim.objects.view import ObjectView
+from irsim.objects.views import views
 from irsim.scenario.open import open_scenario, or_raise
 from irsim.scenario.read import read
 from irsim.simulation.active_env import last_used

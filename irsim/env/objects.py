@@ -15,7 +15,8 @@ from irsim.env.drawing import EnvDrawing
 from irsim.env.parameters import EnvParam
 from irsim.objects.lifecycle import admit, alone, dismiss, restore
 from irsim.objects.shapely_geometry import touching
-from irsim.objects.view import ObjectView, views
+from irsim.objects.view import ObjectView
+from irsim.objects.views import views
 from irsim.scenario.single_object import read_object
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-import irsim
+from irsim.api.public import PUBLIC_HOMES
 from irsim.common import data_files as resources
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
@@ -114,7 +114,7 @@ def contributing() -> Pages:
     for kind, registry in REGISTRIES.items():
         for feature in registry.features():
             if feature.origin == "built-in":
-                model = f"irsim/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
+                model = f"irsim/components/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
                 header = ""
                 if feature.kernel is not None:
                     stem = re.sub(r"(?<!^)(?=[A-Z])", "_", feature.kernel.__name__.removesuffix("Options")).lower()
@@ -141,7 +141,7 @@ PACKS: dict[str, Callable[[], Pages]] = {
 def _find(name: str) -> tuple[str, Any]:
     """A function by its name below ``irsim`` or in full."""
     if not name.startswith("irsim."):
-        return f"irsim.{name}", getattr(importlib.import_module(irsim._HOMES[name]), name)
+        return f"irsim.{name}", getattr(importlib.import_module(PUBLIC_HOMES[name]), name)
     module, _, name_there = name.rpartition(".")
     return name, getattr(importlib.import_module(module), name_there)
 

@@ -27,7 +27,7 @@ from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.rendering.plot_steps import PlotSteps
 from irsim.rendering.recording import Pictured, Recording
 from irsim.rendering.user_sensors import UserSensors

@@ -12,7 +12,7 @@ import numpy as np
 from irsim.graphics.scene.palette import Color
 from irsim.graphics.scene.scene import Floats, Label, Line, Mark, Scene, Stroke
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.rendering.clearance_map import FreeSpace
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.layers import FogLayer
 from irsim.graphics.scene.scene import Fog, GridImage, Scene
 from irsim.objects.drawing.scene_builder import MODES
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 from irsim.graphics.scene.bodies import Pose, arrow, bounds, picture_outline, place
 from irsim.graphics.scene.scene import Beams, Geometry, Label, Mark, Region, Scene, Sector, Stroke
 from irsim.objects.sensors.lidar import Lidar2D
-from irsim.objects.view import views
+from irsim.objects.views import views
 
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView

@@ -12,7 +12,7 @@ from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure
 from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.scene.scene import Scene
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.rendering.snapshot import Extra, legible_scene, png_of
 
 if TYPE_CHECKING:

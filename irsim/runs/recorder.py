@@ -317,10 +317,10 @@ def _text_of(simulation: Simulation) -> str:
 
 
 def _versions() -> dict[str, str]:
-    from irsim import __version__
+    from irsim.common.version import version
 
     return {
-        "irsim": __version__,
+        "irsim": version(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "platform": platform.platform(),
