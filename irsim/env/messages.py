@@ -7,7 +7,7 @@ from typing import Any
 
 from irsim import msg
 from irsim.env.access import EnvAccess
-from irsim.msg.reading import numbers_of
+from irsim.msg.messages import state_and_control
 
 __all__ = ["EnvMessages", "resolve_message_targets"]
 
@@ -43,7 +43,7 @@ class EnvMessages(EnvAccess):
             TypeError: Not such a message.
         """
         pairs = resolve_message_targets(self._objects, msg, object_name, object_id, default_target=lambda: self.robot)
-        changes = [(view, *numbers_of(view, odometry)) for view, odometry in pairs]
+        changes = [(view, *state_and_control(view, odometry)) for view, odometry in pairs]
         for view, state, velocity in changes:
             view.set_state(state)
             if velocity is not None:

@@ -1,4 +1,4 @@
-"""The parts of a frame under the names that scripts of IR-SIM call."""
+"""Drawing the parts of a frame one by one, with the method names that scripts of IR-SIM call."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ __all__ = ["PlotSteps"]
 
 
 class PlotSteps:
-    """Part of :class:`irsim.rendering.env_plot.EnvPlot`: pictures follow the environment by themselves.
+    """Part of :class:`irsim.rendering.env_plot.EnvPlot` that scripts of IR-SIM call for each part of a frame.
 
-    ``objects`` are accepted everywhere; those that are not the environment's are drawn by their own ``plot``.
+    A figure follows its environment anyway, so most methods just bring the whole figure up to date. ``objects`` that
+    do not belong to the environment are drawn by their own method ``plot``.
     """
 
     env: Pictured
@@ -67,8 +68,8 @@ class PlotSteps:
 
         Args:
             mode: Objects that ``kwargs`` apply to: ``dynamic``, ``static`` or ``all``.
-            objects: Others to draw, too.
-            **kwargs: Object plot keys that hold until the next call.
+            objects: Additional objects to draw.
+            **kwargs: Object plot keys that stay in force until the next call.
         """
         self.update(mode, **kwargs)
         self.synced_figure()
@@ -80,7 +81,7 @@ class PlotSteps:
     step_objects_plot = step
 
     def draw_components(self, mode: str = "all", objects: Iterable[Any] | None = None, **kwargs: Any) -> None:
-        """Draw everything, also what ``clear_components`` took out; see :meth:`step`."""
+        """Draw everything, including what ``clear_components`` has removed; see :meth:`step`."""
         self.step(mode, objects, **kwargs)
 
     def init_objects_plot(self, objects: Iterable[Any] | None = None, **kwargs: Any) -> None:
@@ -88,14 +89,14 @@ class PlotSteps:
         self.step("all", objects, **kwargs)
 
     def clear_components(self, mode: str = "all", objects: Iterable[Any] | None = None) -> None:
-        """Take objects out of the picture until the next frame.
+        """Remove objects from the picture until the next frame.
 
         Args:
-            mode: ``dynamic`` ones, ``static`` ones or ``all``.
-            objects: Of which; default: all of the environment.
+            mode: Which objects to remove: ``dynamic``, ``static`` or ``all``.
+            objects: Objects to choose from; default: all objects of the environment.
 
         Raises:
-            ValueError: Another mode.
+            ValueError: The mode is unknown.
         """
         if mode not in MODES:
             raise ValueError(f"unknown mode {mode!r}: choose one of {', '.join(MODES)}")
@@ -111,26 +112,26 @@ class PlotSteps:
         return scene
 
     def step_world_plot(self) -> None:
-        """Bring fog, and everything else, up to date."""
+        """Bring the fog and everything else up to date."""
         self.synced_figure()
 
     def update_title(self) -> None:
-        """Bring the title, and everything else, up to date."""
+        """Bring the title and everything else up to date."""
         self.synced_figure()
 
     def set_ax_viewpoint(self, objects: Iterable[Any] | None = None) -> None:
-        """Centre the view on ``viewpoint``.
+        """Centre the view on the ``viewpoint`` of the scenario.
 
         Args:
-            objects: Accepted as it was before; the viewpoint names an object of the environment.
+            objects: Ignored; IR-SIM 2.12 searched the viewpoint among them.
         """
         self.synced_figure()
 
     def draw_grid_map(self, grid_map: Any = None, **kwargs: Any) -> None:
-        """Draw another map than the environment's over the world.
+        """Draw an additional map over the whole world.
 
         Args:
-            grid_map: (nx, ny) occupancies, 0 to 100; None: the map of the environment, which is drawn anyway.
+            grid_map: (nx, ny) occupancy, 0 to 100. None stands for the map of the environment, which is drawn anyway.
             **kwargs: Properties of the image: ``alpha``, ``cmap``, ``zorder``, …
         """
         if grid_map is None:
@@ -142,11 +143,12 @@ class PlotSteps:
         layer.artist.set(**kwargs)
 
     def draw_fog(self, fog_map: Any = None, zorder: int = 2, **kwargs: Any) -> None:
-        """Draw another fog than the environment's.
+        """Draw an additional fog.
 
         Args:
-            fog_map: A :class:`irsim.simulation.fog.FogMap`; None: that of the environment, which is drawn anyway.
-            zorder: Layer.
+            fog_map: A :class:`irsim.simulation.fog.FogMap`. None stands for the fog of the environment, which is drawn
+                anyway.
+            zorder: Layer of the image.
             **kwargs: ``color`` and ``alpha``.
         """
         if fog_map is None:

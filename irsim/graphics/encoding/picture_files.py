@@ -8,7 +8,7 @@ from pathlib import Path
 __all__ = ["PICTURE_FORMATS", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
-"""What a figure can be saved as."""
+"""File formats of figures."""
 
 
 def picture_path(
@@ -20,18 +20,18 @@ def picture_path(
     format: str | None = None,
     default_format: str | None = None,
 ) -> Path:
-    """The file a figure is saved to.
+    """Return the path of the file that a figure is saved to.
 
     Args:
-        folder: For names that are not absolute.
-        name: Name with or without suffix; None takes ``default``.
-        default: Name of the world.
+        folder: Folder of names that are not absolute.
+        name: File name with or without suffix; None stands for ``default``.
+        default: Default file name, such as the name of the world.
         count: Step number to append as ``_0042``.
-        format: Format wanted whatever the name says.
+        format: File format; it replaces the suffix of the name.
         default_format: Format of names without suffix (default png).
 
     Raises:
-        ValueError: A format nothing writes.
+        ValueError: The format is not supported.
     """
     given = str(name) if name is not None and str(name) else default
     stem, dot, suffix = given.rpartition(".")
