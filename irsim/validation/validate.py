@@ -11,7 +11,7 @@ from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.diff import ScenarioDiff
 from irsim.results.findings import Finding
 from irsim.results.validation import DryRun, Fix, ValidationReport
-from irsim.scenario.autofix import mend
+from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
@@ -85,7 +85,7 @@ def fix(
     document = source if isinstance(source, Document) else load_path(source, most)
     if document.text is None:  # not even read
         return "", report_of(read(document, strict=strict, limits=most), str(path))
-    mended = mend(document.text, name=document.name, path=document.path, strict=strict, limits=most)
+    mended = repair_text(document.text, name=document.name, path=document.path, strict=strict, limits=most)
     report = report_of(mended.reading, str(path) if path is not None else "(text)")
     report.fixes = [
         Fix(code=item.finding.code, path=format_path(item.finding.path), line=item.finding.line, change=item.change)
