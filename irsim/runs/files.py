@@ -19,7 +19,7 @@ __all__ = [
     "begun",
     "claim",
     "json_of",
-    "locked",
+    "lock_file",
     "plain_file",
     "refusal",
     "text_of",
@@ -31,7 +31,8 @@ Buffer: TypeAlias = bytes | memoryview
 """Bytes, as they are."""
 TEMPORARY = ".new-"
 _NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
-_MOST_TEXT = 32 * 1024**2
+_MAX_TEXT_BYTES = 32 * 1024**2
+"""Size of the largest text file that is read."""
 
 
 class RunError(IrsimError, ValueError):
@@ -41,7 +42,7 @@ class RunError(IrsimError, ValueError):
         code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
         message: What is wrong.
         fix: What to do instead.
-        where: Argument it is about, if it is not the run itself.
+        where: The argument that is wrong, if it is not the run itself.
     """
 
     def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
@@ -50,12 +51,12 @@ class RunError(IrsimError, ValueError):
 
 
 def unreadable(what: str) -> RunError:
-    """The error for files of a run that are not as they were written."""
+    """The error for a file of a run that is damaged or has been changed."""
     return RunError("unreadable-run", what, "run it again: the same scenario and seed give the same run")
 
 
 def plain_file(folder: Path, name: str) -> Path | None:
-    """A file of a run, None if it is not there or is anything but an ordinary file."""
+    """Path of a file of a run, None if it does not exist or is not an ordinary file."""
     path = folder / name
     return path if path.is_file() and not path.is_symlink() else None
 
@@ -64,14 +65,14 @@ def text_of(folder: Path, name: str) -> str | None:
     """Text of a file of a run, None without that file.
 
     Raises:
-        RunError: It is too large, or no text.
+        RunError: The file is too large, or not text.
     """
     path = plain_file(folder, name)
     if path is None:
         return None
     try:
-        if path.stat().st_size > _MOST_TEXT:
-            raise unreadable(f"'{name}' of run {folder.name} is larger than irsim writes such files")
+        if path.stat().st_size > _MAX_TEXT_BYTES:
+            raise unreadable(f"'{name}' of run {folder.name} is larger than any that irsim writes")
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
         return None
@@ -83,7 +84,7 @@ def json_of(folder: Path, name: str) -> Any:
     """Data of a JSON file of a run, None without that file.
 
     Raises:
-        RunError: It does not hold JSON.
+        RunError: The file is not JSON.
     """
     text = text_of(folder, name)
     if text is None:
@@ -144,50 +145,54 @@ def _write(descriptor: int, *parts: Buffer) -> None:
 
 
 def refusal(target: str | Path, error: OSError) -> RunError:
-    """What the system refuses, in our words."""
+    """The error for a file that the operating system refuses to write."""
     what = f"'{target}' cannot be written: {error.strerror or error}"
     return RunError("file-access", what, "check permissions and the space left")
 
 
 @dataclass(frozen=True)
 class Claim:
-    """Says that a run or a job is being written, as long as this process lives and until it is released."""
+    """Marks a run or a job as being written, until it is released or this process ends."""
 
     descriptor: int
 
     def release(self) -> None:
-        """Nobody writes any more."""
+        """Mark the run or job as no longer being written."""
         os.close(self.descriptor)
 
 
 def claim(file: str | Path, text: bytes = b"") -> Claim:
-    """Say that this process writes a run or a job.
+    """Mark a run or a job as being written by this process.
 
     Args:
-        file: The file to make and to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
-        text: What it holds.
+        file: The file to create and to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
+        text: Content of the file.
 
     Raises:
-        RunError: It is there already, or the system refuses.
+        RunError: The file exists already, or the operating system refuses to write it.
     """
     try:
         descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
         try:
-            locked(descriptor, wait=True)
+            lock_file(descriptor, wait=True)
             _write(descriptor, text)
         except BaseException:
             os.close(descriptor)
             raise
     except FileExistsError:
-        what = f"'{os.path.dirname(file)}' holds a run already"
+        what = f"'{os.path.dirname(file)}' already contains a run"
         raise RunError("file-exists", what, "name another folder for the run") from None
     except OSError as error:
         raise refusal(file, error) from None
     return Claim(descriptor)
 
 
-def locked(descriptor: int, *, wait: bool) -> bool | None:
-    """Lock a file until it is closed; whether that worked, None on systems without such locks."""
+def lock_file(descriptor: int, *, wait: bool) -> bool | None:
+    """Lock an open file until it is closed.
+
+    Returns:
+        Whether the lock was acquired; None on systems without such locks.
+    """
     try:
         import fcntl
     except ImportError:

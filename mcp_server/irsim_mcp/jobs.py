@@ -29,7 +29,7 @@ from irsim.runs.store import (
     LOCK,
     META,
     RESULT,
-    made_folder,
+    make_run_folder,
     mark_cancelled,
     recent_ids,
     run_folders,
@@ -93,7 +93,7 @@ class Jobs:
                 f"{len(running)} jobs are running, which is as many as there may be: {', '.join(running)}",
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
-        job = Path(made_folder(folder, _STEM))
+        job = Path(make_run_folder(folder, _STEM))
         held = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)
