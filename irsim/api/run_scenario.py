@@ -251,7 +251,7 @@ def _animate(
             break
         env.step()
         if recorder is not None:
-            recorder.look()
+            recorder.write_if_due()
         env.render(env.step_time)
         if progress is not None:
             progress(step + 1, steps)

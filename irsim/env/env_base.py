@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from irsim.env.factory import EnvConfig, ObjectFactory
     from irsim.objects.base import SimObject
     from irsim.objects.view import ObjectView
-    from irsim.runs.recorder import Recorder
+    from irsim.simulation.episode_recorder import EpisodeRecorder
 
 __all__ = ["Env", "EnvBase", "make"]
 
@@ -243,7 +243,7 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._after_step()
         return result
 
-    def advance(self, steps: int, *, until_done: bool = True, recorder: Recorder | None = None) -> int:
+    def advance(self, steps: int, *, until_done: bool = True, recorder: EpisodeRecorder | None = None) -> int:
         """Like :meth:`rollout`, keeping nothing here.
 
         Args:
@@ -262,14 +262,14 @@ class Env(EnvObjects, EnvMaps, EnvCustom, EnvLive, EnvMessages):
         self._after_step()
         return done
 
-    def _wait(self, steps: int, until_done: bool, recorder: Recorder | None) -> int:
+    def _wait(self, steps: int, until_done: bool, recorder: EpisodeRecorder | None) -> int:
         """Periods in which the caller, who alone could, moves nothing."""
         for done in range(steps):
             if until_done and self._simulation.state.done(0):
                 return done
             self._simulation.step_external()
             if recorder is not None:
-                recorder.look()
+                recorder.write_if_due()
         return steps
 
     def done(self, mode: str = "all") -> bool | None:
