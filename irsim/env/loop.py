@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 from irsim.common.log import LEVELS
 from irsim.env.live import drive_by_keyboard
@@ -11,20 +11,11 @@ from irsim.env.state import EnvState
 from irsim.objects.actions import assign_actions, beyond_limits
 from irsim.objects.base import SimObject
 from irsim.simulation.active_env import use
+from irsim.simulation.episode_recorder import EpisodeRecorder
 from irsim.simulation.events import read_events
 from irsim.simulation.trace import Rollout, record_rollout
 
-__all__ = ["StepRecorder", "advance", "done", "log_collisions", "pause", "refresh", "resume", "rollout", "step"]
-
-
-class StepRecorder(Protocol):
-    """What :func:`advance` asks of a recorder; :class:`irsim.runs.recorder.Recorder` is one."""
-
-    def advance(self, steps: int, *, until_done: bool = True) -> int:
-        """Advance the simulation by up to ``steps`` periods and keep what happens; returns the periods executed."""
-
-    def look(self) -> None:
-        """Keep the present state."""
+__all__ = ["advance", "done", "log_collisions", "pause", "refresh", "resume", "rollout", "step"]
 
 
 def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
@@ -108,7 +99,7 @@ def rollout(env: EnvState, steps: int, *, until_done: bool = True) -> Rollout:
     return result
 
 
-def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: StepRecorder | None = None) -> int:
+def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: EpisodeRecorder | None = None) -> int:
     """Like :func:`rollout`, keeping nothing here.
 
     Args:
@@ -128,14 +119,14 @@ def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: Ste
     return done
 
 
-def _wait(env: EnvState, steps: int, until_done: bool, recorder: StepRecorder | None) -> int:
+def _wait(env: EnvState, steps: int, until_done: bool, recorder: EpisodeRecorder | None) -> int:
     """Periods in which the caller, who alone could, moves nothing."""
     for done in range(steps):
         if until_done and env._simulation.state.done(0):
             return done
         env._simulation.step_external()
         if recorder is not None:
-            recorder.look()
+            recorder.write_if_due()
     return steps
 
 

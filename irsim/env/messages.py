@@ -8,7 +8,7 @@ from typing import Any
 from irsim import msg
 from irsim.env.queries import robot
 from irsim.env.state import EnvState
-from irsim.msg.reading import numbers_of
+from irsim.msg.messages import state_and_control
 
 __all__ = ["get_msg", "receive_msg", "resolve_message_targets"]
 
@@ -42,7 +42,7 @@ def receive_msg(
         TypeError: Not such a message.
     """
     pairs = resolve_message_targets(env._objects, msg, object_name, object_id, default_target=lambda: robot(env))
-    changes = [(view, *numbers_of(view, odometry)) for view, odometry in pairs]
+    changes = [(view, *state_and_control(view, odometry)) for view, odometry in pairs]
     for view, state, velocity in changes:
         view.set_state(state)
         if velocity is not None:

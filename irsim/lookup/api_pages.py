@@ -68,7 +68,7 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Pages of ``irsim-benchmark``."""
-    from irsim.results import results
+    from irsim.results import benchmark
 
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
@@ -97,11 +97,11 @@ def comparisons() -> Pages:
             *(
                 f"## {name}\n\n{_one_line(model.__doc__)}\n\n{_fields(model)}"
                 for name, model in (
-                    ("BenchmarkResult", results.BenchmarkResult),
-                    ("BenchmarkRow", results.BenchmarkRow),
-                    ("Proportion", results.Proportion),
-                    ("Estimate", results.Estimate),
-                    ("EpisodeRow", results.EpisodeRow),
+                    ("BenchmarkResult", benchmark.BenchmarkResult),
+                    ("BenchmarkRow", benchmark.BenchmarkRow),
+                    ("Proportion", benchmark.Proportion),
+                    ("Estimate", benchmark.Estimate),
+                    ("EpisodeRow", benchmark.EpisodeRow),
                 )
             ),
         ),

@@ -1,4 +1,4 @@
-"""How near robots came to robots, people and what stands still: distances between footprints over a trace."""
+"""Clearances over a trace: distances between the footprints of robots and of robots, humans and static objects."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.metrics.roles import KINDS, NOBODY, STATIC, company_of
+from irsim.metrics.roles import IGNORED, KINDS, STATIC, kinds_of
 from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Approach", "Clearance", "approaches", "clearance", "closest", "least", "static_distance"]
 
-_MOST_WORK = 20_000_000
-"""Bodies placed at most to tell more than the nearest of each kind."""
+_MAX_WORK = 20_000_000
+"""Number of footprints placed, up to which more than the nearest object of each kind is found."""
 
 
 class Posed(Protocol):
-    """A trace, as far as distances go."""
+    """A trace, of which only the poses are needed."""
 
     @property
     def pose(self) -> NDArray[np.float64]:
@@ -60,19 +60,19 @@ class Clearance:
 
     @property
     def static(self) -> NDArray[np.float64]:
-        """(T, R) distance to the nearest static thing [m]: obstacles, maps, walls round the world."""
+        """(T, R) distance to the nearest static object [m]: obstacle, map or wall around the world."""
         return self.distance[:, :, 2]
 
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """The moment at which an object was closest to another.
+    """The closest approach of an object to another.
 
     Attributes:
         row: Row of the trace.
-        distance: Between the footprints [m]; negative: overlap.
-        partner: Name of what it was close to.
-        kind: ``robot``, ``human`` or ``static``.
+        distance: Distance between the footprints [m]; negative: overlap.
+        partner: Name of the other object.
+        kind: Kind of the other object: ``robot``, ``human`` or ``static``.
     """
 
     row: int
@@ -86,15 +86,15 @@ def clearance(
 ) -> Clearance:
     """Distances between the true footprints, in every row of a trace.
 
-    What is ``unobstructed`` is passed through and has no distance. Circles are circles; a map is its occupied cells and
-    ``world.boundary: walls`` the line round the world. Of two overlapping outlines the depth is that of the deepest
-    corner of one inside the other.
+    Objects that are ``unobstructed`` have no distances, as others pass through them. A map counts as its occupied
+    cells, ``world.boundary: walls`` as the line around the world. The depth of an overlap is that of the deepest
+    corner of one outline inside the other.
 
     Args:
-        trace: With ``pose``, or the (T, N, 3) poses themselves.
-        scenario: What was simulated; or the simulation, in the scene that the trace is of.
-        seed: With a scenario: the seed of the run, which decides random shapes.
-        world: With a simulation: which of its worlds.
+        trace: A trace, or its (T, N, 3) poses.
+        scenario: The scenario that was simulated, or the simulation with the scene of the trace.
+        seed: With a scenario: the seed of the run, which determines random shapes.
+        world: With a simulation: the index of one of its worlds.
     """
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
     records = simulation.scenario.objects
@@ -106,23 +106,23 @@ def clearance(
         world,
         np.ascontiguousarray(poses, dtype=np.float64),
         robots,
-        company_of(records),
+        kinds_of(records),
     )
     names = tuple(record.name for record in records)
     return Clearance(distance, partner, np.asarray(robots, dtype=np.int64), names)
 
 
 def static_distance(poses: NDArray[np.float64], simulation: Simulation, objects: Sequence[int]) -> NDArray[np.float64]:
-    """(T, M) distance between footprints [m] of some objects to the nearest static thing; NaN where there is none.
+    """(T, M) distance between footprints [m] of some objects to the nearest static object; NaN without any.
 
     Args:
-        poses: (T, N, 3) as in :func:`clearance`.
-        simulation: In the scene that they are of; its first world.
-        objects: Whose, as indices.
+        poses: (T, N, 3) poses of all objects.
+        simulation: The simulation with the scene of the poses; its first world counts.
+        objects: Indices of the M objects.
     """
-    company = company_of(simulation.scenario.objects)
-    company[company != STATIC] = NOBODY
-    if not len(objects) or (company == NOBODY).all():
+    company = kinds_of(simulation.scenario.objects)
+    company[company != STATIC] = IGNORED
+    if not len(objects) or (company == IGNORED).all():
         return np.full((len(poses), len(objects)), np.nan)
     poses = np.ascontiguousarray(poses, dtype=np.float64)
     distance, _ = core.clearances(simulation.world, simulation.state, 0, poses, list(objects), company)
@@ -130,7 +130,7 @@ def static_distance(poses: NDArray[np.float64], simulation: Simulation, objects:
 
 
 def closest(distances: Clearance) -> list[Approach | None]:
-    """For each robot the moment at which it was closest to anything; the first of equal ones. None without anything."""
+    """Closest approach of each robot to any object, the first of equal ones; None if there is no other object."""
     found: list[Approach | None] = []
     for robot in range(len(distances.robots)):
         table = distances.distance[:, robot]
@@ -151,23 +151,23 @@ def approaches(
     *,
     seed: int = 0,
 ) -> list[list[Approach]]:
-    """For each of some objects the nearest others, each at its closest moment, the nearest first.
+    """Closest approaches of some objects to others, the closest first.
 
     Args:
-        trace: As in :func:`clearance`.
-        scenario: As there.
-        objects: Whose, as indices: robots or others.
-        most: Others at most of each kind (robots, humans, static things); only one where there are very many objects
+        trace: A trace, or its (T, N, 3) poses.
+        scenario: The scenario that was simulated, or the simulation with the scene of the trace.
+        objects: Indices of robots or other objects.
+        most: Greatest number of other objects of each kind (robot, human, static); fewer if there are very many objects
             and rows.
-        seed: With a scenario: the seed of the run, which decides random shapes.
+        seed: With a scenario: the seed of the run, which determines random shapes.
     """
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
     records = simulation.scenario.objects
     poses = np.ascontiguousarray(trace if isinstance(trace, np.ndarray) else trace.pose, dtype=np.float64)
-    rounds = max(1, min(most, _MOST_WORK // max(1, len(poses) * len(records) * len(objects))))
+    rounds = max(1, min(most, _MAX_WORK // max(1, len(poses) * len(records) * len(objects))))
     found = []
     for index in objects:
-        company, mine = company_of(records), list[Approach]()
+        company, mine = kinds_of(records), list[Approach]()
         for _ in range(rounds):
             distance, partner = core.clearances(simulation.world, simulation.state, 0, poses, [index], company)
             known = len(mine)
@@ -176,7 +176,7 @@ def approaches(
                     row = int(np.nanargmin(table))
                     other = int(partner[row, 0, kind])
                     mine.append(Approach(row, float(table[row]), records[other].name, KINDS[kind]))
-                    company[other] = NOBODY  # the next round finds the next
+                    company[other] = IGNORED  # the next round finds the next nearest
             if len(mine) == known:
                 break
         found.append(sorted(mine, key=lambda approach: approach.distance))
@@ -186,17 +186,17 @@ def approaches(
 def least(
     poses: NDArray[np.float64], simulation: Simulation, robots: Sequence[int], ends: Sequence[int], world: int = 0
 ) -> list[Approach | None]:
-    """For each of some objects the moment at which it was closest to anything, quickly; None without anything.
+    """Closest approach of each of some objects to any other, computed faster than all clearances; None without any.
 
     Args:
-        poses: (T, N, 3) as in :func:`clearance`.
-        simulation: In the scene that they are of.
-        robots: Whose, as indices.
-        ends: For each how many rows count.
-        world: Which of its worlds.
+        poses: (T, N, 3) poses of all objects.
+        simulation: The simulation with the scene of the poses.
+        robots: Indices of the objects.
+        ends: For each of them the number of rows that count.
+        world: Index of one of the worlds.
     """
     records = simulation.scenario.objects
-    company = company_of(records)
+    company = kinds_of(records)
     found = core.least_clearances(simulation.world, simulation.state, world, poses, robots, company, ends)
     return [
         None if partner < 0 else Approach(row, distance, records[partner].name, KINDS[company[partner]])
