@@ -12,9 +12,9 @@ from irsim.diagnostics.errors import ArgumentError
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.graphics.scene.scene import Floats
-    from irsim.rendering.planned_paths import Planned
+    from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
 __all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
 
@@ -54,16 +54,16 @@ def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
     return {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
 
 
-def planned(env: Env, overlays: Collection[Overlay] | None) -> list[Planned]:
+def planned(env: Env, overlays: Collection[Overlay] | None) -> list[PlannedPath]:
     """The ways of the robots of an environment, if they are asked for."""
     if not overlays or "plan" not in overlays:
         return []
-    from irsim.rendering.planned_paths import plans
+    from irsim.rendering.planned_paths import plan_paths
 
-    return plans(env.simulation, routes=_routes(env))
+    return plan_paths(env.simulation, routes=_routes(env))
 
 
-def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned]) -> Extra:
+def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
     """Draws what no plot key switches."""
     from irsim.graphics.scene.scene import Scene
     from irsim.rendering.clearance_map import draw_clearance
@@ -77,9 +77,9 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     return add
 
 
-def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
+def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The ways in numbers."""
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
     labels = {view.id: view.abbr for view in env.robot_list}
     return [

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from irsim_mcp.limits import ServerLimits
-from irsim_mcp.server import IrsimServer, build_server
 from mcp import Client, StdioServerParameters
 from mcp.types import CallToolResult, ImageContent, TextContent
 
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.server import IrsimServer, build_server
 from tests.warm import warm_mcp
 
 ERAS = ("auto", "legacy")
