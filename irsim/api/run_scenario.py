@@ -20,6 +20,7 @@ from irsim.episodes.episode import (
     seed_of,
 )
 from irsim.episodes.run_report import command, region_words, run_result
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
@@ -37,8 +38,6 @@ __all__ = [
     "snapshot",
     "validate",
 ]
-
-VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 
 
 def run(
@@ -193,7 +192,7 @@ def render(
             out=out,
         )
         return _written(sheet, target)
-    animated = target.suffix.lower() in VIDEO_SUFFIXES
+    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
         env._env_plot.set_region(region)

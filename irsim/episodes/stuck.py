@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
 from irsim.common.text import clean, seconds
 from irsim.metrics.clearances import approaches
-from irsim.metrics.trajectory import wrap_angles
 from irsim.simulation.events import Event, collision_of, passable_names
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def find_circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circ
     """
     if len(poses) < 3:
         return None
-    turned = np.abs(np.cumsum(wrap_angles(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
+    turned = np.abs(np.cumsum(wrap(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
     full, more = (np.flatnonzero(turned >= turns * 2 * math.pi) for turns in (1.0, _MIN_TURNS))
     if not more.size:
         return None
