@@ -19,7 +19,8 @@ from irsim.episodes.episode import (
     read_scenario,
     seed_of,
 )
-from irsim.episodes.run_report import command, region_words, run_result
+from irsim.episodes.reproduce import region_options, reproduce_command
+from irsim.episodes.run_report import run_result
 from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
@@ -205,7 +206,7 @@ def render(
     else:
         advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
-    sized = [*([] if size is None else ["--size", str(size)]), *region_words(region)]
+    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,
@@ -214,7 +215,7 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
-        reproduce=command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result
