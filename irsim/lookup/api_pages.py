@@ -151,7 +151,7 @@ def _signature(member: Any) -> str:
     shown = []
     starred = False
     for parameter in inspect.signature(member).parameters.values():
-        if parameter.name == "self":
+        if parameter.name in ("self", "env"):
             continue
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:
             shown.append("*")
