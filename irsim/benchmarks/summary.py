@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
@@ -81,22 +82,17 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
     fixed = [name for name, chance in random.items() if not chance]
     if fixed and len(seeds) > 1:
         notes.append(
-            f"{_some(fixed)}: nothing is random, so every seed gives the same run and one was made; random placement "
-            "or motion noise would make seeds differ"
+            f"{listed(fixed, _NAMED)}: nothing is random, so every seed gives the same run and one was made; random "
+            "placement or motion noise would make seeds differ"
         )
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:
         count = sum(bool(episode.unreachable) for episode in episodes)
-        notes.append(f"{_some(lost)}: in {count} episodes no way to a goal was found; spl is left out there")
+        notes.append(f"{listed(lost, _NAMED)}: in {count} episodes no way to a goal was found; spl is left out there")
     cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
     if cut:
-        notes.append(f"{_some(cut)}: episodes ended early with robots that stopped without arriving")
+        notes.append(f"{listed(cut, _NAMED)}: episodes ended early with robots that stopped without arriving")
     return notes
-
-
-def _some(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(names[:_NAMED]) + more
 
 
 def _row(

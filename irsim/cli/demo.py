@@ -32,8 +32,9 @@ def demo(
     with progress("simulating and drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 
-        check_suffix(out, api.VIDEO_SUFFIXES)
+        check_suffix(out, MOVING_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
     if json_output:
         print_json(result)

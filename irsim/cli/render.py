@@ -63,9 +63,9 @@ def render(
     with progress("drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
-        from irsim.graphics.encoding.picture_files import PICTURE_FORMATS
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
 
-        check_suffix(out, [*PICTURE_FORMATS, *api.VIDEO_SUFFIXES])
+        check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         result = api.render(
             file,
             out,

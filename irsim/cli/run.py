@@ -69,9 +69,10 @@ def run(
     with progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 
         if save_gif is not None:
-            check_suffix(save_gif, api.VIDEO_SUFFIXES)
+            check_suffix(save_gif, MOVING_SUFFIXES)
         result = api.run(
             file,
             seed=seed,

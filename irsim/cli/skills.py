@@ -10,6 +10,7 @@ import typer
 
 from irsim.cli.guard import FAILED, guarded
 from irsim.cli.options import Json
+from irsim.common.text import listed
 
 if TYPE_CHECKING:
     from irsim.bundled.skills import Installed
@@ -114,9 +115,8 @@ def _show(done: list[Installed], *, dry_run: bool) -> None:
         style = {"kept": "yellow", "unchanged": "dim"}.get(result.action, "green")
         out.print(Text.assemble((f"{result.action:9}", style), f" {result.folder}"), soft_wrap=True)
         if result.changed:
-            more = f" and {len(result.changed) - 5} more" if len(result.changed) > 5 else ""
             fate = "left alone; --force overwrites" if result.action == "kept" else "overwritten"
-            out.print(f"          changed since: {', '.join(result.changed[:5])}{more} ({fate})", soft_wrap=True)
+            out.print(f"          changed since: {listed(result.changed, 5)} ({fate})", soft_wrap=True)
 
 
 skills_app.command("list")(guarded(list_))

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.text import clean, seconds
+from irsim.common.angles import wrap
+from irsim.common.text import quoted, seconds
 from irsim.metrics.clearances import approaches
-from irsim.metrics.trajectory import wrap_angles
 from irsim.simulation.events import Event, collision_of, passable_names
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
         return None
     count = sum(is_moving_obstacle(record) for record in simulation.scenario.objects)
     first = min(held.values(), key=lambda event: event.step)
-    whom = f"'{clean(first.object, 40)}' hit '{clean(first.partner, 40)}' at {seconds(first.time)}"
+    whom = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
     return (
         f"{len(held)} of {count} moving obstacle{'s' * (count != 1)} {'was' if len(held) == 1 else 'were'} stopped by "
         f"a collision ({'first ' * (len(held) > 2)}{whom}): collision_mode: unobstructed_obstacles lets them go on"
@@ -165,7 +165,7 @@ def find_obstruction(
     if not close:
         return None
     near = next((near for near in close if near.partner in held), close[0])
-    where = f"'{clean(near.partner, 40)}' is {near.distance:.2f} m from it"
+    where = f"{quoted(near.partner)} is {near.distance:.2f} m from it"
     if near.partner in held:
         since = seconds(held[near.partner].time)
         return Obstruction(f"{where} and has been stopped since a collision at {since}", held=True)
@@ -197,7 +197,7 @@ def find_circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circ
     """
     if len(poses) < 3:
         return None
-    turned = np.abs(np.cumsum(wrap_angles(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
+    turned = np.abs(np.cumsum(wrap(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
     full, more = (np.flatnonzero(turned >= turns * 2 * math.pi) for turns in (1.0, _MIN_TURNS))
     if not more.size:
         return None

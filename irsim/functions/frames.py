@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import FULL_TURN, wrap
+
 __all__ = [
     "ClipTo2Pi",
     "WrapTo2Pi",
@@ -29,7 +31,6 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-_TURN = 2 * math.pi
 
 
 def _flat(values: Any) -> Floats:
@@ -40,18 +41,18 @@ def WrapToPi(rad: float, positive: bool = False) -> float:
     """An angle in [-pi, pi); ``positive``: its absolute value. What is not finite becomes 0."""
     if not math.isfinite(rad):
         return 0.0
-    wrapped = (float(rad) + math.pi) % _TURN - math.pi
+    wrapped = wrap(float(rad))
     return abs(wrapped) if positive else wrapped
 
 
 def WrapTo2Pi(rad: float) -> float:
     """An angle in [0, 2 pi). What is not finite becomes 0."""
-    return float(rad) % _TURN if math.isfinite(rad) else 0.0
+    return wrap(float(rad), 0.0) if math.isfinite(rad) else 0.0
 
 
 def ClipTo2Pi(rad: float) -> float:
     """A number cut to [0, 2 pi]. NaN becomes 0."""
-    return 0.0 if math.isnan(rad) else min(max(float(rad), 0.0), _TURN)
+    return 0.0 if math.isnan(rad) else min(max(float(rad), 0.0), FULL_TURN)
 
 
 def WrapToRegion(rad: float, range: list[float]) -> float:
@@ -61,8 +62,8 @@ def WrapToRegion(rad: float, range: list[float]) -> float:
         AssertionError: ``range`` is not one turn wide.
     """
     low, high = range
-    assert math.isclose(high - low, _TURN), f"an interval of angles is 2 pi wide, not {high - low}"
-    return (float(rad) - low) % _TURN + low
+    assert math.isclose(high - low, FULL_TURN), f"an interval of angles is 2 pi wide, not {high - low}"
+    return wrap(float(rad), low)
 
 
 def relative_position(position1: Any, position2: Any, topi: bool = True) -> tuple[float, float]:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import listed
 from irsim.lookup.answer import Key
 
 __all__ = [
@@ -148,7 +149,7 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
         unit=units[0] if units and units[0] != "1" else None,
         default=None if default is None or default == {} else yaml_text(default),
         required=required,
-        allowed=_shortened(list(dict.fromkeys(allowed))) or "; ".join(dict.fromkeys(ranges)) or None,
+        allowed=listed(list(dict.fromkeys(allowed)), _MOST_NAMES) or "; ".join(dict.fromkeys(ranges)) or None,
         per_object=per_object,
         text=" ".join(texts[0].split()) if texts else "",
     )
@@ -166,11 +167,6 @@ def yaml_text(value: Any) -> str:
         return f"{value:g}"
     plain = not isinstance(value, str) or re.fullmatch(r"[A-Za-z_][\w./-]*( [\w./-]+)*", value)
     return str(value) if plain else json.dumps(value, ensure_ascii=False)
-
-
-def _shortened(names: list[str]) -> str:
-    more = len(names) - _MOST_NAMES
-    return ", ".join(names[:_MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
 
 
 def _type(root: Node, options: list[Node]) -> tuple[str, bool]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from irsim.common.text import seconds
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
+from irsim.episodes.explanation import has_one_end, others_arrived_message
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
-from irsim.episodes.run_report import has_one_end, others_arrived
 from irsim.episodes.stuck import (
     find_circling,
     find_jammed,
@@ -154,7 +154,7 @@ def _summarise(
                 *filter(
                     None,
                     (
-                        others_arrived(scenario, events),
+                        others_arrived_message(scenario, events),
                         jam_message(env.simulation, held),
                         exits_message(scenario, left),
                     ),
