@@ -1,5 +1,5 @@
-# The folders beside the sources that belong into a wheel, and where the package looks for them once installed.
-# An editable install reads them from the checkout, so it never serves stale copies.
+# Folders outside of the sources that belong in a wheel, and where the installed package looks for them. An editable
+# install reads them from the checkout, so it never serves stale copies.
 if(NOT SKBUILD_STATE STREQUAL "editable")
   get_filename_component(IRSIM_ROOT "${CMAKE_CURRENT_SOURCE_DIR}/../.." ABSOLUTE)
   foreach(folder templates schema)
