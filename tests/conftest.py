@@ -33,7 +33,7 @@ def registered_features() -> Iterator[None]:
     before = [dict(table) for table in tables]
     yield
     for table, known in zip(tables, before, strict=True):
-        ours = {pair: made for pair, made in table.items() if made.__module__.startswith("irsim.lib.")}
+        ours = {pair: made for pair, made in table.items() if made.__module__.startswith("irsim.objects.handlers.")}
         table.clear()
         table.update(known | ours)
     for registry in REGISTRIES.values():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from irsim.api.overlays import Overlay, additions, plan_paths, plot_keys
+from irsim.api.overlays import Overlay, additions, plot_keys, requested_plans
 from irsim.diagnostics.errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def draw_strip(
     sheet = Strip(len(moments), size, region=region, overrides=plot_keys(overlays))
     for moment in moments:
         advance(env, moment - int(env.simulation.count[0]), None, until_done=False)
-        sheet.add(env.simulation, additions(env, overlays, plan_paths(env, overlays)))
+        sheet.add(env.simulation, additions(env, overlays, requested_plans(env, overlays)))
         if progress is not None:
             progress(moment, moments[-1])
     return sheet.png()

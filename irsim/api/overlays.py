@@ -12,11 +12,11 @@ from irsim.diagnostics.errors import ArgumentError
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.graphics.scene.scene import Floats
-    from irsim.rendering.planned_paths import Planned
+    from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
-__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_paths", "plan_results", "plot_keys"]
+__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "plot_keys", "requested_plans"]
 
 Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -54,16 +54,16 @@ def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
     return {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
 
 
-def plan_paths(env: Env, overlays: Collection[Overlay] | None) -> list[Planned]:
+def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[PlannedPath]:
     """Paths planned for the robots of an environment, if the overlay ``plan`` is requested."""
     if not overlays or "plan" not in overlays:
         return []
-    from irsim.rendering.planned_paths import plans
+    from irsim.rendering.planned_paths import plan_paths
 
-    return plans(env.simulation, routes=_routes(env))
+    return plan_paths(env.simulation, routes=_routes(env))
 
 
-def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned]) -> Extra:
+def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
     """A function that draws the overlays that no plot key switches."""
     from irsim.graphics.scene.scene import Scene
     from irsim.rendering.clearance_map import draw_clearance
@@ -77,9 +77,9 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     return add
 
 
-def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
+def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The planned paths as results."""
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
     labels = {view.id: view.abbr for view in env.robot_list}
     return [

@@ -20,7 +20,8 @@ from irsim.episodes.episode import (
     seed_of,
 )
 from irsim.episodes.run_report import command, region_words, run_result
-from irsim.results.results import RenderResult, RunResult, SnapshotResult
+from irsim.results.picture import RenderResult, SnapshotResult
+from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.validation.validate import diff, fix, validate
@@ -226,7 +227,7 @@ def render(
 
 def _write_sheet(sheet: SnapshotResult, target: Path) -> RenderResult:
     """Write a picture of several moments."""
-    from irsim.graphics.encoding.picture_files import replacing
+    from irsim.common.files import replacing
 
     with replacing(target) as temporary:
         temporary.write_bytes(sheet.png)

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
-from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_paths, plan_results, plot_keys
+from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, read_scenario, seed_of
 from irsim.episodes.run_report import command, overlay_words, region_words, strip_words
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import Finding, MovingPose, RobotPose, SnapshotResult
+from irsim.results.findings import Finding
+from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -170,7 +171,7 @@ def snapshot_of_env(
         png = draw_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress)
     elif moments is not None:
         advance(env, moments[-1], progress, until_done=False)
-    ways = plan_paths(env, overlays)
+    ways = requested_plans(env, overlays)
     if moments is None and draw:
         from irsim.rendering.snapshot import render_scene
 

@@ -22,7 +22,8 @@ from irsim.benchmarks.seeds import seeds_from
 from irsim.common.arguments import as_given, whole
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
-from irsim.results.results import BenchmarkResult, EpisodeRow, Finding
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+from irsim.results.findings import Finding
 from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts

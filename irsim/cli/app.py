@@ -26,9 +26,9 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from irsim import __version__
+        from irsim.common.version import version
 
-        typer.echo(f"irsim {__version__}")
+        typer.echo(f"irsim {version()}")
         raise typer.Exit
 
 

@@ -17,8 +17,9 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.env import Env
-from irsim.results.results import Edit as EditRecord
-from irsim.results.results import Finding, HorizonSource
+from irsim.results.findings import Edit as EditRecord
+from irsim.results.findings import Finding
+from irsim.results.run import HorizonSource
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.open import or_raise

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.text import clean, seconds
-from irsim.results.results import Left
+from irsim.results.run import Left
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario

@@ -1,4 +1,4 @@
-"""From a finished environment to a :class:`irsim.results.results.RunResult`: who arrived, who did not, and why."""
+"""From a finished environment to a :class:`irsim.results.run.RunResult`: who arrived, who did not, and why."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ from irsim.episodes.stuck import (
     jam_message,
     no_progress_since,
 )
-from irsim.results.results import EventRecord, Finding, HorizonSource, Left, RobotResult, RunResult
+from irsim.results.findings import Finding
+from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, first_events, passable_names
 from irsim.simulation.outcome import robot_outcomes

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.functions._random import current_rng
+from irsim.simulation.active_env import current_rng
 
 __all__ = [
     "ackermann_kinematics",

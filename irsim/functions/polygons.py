@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.functions._random import current_rng
+from irsim.simulation.active_env import current_rng
 
 __all__ = ["generate_polygon", "random_generate_polygon"]
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-import irsim
+from irsim.api.public import PUBLIC_HOMES
 from irsim.common import data_files as resources
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
@@ -68,7 +68,7 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Pages of ``irsim-benchmark``."""
-    from irsim.results import results
+    from irsim.results import benchmark
 
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
@@ -97,11 +97,11 @@ def comparisons() -> Pages:
             *(
                 f"## {name}\n\n{_one_line(model.__doc__)}\n\n{_fields(model)}"
                 for name, model in (
-                    ("BenchmarkResult", results.BenchmarkResult),
-                    ("BenchmarkRow", results.BenchmarkRow),
-                    ("Proportion", results.Proportion),
-                    ("Estimate", results.Estimate),
-                    ("EpisodeRow", results.EpisodeRow),
+                    ("BenchmarkResult", benchmark.BenchmarkResult),
+                    ("BenchmarkRow", benchmark.BenchmarkRow),
+                    ("Proportion", benchmark.Proportion),
+                    ("Estimate", benchmark.Estimate),
+                    ("EpisodeRow", benchmark.EpisodeRow),
                 )
             ),
         ),
@@ -114,7 +114,7 @@ def contributing() -> Pages:
     for kind, registry in REGISTRIES.items():
         for feature in registry.features():
             if feature.origin == "built-in":
-                model = f"irsim/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
+                model = f"irsim/components/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
                 header = ""
                 if feature.kernel is not None:
                     stem = re.sub(r"(?<!^)(?=[A-Z])", "_", feature.kernel.__name__.removesuffix("Options")).lower()
@@ -141,7 +141,7 @@ PACKS: dict[str, Callable[[], Pages]] = {
 def _find(name: str) -> tuple[str, Any]:
     """A function by its name below ``irsim`` or in full."""
     if not name.startswith("irsim."):
-        return f"irsim.{name}", getattr(importlib.import_module(irsim._HOMES[name]), name)
+        return f"irsim.{name}", getattr(importlib.import_module(PUBLIC_HOMES[name]), name)
     module, _, name_there = name.rpartition(".")
     return name, getattr(importlib.import_module(module), name_there)
 
@@ -151,7 +151,7 @@ def _signature(member: Any) -> str:
     shown = []
     starred = False
     for parameter in inspect.signature(member).parameters.values():
-        if parameter.name == "self":
+        if parameter.name in ("self", "env"):
             continue
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:
             shown.append("*")

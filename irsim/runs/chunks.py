@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 import irsim._core as core
-from irsim.runs.files import Buffer, unreadable
+from irsim.common.files import Buffer
+from irsim.runs.files import unreadable
 from irsim.simulation.trace import Trace
 
 __all__ = ["Layout", "load_chunk", "load_events", "pack_chunk"]

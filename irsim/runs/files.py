@@ -1,53 +1,36 @@
-"""The files of runs: written so that nobody sees half of one, read with errors in our words. Standard library only."""
+"""The files of runs: written in one step, and read with errors in terms of runs."""
 
 from __future__ import annotations
 
 import json
 import os
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
-from irsim.diagnostics.errors import IrsimError
+from irsim.common.files import Buffer, create_bytes, replace_bytes, write_all
+from irsim.diagnostics.errors import CodedError
 
 __all__ = [
-    "TEMPORARY",
-    "Buffer",
     "Claim",
     "RunError",
-    "begun",
     "claim",
+    "create_file",
     "json_of",
     "lock_file",
     "plain_file",
     "refusal",
+    "replace_file",
     "text_of",
     "unreadable",
-    "written",
 ]
 
-Buffer: TypeAlias = bytes | memoryview
-"""Bytes, as they are."""
-TEMPORARY = ".new-"
-_NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
 _MAX_TEXT_BYTES = 32 * 1024**2
 """Size of the largest text file that is read."""
 
 
-class RunError(IrsimError, ValueError):
-    """A run that cannot be opened, read or written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to do instead.
-        where: The argument that is wrong, if it is not the run itself.
-    """
-
-    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
-        self.code, self.message, self.fix, self.where = code, message, fix, where
-        super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
+class RunError(CodedError, ValueError):
+    """A run cannot be opened, read or written."""
 
 
 def unreadable(what: str) -> RunError:
@@ -95,53 +78,28 @@ def json_of(folder: Path, name: str) -> Any:
         raise unreadable(f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
 
 
-def begun(target: str | Path, text: bytes) -> None:
-    """Write a file of a folder that has no ``run.json`` yet: nobody takes that for a run, so half a file harms nobody.
+def create_file(target: str | Path, text: bytes) -> None:
+    """Write a file of a folder without ``run.json``, which does not count as a run until it has one.
 
     Raises:
-        RunError: The system refuses.
+        RunError: The operating system refuses to write it.
     """
     try:
-        _put(os.open(target, _NEW, 0o600), text)
+        create_bytes(target, text)
     except OSError as error:
         raise refusal(target, error) from None
 
 
-def written(target: str | Path, *parts: Buffer) -> None:
-    """Write a file of a run by way of a temporary one, so that nobody ever sees half of it.
+def replace_file(target: str | Path, *parts: Buffer) -> None:
+    """Write a file of a run in one step, so that no incomplete file is ever seen.
 
     Raises:
-        RunError: The system refuses.
+        RunError: The operating system refuses to write it.
     """
-    head, separator, _ = os.fspath(target).rpartition(os.sep)
-    temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
     try:
-        descriptor = os.open(temporary, _NEW, 0o600)
-        try:
-            _put(descriptor, *parts)
-            os.replace(temporary, target)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(temporary)
-            raise
+        replace_bytes(target, *parts)
     except OSError as error:
         raise refusal(target, error) from None
-
-
-def _put(descriptor: int, *parts: Buffer) -> None:
-    try:
-        _write(descriptor, *parts)
-    finally:
-        os.close(descriptor)
-
-
-def _write(descriptor: int, *parts: Buffer) -> None:
-    """Write all of it, without copies and buffers, which short runs would feel."""
-    done = os.writev(descriptor, parts) if hasattr(os, "writev") else 0
-    if done < sum(map(len, parts)):
-        rest = memoryview(b"".join(parts))[done:]
-        while rest:
-            rest = rest[os.write(descriptor, rest) :]
 
 
 def refusal(target: str | Path, error: OSError) -> RunError:
@@ -175,7 +133,7 @@ def claim(file: str | Path, text: bytes = b"") -> Claim:
         descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
         try:
             lock_file(descriptor, wait=True)
-            _write(descriptor, text)
+            write_all(descriptor, text)
         except BaseException:
             os.close(descriptor)
             raise

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.metrics import approaches
-from irsim.results.results import RunTable
+from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.runs.files import TEMPORARY
+from irsim.common.files import TEMPORARY
 from irsim.runs.store import ABANDONED, ID, META, being_written, date_of, dated_folders
 
 __all__ = ["DAY", "QUOTA", "prune", "remove", "tidy"]

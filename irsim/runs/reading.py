@@ -13,7 +13,7 @@ import numpy as np
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
-from irsim.results.results import RunResult
+from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
 from irsim.runs.omissions import omission_notes

@@ -15,8 +15,9 @@ import numpy as np
 from pydantic_core import to_json
 
 import irsim._core as core
+from irsim.common.files import Buffer
 from irsim.runs.chunks import pack_chunk
-from irsim.runs.files import Buffer, Claim, RunError, begun, claim, written
+from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
 from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
@@ -25,7 +26,7 @@ from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
     from irsim.env import Env
-    from irsim.results.results import RunResult
+    from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Recorder", "recording"]
@@ -115,7 +116,7 @@ class Recorder:
         }
         try:
             self._claim = claim(self._path(SCENARIO_FILE), _text_of(simulation).encode())
-            begun(self._path("resolved.json"), plain_scenario(simulation))
+            create_file(self._path("resolved.json"), plain_scenario(simulation))
             self._meta["maps"] = self._copy_maps()
             self._write_meta()
         except BaseException:
@@ -136,7 +137,7 @@ class Recorder:
                 content = Path(path).read_bytes()
             except OSError as error:
                 raise RunError("file-access", f"'{path}' cannot be read: {error.strerror or error}") from None
-            begun(self._path(file), content)
+            create_file(self._path(file), content)
             kept.append([name, file])
         return kept
 
@@ -247,7 +248,7 @@ class Recorder:
         self._write(META, to_json(self._meta, indent=1))
 
     def _write(self, name: str, *parts: Buffer) -> None:
-        written(self._path(name), *parts)
+        replace_file(self._path(name), *parts)
 
     def _path(self, name: str) -> str:
         return f"{self.folder}{os.sep}{name}"
@@ -320,10 +321,10 @@ def _text_of(simulation: Simulation) -> str:
 
 
 def _versions() -> dict[str, str]:
-    from irsim import __version__
+    from irsim.common.version import version
 
     return {
-        "irsim": __version__,
+        "irsim": version(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "platform": platform.platform(),

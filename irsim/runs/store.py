@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.common.text import clean
-from irsim.runs.files import RunError, json_of, lock_file, plain_file, refusal, written
+from irsim.runs.files import RunError, json_of, lock_file, plain_file, refusal, replace_file
 
 __all__ = [
     "ABANDONED",
@@ -96,7 +96,7 @@ def runs_path(workspace: str | Path | None = None, *, make: bool = False) -> str
         except OSError as error:
             raise refusal(folder, error) from None
         if _mode(ignore) is None:
-            written(ignore, b"*\n")
+            replace_file(ignore, b"*\n")
     return folder
 
 
@@ -209,7 +209,7 @@ def mark_cancelled(folder: Path) -> None:
     meta = json_of(folder, META)
     if not isinstance(meta, dict) or plain_file(folder, RESULT) is not None:
         return
-    written(folder / META, json.dumps({**meta, "cancelled": True}, indent=1).encode())
+    replace_file(folder / META, json.dumps({**meta, "cancelled": True}, indent=1).encode())
 
 
 def being_written(folder: Path) -> bool:

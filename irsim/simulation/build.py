@@ -10,7 +10,6 @@ import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.behaviors.follow import Follow
 from irsim.components.maps._grid import MapCells, Walls
-from irsim.objects.shapely_geometry import compound_body
 from irsim.options.registry import (
     BEHAVIORS,
     CUSTOM_GROUP_BEHAVIORS,
@@ -21,6 +20,7 @@ from irsim.options.registry import (
     Feature,
     Registry,
 )
+from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,10 @@ from irsim.common.log import Logger
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.build import COLLISION_MODES, Built, build_world
+from irsim.simulation.protocols import ExternalDrives, StepHooks
 from irsim.simulation.random_streams import generator
 
 if TYPE_CHECKING:
-    from irsim.objects.extensions.drives import PythonDrives
-    from irsim.objects.extensions.hooks import Hooks
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
@@ -32,8 +31,12 @@ PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
 """Reads the sensors that are its own, in the worlds of the mask (None: all); called after the native sensors."""
 
 
-def _nobody() -> None:
+def _no_owner() -> None:
     """The owner of a simulation that no environment has made."""
+
+
+def _no_views(simulation: Simulation, index: int, world: int) -> NoReturn:
+    raise RuntimeError("objects of a simulation are made by irsim.objects.views.views")
 
 
 class Simulation:
@@ -69,6 +72,7 @@ class Simulation:
         revision: Grows whenever objects come, go or change their shape.
         log: Writes down every step of the first world while somebody records it.
         owner: Gives the environment it belongs to, or None.
+        make_view: Makes the object of a place and a world for ``views``; set by :mod:`irsim.objects.views`.
         user: Whose draws ``rng`` gives: 0 those of an environment; an object on its own has a number of its own.
 
     Raises:
@@ -88,8 +92,8 @@ class Simulation:
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
         self.measurements: list[PythonMeasurement] = []
-        self.drives: PythonDrives | None = None
-        self.hooks: Hooks | None = None
+        self.drives: ExternalDrives | None = None
+        self.hooks: StepHooks | None = None
         self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
         self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
@@ -101,7 +105,9 @@ class Simulation:
         self._reseeded = False
         self.user = 0
         self.log: core.Log | None = None
-        self.owner: Callable[[], Any] = _nobody
+        self.owner: Callable[[], Any] = _no_owner
+        self.make_view: Callable[[Simulation, int, int], Any] = _no_views
+        self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
         self._check_placement()
@@ -217,6 +223,17 @@ class Simulation:
     def in_python(self) -> bool:
         """Whether Python code takes part in every step."""
         return bool(self.decisions or self.measurements or self.drives is not None or self.hooks is not None)
+
+    # objects ---------------------------------------------------------------------------------------------------------
+    def views(self, world: int = 0) -> list[Any]:
+        """The objects of one world as scripts see them, made on the first call by ``make_view``."""
+        if world not in self._views:
+            self._views[world] = [self.make_view(self, index, world) for index in range(self.objects)]
+        return self._views[world]
+
+    def keep_views(self, shown: Sequence[Any]) -> None:
+        """Let these be the objects of the only world from now on."""
+        self._views = {0: list(shown)}
 
     # one row ----------------------------------------------------------------------------------------------------------
     def impose(self, row: int, control: NDArray[np.float64] | Sequence[float]) -> None:

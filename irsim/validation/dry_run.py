@@ -23,7 +23,8 @@ from irsim.episodes.stuck import (
     jam_message,
     no_progress_since,
 )
-from irsim.results.results import DryRun, EventRecord, Stuck
+from irsim.results.run import EventRecord
+from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario

@@ -8,8 +8,10 @@ from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.episode import as_finding, source_of
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import DryRun, Finding, Fix, ScenarioDiff, ValidationReport
-from irsim.scenario.autofix import mend
+from irsim.results.diff import ScenarioDiff
+from irsim.results.findings import Finding
+from irsim.results.validation import DryRun, Fix, ValidationReport
+from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
@@ -83,7 +85,7 @@ def fix(
     document = source if isinstance(source, Document) else load_path(source, most)
     if document.text is None:  # the file could not be read
         return "", report_of(read(document, strict=strict, limits=most), str(path))
-    mended = mend(document.text, name=document.name, path=document.path, strict=strict, limits=most)
+    mended = repair_text(document.text, name=document.name, path=document.path, strict=strict, limits=most)
     report = report_of(mended.reading, str(path) if path is not None else "(text)")
     report.fixes = [
         Fix(code=item.finding.code, path=format_path(item.finding.path), line=item.finding.line, change=item.change)

@@ -223,9 +223,9 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
     """Write the result of the episodes that a stopped benchmark had completed, beside its log."""
     from irsim.benchmarks import logged
-    from irsim.runs.files import written
+    from irsim.runs.files import replace_file
 
-    written(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
+    replace_file(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
     return "null"
 
 

@@ -23,7 +23,7 @@ from typing import Any
 import anyio
 
 from irsim.common.text import clean
-from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, written
+from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, replace_file
 from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
     LOCK,
@@ -236,7 +236,7 @@ def _count_logged(job: Path) -> int:
 def _note(job: Path, about: Mapping[str, Any]) -> None:
     text = json.dumps(about)
     with suppress(RunError):  # another process may have deleted the folder
-        written(job / META, text.encode())
+        replace_file(job / META, text.encode())
 
 
 class _Keeper(threading.Thread):
@@ -259,7 +259,7 @@ class _Keeper(threading.Thread):
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError, RunError):
-                written(self._job / RESULT, text.encode())
+                replace_file(self._job / RESULT, text.encode())
                 (self._job / _LOG).unlink()
         finally:
             self._held.release()

@@ -33,7 +33,7 @@ def tried(
     more: str = "behavior: {name: dash}",
     world: str = "{width: 10, height: 8}",
     obstacle: str = "",
-) -> irsim.results.results.DryRun:
+) -> irsim.results.validation.DryRun:
     text = f"world: {world}\nrobot:\n" + ROBOT.format(state=state, goal=goal, more=more)
     if obstacle:
         text += f"obstacle:\n  - {obstacle}\n"

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from irsim.cli.app import app
-from irsim.results.results import RunResult
+from irsim.results.run import RunResult
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio

@@ -19,7 +19,7 @@ import pytest
 
 import irsim
 from irsim.runs import RunError, list_runs, open_run
-from irsim.runs.files import claim, written
+from irsim.runs.files import claim, replace_file
 from irsim.runs.pruning import prune, tidy
 from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, runs_folder, status_of
 
@@ -253,7 +253,7 @@ def test_files_are_whole_however_little_the_system_takes_at_once(
     else:
         monkeypatch.delattr(os, "writev", raising=False)
     monkeypatch.setattr(os, "write", lambda file, data: write(file, data[:2]))
-    written(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
+    replace_file(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
     assert (workspace / "file").read_bytes() == b"one, two and three"
     assert [path.name for path in workspace.iterdir()] == ["file"]
 

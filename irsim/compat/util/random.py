@@ -7,20 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.simulation.active_env import last_used
+from irsim.simulation.active_env import current_rng, set_current_rng
 
 __all__ = ["random_uniform", "rng", "set_seed"]
 
 _ATTEMPTS = 100
-_OWN = [np.random.default_rng()]
 
 
 class _Follower:
     """A NumPy generator that is always that of the environment used last; one of its own before there is any."""
 
     def __getattr__(self, name: str) -> Any:
-        env = last_used()
-        return getattr(_OWN[0] if env is None else env.rng, name)
+        return getattr(current_rng(), name)
 
 
 rng: Any = _Follower()
@@ -33,11 +31,7 @@ def set_seed(seed: int | None = None) -> None:
     Args:
         seed: Any seed of NumPy; None takes fresh entropy.
     """
-    env = last_used()
-    if env is None:
-        _OWN[0] = np.random.default_rng(seed)
-    else:
-        env.simulation.set_rng(np.random.default_rng(seed))
+    set_current_rng(np.random.default_rng(seed))
 
 
 def random_uniform(

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.functions._random import current_rng
 from irsim.functions.polygons import random_generate_polygon
+from irsim.simulation.active_env import current_rng
 
 __all__ = [
     "CircleGeometry",

@@ -12,7 +12,7 @@ from irsim.common.text import clean
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
-from irsim.objects.view import views
+from irsim.objects.views import views
 
 if TYPE_CHECKING:
     from irsim.env import Env

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from irsim.common.files import check_suffix, write_atomically
 from irsim.common.text import clean
-from irsim.results.results import ReplayResult
+from irsim.results.run import ReplayResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.replay.data import pack_run

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from irsim.diagnostics.errors import PlacementError
-from irsim.results.results import KeyChange, ScenarioDiff, WorldChange
+from irsim.results.diff import KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.read import Reading
 from irsim.scenario.yaml.comments import comments
 from irsim.validation.diff.keys import changed_keys, data_of, entry_pairs, place

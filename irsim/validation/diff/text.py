@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from irsim.diagnostics.diagnostic import Path
-from irsim.results.results import CommentChange
+from irsim.results.diff import CommentChange
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import Document
 from irsim.validation.diff.keys import Pairs

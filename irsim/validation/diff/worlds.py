@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from irsim.env import Env
-from irsim.results.results import KeyChange, WorldChange
+from irsim.results.diff import KeyChange, WorldChange
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.keys import Pairs, moved
 from irsim.validation.diff.matching import differing, listed, match_objects, object_facts
