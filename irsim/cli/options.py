@@ -21,7 +21,7 @@ Steps = Annotated[
     int | None,
     typer.Option(min=0, help="Maximum number of steps. Default: the time limit of the scenario.", show_default=False),
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Treat as errors what IR-SIM ignores, such as unknown keys.")]
+Strict = Annotated[bool, typer.Option("--strict", help="Treat tolerated problems, such as unknown keys, as errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print only the result to standard output, as JSON.")]
 Imports = Annotated[
     list[str] | None,

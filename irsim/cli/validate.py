@@ -27,7 +27,7 @@ def validate(
         bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
     ] = False,
     lenient: Annotated[
-        bool, typer.Option("--lenient", help="Report what IR-SIM tolerates as warnings, as `irsim run` does.")
+        bool, typer.Option("--lenient", help="Report problems that `irsim run` tolerates as warnings.")
     ] = False,
     fix: Annotated[
         bool,
