@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from irsim.graphics.scene.scene import Floats
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
 __all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
 
@@ -79,7 +79,7 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
 
 def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
     """The ways in numbers."""
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
     labels = {view.id: view.abbr for view in env.robot_list}
     return [

@@ -15,7 +15,7 @@ from PIL import Image
 from irsim.common.files import check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.modeline import with_modeline
@@ -28,16 +28,8 @@ Floats = NDArray[np.float64]
 _SQUARE = 1e-6
 
 
-class MapFileError(IrsimError, ValueError):
-    """A map that cannot be read or written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+class MapFileError(CodedError, ValueError):
+    """A map cannot be read or written."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,8 @@ from irsim.episodes.episode import (
     seed_of,
 )
 from irsim.episodes.run_report import command, region_words, run_result
-from irsim.results.results import RenderResult, RunResult, SnapshotResult
+from irsim.results.picture import RenderResult, SnapshotResult
+from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.validation.validate import diff, fix, validate
@@ -222,7 +223,7 @@ def render(
 
 def _written(sheet: SnapshotResult, target: Path) -> RenderResult:
     """Write a picture of several moments."""
-    from irsim.graphics.encoding.picture_files import replacing
+    from irsim.common.files import replacing
 
     with replacing(target) as temporary:
         temporary.write_bytes(sheet.png)
@@ -250,7 +251,7 @@ def _animate(
             break
         env.step()
         if recorder is not None:
-            recorder.look()
+            recorder.write_if_due()
         env.render(env.step_time)
         if progress is not None:
             progress(step + 1, steps)

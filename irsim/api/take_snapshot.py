@@ -12,7 +12,8 @@ from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, read_scenario, seed_of
 from irsim.episodes.run_report import command, overlay_words, region_words, strip_words
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import Finding, MovingPose, RobotPose, SnapshotResult
+from irsim.results.findings import Finding
+from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario

@@ -13,7 +13,7 @@ from irsim.episodes.episode import horizon_of, import_modules
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
-from irsim.metrics.roles import on_their_way
+from irsim.metrics.roles import travelling_humans
 from irsim.scenario.behavior_override import behavior_of, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -126,7 +126,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
 
 def _delay(task: Task, env: Env, horizon: int) -> float:
     """``pedestrian_delay`` [s]; lets time pass until the people have arrived, at most to the horizon."""
-    people = on_their_way(env.scenario.objects)
+    people = travelling_humans(env.scenario.objects)
     if not people or not env.robot_list:
         return math.nan
     with_robots: dict[str, float] = {}

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from irsim.benchmarks.summary import notes_of, rows_of
-from irsim.results.results import BenchmarkResult, EpisodeRow
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import refusal, unreadable
 
 __all__ = ["Log", "logged", "with_episodes"]

@@ -9,7 +9,7 @@ from typing import Any
 
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
-from irsim.results.results import BenchmarkRow, EpisodeRow, Estimate, Proportion
+from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = ["ALL", "KEYS", "estimate", "notes_of", "proportion", "rows_of"]
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import nearest
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["PLACES", "Installed", "PlaceError", "Skill", "SkillError", "find_skills", "install", "place_of"]
 
@@ -33,16 +33,12 @@ _RECORD = ".irsim.json"
 Action = Literal["installed", "updated", "unchanged", "kept"]
 
 
-class SkillError(IrsimError, ValueError):
-    """A skill that this package does not have."""
-
-    code = "unknown-skill"
+class SkillError(CodedError, ValueError):
+    """The package has no such skill."""
 
 
-class PlaceError(IrsimError, OSError):
+class PlaceError(CodedError, OSError):
     """Skills cannot be put into a folder."""
-
-    code = "file-access"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +99,8 @@ def find_skills(names: Iterable[str] = ()) -> list[Skill]:
     for name in wanted:
         if name not in known:
             near = nearest(name, list(known))
-            fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
-            raise SkillError(f"there is no skill {name!r}; {fix}")
+            fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"
+            raise SkillError("unknown-skill", f"there is no skill {name!r}", fix)
     return [_read(known[name]) for name in wanted]
 
 
@@ -147,11 +143,9 @@ def _check(place: Path) -> None:
             return
         if path.is_symlink():
             target = os.readlink(path)
-            raise PlaceError(
-                f"'{path}' is a link to '{target}', which is no folder; make that folder, or remove the link: "
-                f"rm '{path}'"
-            )
-        raise PlaceError(f"'{path}' is a file where a folder must be; move it away")
+            what = f"'{path}' is a link to '{target}', which is not a folder"
+            raise PlaceError("file-access", what, f"make that folder, or remove the link: rm '{path}'")
+        raise PlaceError("file-access", f"'{path}' is a file where a folder must be", "move it away")
 
 
 def _read(page: Path) -> Skill:

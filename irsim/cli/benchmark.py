@@ -14,7 +14,7 @@ from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+    from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
 
 __all__ = ["benchmark", "show_benchmark"]
 

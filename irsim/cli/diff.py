@@ -10,7 +10,7 @@ from irsim.cli.guard import FAILED
 from irsim.cli.options import Json, Seed
 
 if TYPE_CHECKING:
-    from irsim.results.results import ScenarioDiff
+    from irsim.results.diff import ScenarioDiff
 
 __all__ = ["diff"]
 

@@ -7,24 +7,19 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from irsim.cli.output import has_colors
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
-    from irsim.results.results import Finding, ValidationReport
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
 
 
-class UserImportError(IrsimError, ImportError):
-    """A module named by ``--import`` cannot be imported.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    code = "import-failed"
+class UserImportError(CodedError, ImportError):
+    """A module named by ``--import`` cannot be imported."""
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, stderr: bool = False) -> None:
@@ -89,7 +84,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
         try:
             import_modules([name])
         except Exception as error:
-            raise UserImportError(f"import-failed: --import {name}: {type(error).__name__}: {error}") from error
+            raise UserImportError("import-failed", f"--import {name}: {type(error).__name__}: {error}") from error
 
 
 def limits_for(max_objects: int | None) -> Limits | None:
@@ -103,7 +98,8 @@ def limits_for(max_objects: int | None) -> Limits | None:
 
 def not_found(file: str, message: str) -> ValidationReport:
     """Return the report on a file that does not exist."""
-    from irsim.results.results import Finding, ValidationReport
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
 
     finding = Finding(
         code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message

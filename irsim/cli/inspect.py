@@ -11,7 +11,7 @@ from irsim.cli.options import Json
 from irsim.runs.files import RunError
 
 if TYPE_CHECKING:
-    from irsim.results.results import RunTable
+    from irsim.results.run import RunTable
 
 __all__ = ["inspect"]
 

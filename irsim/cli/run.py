@@ -14,7 +14,7 @@ from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Stri
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import RunResult
+    from irsim.results.run import RunResult
 
 __all__ = ["run", "show_result"]
 

@@ -15,7 +15,7 @@ from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import DryRun, ValidationReport
+    from irsim.results.validation import DryRun, ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["validate"]

@@ -1,4 +1,4 @@
-"""From a finished environment to a :class:`irsim.results.results.RunResult`: who arrived, who did not, and why."""
+"""From a finished environment to a :class:`irsim.results.run.RunResult`: who arrived, who did not, and why."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from numpy.typing import NDArray
 
 from irsim.common.text import clean, seconds
 from irsim.episodes.episode import seed_of
-from irsim.episodes.out_of_bounds import MOST_LEFT, left_told, left_world
+from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
 from irsim.episodes.stuck import (
-    circling,
-    gets_nowhere_since,
-    in_the_way,
-    jam_told,
-    jammed,
-    lacks_heading,
-    moves_by_itself,
+    find_circling,
+    find_jammed,
+    find_obstruction,
+    heading_message,
+    is_moving_obstacle,
+    jam_message,
+    no_progress_since,
 )
-from irsim.results.results import EventRecord, Finding, HorizonSource, Left, RobotResult, RunResult
+from irsim.results.findings import Finding
+from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.simulation.events import Event, first_events, passable_names
 from irsim.simulation.outcome import robot_outcomes
@@ -84,7 +85,7 @@ def run_result(
     events = env.events
     hits, counts = _collisions(env, events)
     told = _without_repeats(env.scenario, events)
-    held = jammed(env.simulation, events)
+    held = find_jammed(env.simulation, events)
     parked = [record.name for record in env.scenario.robots() if env.scenario.parked(record)]
     robots = _robots(env, events, counts, parked)
     left = _left(env)
@@ -111,7 +112,7 @@ def run_result(
         robots=robots,
         parked=parked,
         jammed=list(held),
-        left=left[:MOST_LEFT],
+        left=left[:MAX_LISTED_EXITS],
         events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in told[:_MAX_EVENTS]],
         event_count=len(told),
         warnings=warnings,
@@ -191,7 +192,7 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
 
 def _nearest(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | None]:
     """For each robot, by row, what it came nearest to until it arrived; empty in very large runs."""
-    from irsim.metrics.clearance import least
+    from irsim.metrics.clearances import least
 
     state, rows, steps = env.simulation.state, [view.row for view in env.robot_list], int(env.simulation.count[0])
     if not rows or (steps + 1) * env.simulation.objects > _MOST_POSES:
@@ -241,7 +242,7 @@ def _left(env: Env) -> list[Left]:
         past = [] if large and records[row].role != "robot" else [simulation.state.trajectory(row)[:, :3]]
         return np.vstack([simulation.state.initial_state(row)[None, :3], *past])
 
-    return left_world(env.scenario, track, int(simulation.count[0]))
+    return find_exits(env.scenario, track, int(simulation.count[0]))
 
 
 def _summary(
@@ -257,13 +258,13 @@ def _summary(
     told = [_arrivals(robots, env.sim_time, parked)]
     if hit := _first_hit({robot.name for robot in robots}, hits):
         told.append(hit)
-    if out := left_told(env.scenario, left):
+    if out := exits_message(env.scenario, left):
         told.append(out)
     if gone := _gone_again(env, robots):
         told.append(gone)
     if others := others_arrived(env.scenario, events):
         told.append(others)
-    if jam := jam_told(env.simulation, held):
+    if jam := jam_message(env.simulation, held):
         told.append(jam)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
     return changed + "; ".join(told)
@@ -318,7 +319,9 @@ def others_arrived(scenario: ResolvedScenario, events: Sequence[Event]) -> str |
         events: What happened.
     """
     walking = {
-        record.name for record in scenario.objects if moves_by_itself(record) and record.goals and has_one_end(record)
+        record.name
+        for record in scenario.objects
+        if is_moving_obstacle(record) and record.goals and has_one_end(record)
     }
     if not walking:
         return None
@@ -399,7 +402,7 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
     if speed >= standing:
         if circle := _circle(env, view, events):
             return f"circles its goal: {circle}"
-        if gets_nowhere_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
+        if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
             return f"still moved at {speed:.2g} m/s, {place}"
         return f"hardly moves {place}{_held_up(env, view, held)}"
     if record.kinematics is None:
@@ -409,15 +412,15 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
     row = view.row
-    if off := lacks_heading(record, env.simulation.pose[row], env.simulation.state.goal[row]):
+    if off := heading_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
         return f"stands still {place}: {off}"
     return f"stands still {place}{_held_up(env, view, held)}"
 
 
 def _held_up(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
     """That someone who stands since a collision is in the way of a robot; empty if nobody is."""
-    near = in_the_way(env.simulation, view.row, held) if held else None
-    return f", and {near.told}" if near is not None and near.held else ""
+    near = find_obstruction(env.simulation, view.row, held) if held else None
+    return f", and {near.message}" if near is not None and near.held else ""
 
 
 def _circle(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
@@ -426,8 +429,8 @@ def _circle(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
         return None
     turns = (e.step for e in reversed(events) if e.kind == "waypoint" and e.object == view.name)
     track = env.simulation.state.trajectory(view.row)[next(turns, 0) :, :3]
-    circle = circling(track, view.goal[:2, 0])
-    return None if circle is None else circle.told
+    circle = find_circling(track, view.goal[:2, 0])
+    return None if circle is None else circle.message
 
 
 def _inside(env: Env, robot: RobotResult) -> bool:

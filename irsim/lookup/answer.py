@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from irsim.common.text import clean
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
@@ -61,18 +61,16 @@ class Answer(_Data):
     """Related topics."""
 
 
-class TopicError(IrsimError, LookupError):
-    """The topic is unknown.
+class TopicError(CodedError, LookupError):
+    """No topic has that name.
 
     Attributes:
-        code: Code from the closed list in :mod:`irsim.diagnostics.codes`.
-        message: Description of the error.
         near: Topics with similar names.
     """
 
     code = "unknown-topic"
 
     def __init__(self, topic: str, near: Sequence[str]) -> None:
-        hint = f" Did you mean {' or '.join(near)}?" if near else " 'irsim describe' lists all topics."
-        self.message, self.near = f"{clean(topic)!r} is not a topic", list(near)
-        super().__init__(f"{self.code}: {self.message}.{hint}")
+        self.near = list(near)
+        fix = f"did you mean {' or '.join(near)}?" if near else "irsim describe lists all topics"
+        super().__init__(self.code, f"{clean(topic)!r} is not a topic", fix)

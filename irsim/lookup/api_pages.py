@@ -72,7 +72,7 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Return the pages of the skill ``irsim-benchmark``."""
-    from irsim.results import results
+    from irsim.results import benchmark
 
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
@@ -101,11 +101,11 @@ def comparisons() -> Pages:
             *(
                 f"## {name}\n\n{_one_line(model.__doc__)}\n\n{_fields(model)}"
                 for name, model in (
-                    ("BenchmarkResult", results.BenchmarkResult),
-                    ("BenchmarkRow", results.BenchmarkRow),
-                    ("Proportion", results.Proportion),
-                    ("Estimate", results.Estimate),
-                    ("EpisodeRow", results.EpisodeRow),
+                    ("BenchmarkResult", benchmark.BenchmarkResult),
+                    ("BenchmarkRow", benchmark.BenchmarkRow),
+                    ("Proportion", benchmark.Proportion),
+                    ("Estimate", benchmark.Estimate),
+                    ("EpisodeRow", benchmark.EpisodeRow),
                 )
             ),
         ),
@@ -156,7 +156,7 @@ def _signature(member: Any) -> str:
     shown = []
     starred = False
     for parameter in inspect.signature(member).parameters.values():
-        if parameter.name == "self":
+        if parameter.name in ("self", "env"):
             continue
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:
             shown.append("*")

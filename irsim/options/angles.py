@@ -1,4 +1,4 @@
-"""Angles of a whole turn at most, as sensors and fields of view take them."""
+"""Angles of at most a full turn, as sensors and fields of view take them."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from irsim.options.units import Radians
 __all__ = ["FULL_TURN", "SpanAngle", "is_span", "wrap"]
 
 FULL_TURN = 2 * math.pi
-_ROUNDING = 0.02  # 6.28, 6.2832 and 6.3 all mean a full turn
+_ROUNDING = 0.02
+"""Excess over a full turn that counts as rounding: 6.28, 6.2832 and 6.3 all mean a full turn [rad]."""
 
 
 def wrap(angle: float) -> float:
-    """The same direction in [-pi, pi)."""
+    """The angle of the same direction in [-pi, pi)."""
     return (angle + math.pi) % FULL_TURN - math.pi
 
 
 def is_span(angle: float) -> bool:
-    """Whether an opening angle is a full turn at most, give or take what is lost in rounding."""
+    """Whether an opening angle is at most a full turn, apart from rounding."""
     return angle <= FULL_TURN + _ROUNDING
 
 

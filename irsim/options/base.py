@@ -24,11 +24,11 @@ __all__ = ["SCHEMA_PARTS", "Options", "SchemaParts", "field_docs", "open_options
 
 @dataclass
 class SchemaParts:
-    """A schema in the making.
+    """The shared parts of a schema that is being made.
 
     Attributes:
-        makers: Parts that it refers to by name, and what makes them.
-        user_code: Whether names that user code has registered in this process belong into it.
+        makers: Name of each part that the schema refers to -> function that makes the part.
+        user_code: Whether the schema includes names that user code has registered in this process.
     """
 
     makers: dict[str, Callable[[], dict[str, Any]]]
@@ -36,11 +36,11 @@ class SchemaParts:
 
 
 SCHEMA_PARTS: ContextVar[SchemaParts | None] = ContextVar("SCHEMA_PARTS", default=None)
-"""The schema that is being made; None when nobody makes one."""
+"""The parts of the schema that is being made; None if none is being made."""
 
 
 def shared_schema(name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """A reference to a part of the schema that occurs more than once; the part itself where none is collected."""
+    """A reference to a part of the schema that may occur several times; the part itself if none are collected."""
     parts = SCHEMA_PARTS.get()
     if parts is None:
         return make()
@@ -51,22 +51,22 @@ def shared_schema(name: str, make: Callable[[], dict[str, Any]]) -> dict[str, An
 class Options(BaseModel):
     """Keys of one mapping of a scenario.
 
-    Every field is documented by the string below it. These strings are read from the source when someone asks
-    (:func:`field_docs`, the JSON Schema), not when the class is made: a run needs none of them.
+    Every field is documented by the string below it. These strings are read from the source on request
+    (:func:`field_docs`, the JSON Schema), not when the class is made, because a run needs none of them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True, protected_namespaces=())
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
-        """Itself: options never change, so defaults need no copies."""
+        """The options themselves: they never change, so defaults need no copies."""
         return self
 
     schema_extra: ClassVar[dict[str, Any]] = {}
-    """What the schema says about the mapping besides its keys: examples."""
+    """Additions to the JSON Schema of the mapping, such as examples."""
     also_called: ClassVar[dict[str, str]] = {}
-    """Words that people write for keys of this mapping, and the keys they mean."""
+    """Common wrong names of keys of this mapping -> the right key."""
     any_case: ClassVar[bool] = False
-    """Whether upper case is accepted in ``name``."""
+    """Whether ``name`` may contain upper-case letters."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
@@ -95,21 +95,21 @@ def problem(code: str, message: str, **details: Any) -> PydanticCustomError:
     Args:
         code: From :data:`irsim.diagnostics.codes.CODES`.
         message: One sentence.
-        **details: ``allowed`` and ``fix`` of the diagnostic; ``replace``: a better value, or ``rename``: a better key;
-            ``tolerated``: IR-SIM 2.12 carries on with the better value, or ``tolerated_as``: with another one.
+        **details: ``allowed`` and ``fix`` of the diagnostic; ``replace``, a better value, or ``rename``, a better key;
+            ``tolerated`` if IR-SIM 2.12 continues with the better value, or ``tolerated_as``, the value it uses.
     """
     return PydanticCustomError(code, "{message}", {"message": message, **details})
 
 
 @cache
 def open_options(model: type[BaseModel]) -> type[BaseModel]:
-    """The same model with any other key, for code of users that takes the place of what is built in."""
+    """A copy of a model that accepts any other key, for user code that replaces a built-in feature."""
     return create_model(model.__name__, __base__=model, __module__=model.__module__, __cls_kwargs__={"extra": "allow"})
 
 
 @cache
 def field_docs(model: type[BaseModel]) -> dict[str, str]:
-    """The documentation of each field of ``model``, its own and inherited; missing ones are left out."""
+    """The documentation of the fields of ``model``, own and inherited; undocumented fields are left out."""
     docs: dict[str, str] = {}
     for cls in reversed(model.__mro__):
         if not (issubclass(cls, BaseModel) and inspect.get_annotations(cls)):

@@ -1,7 +1,7 @@
-"""One registry per kind of feature: YAML name → options model, and what computes it.
+"""One registry per kind of feature: YAML name → options model, and the kernel or function that computes it.
 
-Built-in features are modules of a package, found by file name and imported when first asked for, so that a scenario
-pays only for what it uses. Plug-ins come through decorators or the entry-point group of the registry.
+Built-in features are modules of a package, found by file name and imported on first use, so that a scenario imports
+only what it needs. Plug-ins come through decorators or the entry-point group of the registry.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ __all__ = [
 
 
 Pair = tuple[str, str]
-"""Kinematics and name."""
+"""Kinematics and name of a behavior."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Feature:
         options: pydantic model of its keys; the docstring and field docstrings are its documentation.
         kernel: Class of the core that holds the same options for the native kernel, or None.
         function: Python function that computes it, or None.
-        origin: ``"built-in"`` or the plug-in that brought it.
+        origin: ``"built-in"``, or the module of the plug-in that registered it.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Feature:
 
     @property
     def simulated(self) -> bool:
-        """Whether this version computes it."""
+        """Whether this version simulates the feature."""
         return self.kernel is not None or self.function is not None
 
 
@@ -87,7 +87,7 @@ class Registry:
         decorator then adds the Python function that computes it.
 
         Raises:
-            ValueError: The name is taken by another model.
+            ValueError: Another model already has the name.
         """
         name = str(options.model_fields["name"].default) if name is None else name
         known = self._features.get(name)
@@ -104,7 +104,7 @@ class Registry:
         return add
 
     def replace(self, options: type[BaseModel], name: str, function: Callable[..., Any]) -> None:
-        """Register what user code defines, also over an earlier definition of its own.
+        """Register a feature of user code, replacing an earlier one of that name.
 
         Raises:
             ValueError: The name is that of a built-in feature.
@@ -119,7 +119,7 @@ class Registry:
         return sorted({*self.installed(), *self._features})
 
     def installed(self) -> list[str]:
-        """Names that are there in every process, sorted: built-in and offered by installed plug-ins."""
+        """Names that exist in every process, sorted: built-in, and offered by installed plug-ins."""
         builtin = (
             info.name
             for info in pkgutil.iter_modules(importlib.import_module(self.package).__path__)
@@ -128,7 +128,7 @@ class Registry:
         return sorted({*builtin, *self._plugin_entries()})
 
     def get(self, name: str) -> Feature | None:
-        """The feature, imported on first use; None when there is none of that name."""
+        """The feature, imported on first use; None if no feature has that name."""
         if name in self._features:
             return self._features[name]
         if name.isidentifier() and not name.startswith("_"):
@@ -157,13 +157,13 @@ class Registry:
 class CustomBehaviors:
     """Behaviors that user code registered the 2.12 way: functions and classes by kinematics and name.
 
-    A class (or any factory) is called once per object, or per group, and returns what is then called in every step.
-    Classes win over functions, and both over the built-in behavior of that name.
+    A class (or any factory) is called once per object, or per group, and returns a callable for every step. Classes
+    take precedence over functions, and both over the built-in behavior of that name.
 
     Args:
         kind: Singular word for messages: ``behavior``.
-        functions_taken: Pairs of kinematics and name that IR-SIM has as functions of its own.
-        classes_taken: Those that it has as classes.
+        functions_taken: Pairs of kinematics and name that are built in as functions.
+        classes_taken: Pairs of kinematics and name that are built in as classes.
     """
 
     def __init__(self, kind: str, functions_taken: Iterable[Pair] = (), classes_taken: Iterable[Pair] = ()) -> None:
@@ -173,18 +173,18 @@ class CustomBehaviors:
         self._taken = frozenset(functions_taken), frozenset(classes_taken)
 
     def register(self, kinematics: str, name: str, function: Callable[..., Any]) -> None:
-        """Make ``function`` the behavior ``name`` of objects with these kinematics.
+        """Register ``function`` as the behavior ``name`` of objects with these kinematics.
 
         Raises:
-            ValueError: There is one of that name, built-in or registered before.
+            ValueError: The name is taken, by a built-in behavior or by an earlier registration.
         """
         self._add(self.functions, self._taken[0], (kinematics, name), function)
 
     def register_class(self, kinematics: str, name: str, maker: Callable[..., Any]) -> None:
-        """The same for a class or another factory.
+        """Register a class or another factory as the behavior ``name`` of objects with these kinematics.
 
         Raises:
-            ValueError: There is one of that name.
+            ValueError: The name is taken, by a built-in behavior or by an earlier registration.
         """
         self._add(self.classes, self._taken[1], (kinematics, name), maker)
 
@@ -196,7 +196,7 @@ class CustomBehaviors:
         table[key] = value
 
     def function(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
-        """The function registered by user code, or None."""
+        """The function that user code has registered, or None."""
         key = (kinematics or "static", name)
         found = self.functions.get(key)
         if (
@@ -208,7 +208,7 @@ class CustomBehaviors:
         return found
 
     def maker(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
-        """The class or factory registered by user code, or None."""
+        """The class or factory that user code has registered, or None."""
         found = self.classes.get((kinematics or "static", name))
         return None if getattr(found, "__module__", "").startswith("irsim.objects.handlers.") else found
 
@@ -220,7 +220,7 @@ class CustomBehaviors:
         return {pair for pair in {*self.functions, *self.classes} if self.has(*pair)}
 
     def names(self, kinematics: str | None = None) -> list[str]:
-        """Names registered for these kinematics, sorted; for any kinematics without an argument."""
+        """Names registered for these kinematics, sorted; without an argument, for any kinematics."""
         return sorted({name for drive, name in self._pairs() if kinematics in (None, drive)})
 
     def drives(self, name: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Mappings that pick their model by name: ``kinematics: {name: diff, ...}`` becomes the options model of ``diff``."""
+"""Mappings whose ``name`` selects their model: ``kinematics: {name: diff, ...}`` becomes the options of ``diff``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from irsim.options.registry import CustomBehaviors, Registry
 __all__ = ["Choices", "Select"]
 
 _NAME_WORDS = ("type", "kind")
-"""What people write for the key ``name``."""
+"""Common wrong names of the key ``name``."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Choice:
 
 
 class Choices:
-    """A fixed set of models with the interface of a registry, for places that take only these.
+    """A fixed set of models with the interface of a registry, for keys that accept only these.
 
     Args:
         kind: Singular word for messages: ``part``.
@@ -44,7 +44,7 @@ class Choices:
         return sorted(self.models)
 
     def installed(self) -> list[str]:
-        """The same: nobody registers anything here."""
+        """All names, sorted: nothing can be registered here."""
         return self.names()
 
     def get(self, name: str) -> Choice | None:
@@ -56,18 +56,19 @@ class Select:
     """Type metadata: a mapping validated by the options model that a registry has under its ``name``.
 
     Args:
-        registry: Where names come from; a feature is imported when a scenario names it.
-        default: Name of a mapping without one; None if the name is required.
-        folded: Names are compared in lower case.
+        registry: Registry of the names; a feature is imported when a scenario names it.
+        default: Name if a mapping gives none; None if the name is required.
+        folded: Whether names are compared in lower case.
         alias: Another key that may hold the name.
-        custom: Names registered by user code; their mappings become ``fallback``, or take any key where it is built in.
-        fallback: Model of custom and unknown names, which are accepted where it is given.
+        custom: Names registered by user code. Their mappings become ``fallback``; if the name is built in as well, they
+            become its model with any additional key.
+        fallback: Model of custom and unknown names; without it unknown names are errors.
         exclude: Names of the registry that are not accepted here.
-        null: null is accepted and stays None.
-        empty: An empty mapping is accepted and becomes None.
-        short: A text alone stands for a mapping with this name (None: the text is the name) and the text under this
-            key.
-        trait: Class attribute that must be true of the models the schema offers; the checks say so of others.
+        null: Whether null is accepted; it stays None.
+        empty: Whether an empty mapping is accepted; it becomes None.
+        short: Meaning of a text instead of a mapping: (name, key) makes ``{name: name, key: text}``; if the name is
+            None, ``{key: text}``.
+        trait: Class attribute that is true for the models that the schema offers; the checks report others.
     """
 
     def __init__(
@@ -90,12 +91,12 @@ class Select:
         self.null, self.empty, self.short, self.trait = null, empty, short, trait
 
     def names(self) -> list[str]:
-        """Every name accepted here, user code's included."""
+        """Every name accepted here, with those of user code."""
         custom = self.custom.names() if self.custom is not None else []
         return sorted({*(n for n in self.registry.names() if n not in self.exclude), *custom})
 
     def name_of(self, value: Mapping[str, Any]) -> Any:
-        """The name a mapping goes by."""
+        """The name that selects the model of a mapping."""
         name = value.get("name")
         if name is None and self.alias is not None:
             name = value.get(self.alias)
@@ -106,7 +107,7 @@ class Select:
         return name
 
     def model_for(self, value: Mapping[str, Any]) -> type[BaseModel] | None:
-        """The model that validates ``value``, or None if its name is unknown."""
+        """The model that validates ``value``; None if its name is unknown."""
         name = self.name_of(value)
         if not isinstance(name, str) or name in self.exclude:
             return None
@@ -116,10 +117,11 @@ class Select:
         return feature.options if feature is not None else self.fallback
 
     def validate(self, value: Any) -> BaseModel | None:
-        """The options model for ``value``; None for null or ``{}`` where these are accepted.
+        """The options model for ``value``; None for null or ``{}`` if these are accepted.
 
         Raises:
-            PydanticCustomError, ValidationError: Not a mapping, no or an unknown name, or wrong keys.
+            PydanticCustomError: ``value`` is not a mapping.
+            ValidationError: The name is missing or unknown, or a key is wrong.
         """
         if isinstance(value, BaseModel) or (value is None and self.null):
             return value
@@ -134,7 +136,8 @@ class Select:
         if isinstance(value, str):
             raise self._name_alone(value)
         if not isinstance(value, Mapping):
-            raise problem("not-a-mapping", f"'{kind}' is a mapping with a name", allowed=f"{{name: <{kind}>, ...}}")
+            message = f"'{kind}' must be a mapping with a name"
+            raise problem("not-a-mapping", message, allowed=f"{{name: <{kind}>, ...}}")
         if self.default is not None and "name" in value and value["name"] is None:
             empty = problem(
                 "wrong-type",
@@ -149,7 +152,7 @@ class Select:
             if self.alias is None and "name" not in value and isinstance(value.get(other), str):
                 wrong = problem(
                     "unknown-key",
-                    f"'{other}' is not a key of '{kind}': which one it is stands under 'name'",
+                    f"'{other}' is not a key of '{kind}': its kind is given under 'name'",
                     allowed=self.names(),
                     fix="rename it to 'name'",
                     rename="name",
@@ -169,11 +172,11 @@ class Select:
         return {**value, "name": name}
 
     def _name_alone(self, word: str) -> PydanticCustomError:
-        """A word where a mapping belongs; an unknown one becomes the name most like it."""
+        """The error for a word instead of a mapping; its fix uses the most similar name."""
         kind, names = self.registry.kind, self.names()
         known = word in names or self.name_of({"name": word}) in names
         near = word if known else nearest(word, names)
-        message = f"'{kind}' is a mapping with a name, not the name alone"
+        message = f"'{kind}' must be a mapping with a name, not the name alone"
         field = None if self.fallback is None else self.fallback.model_fields.get(word)
         if near is None and field is not None and field.default is False:
             fix = f"write {{name: <{kind}>, {word}: true}}: '{word}' is a key of every {kind}"
@@ -187,12 +190,12 @@ class Select:
         )
 
     def _unknown(self, name: Any, *, alone: bool) -> PydanticCustomError:
-        """What to say of a name that nobody knows; ``alone``: it stands where its mapping might."""
+        """The error for an unknown name; ``alone`` if the name is given instead of a mapping."""
         names, kind = self.names(), self.registry.kind
         near = nearest(name, names)
         message = f"'{name}' is not {'one of the kinematics' if kind == 'kinematics' else f'a {kind}'}"
         if name in self.exclude:
-            message = f"'{name}' is a {kind}, but not one that can stand here"
+            message = f"'{name}' is a {kind}, but it cannot be used here"
         return problem(
             f"unknown-{kind}",
             message,
@@ -241,7 +244,7 @@ class Select:
         return shared_schema(model.__name__, model.model_json_schema)
 
     def _option_schema(self, name: str) -> JsonSchemaValue:
-        """The model of one name, with what makes a mapping be of that name."""
+        """The schema of one model, with the condition that a mapping has its name."""
         feature = self.registry.get(name)
         assert feature is not None
         reference = self._model_schema(feature.options)

@@ -38,7 +38,7 @@ def vector(units: Sequence[str], low: int, high: int | None = None) -> Any:
 
 
 Component = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-"""A number of a vector, whose units stand with the vector."""
+"""A number of a vector; the vector states the units."""
 Point = Annotated[list[Component], vector(("m", "m"), 2)]
 Offset = Annotated[list[Component], vector(("m", "m", "rad"), 3)]
 Pose = Annotated[list[Component], vector(("m", "m", "rad"), 2, 3)]
@@ -46,7 +46,7 @@ Range = Annotated[list[Component], vector(("rad", "rad"), 2)]
 
 
 def is_vector(value: Any) -> bool:
-    """Whether a list is one vector by the spreading rule: all its elements are numbers (also when it is empty)."""
+    """Whether a value is one vector by the spreading rule: a list of only numbers, or an empty list."""
     return isinstance(value, (list, tuple)) and all(isinstance(item, (int, float)) for item in value)
 
 
@@ -59,12 +59,12 @@ def _tag_numbers(value: Any) -> str:
 
 
 def _tag_lists(value: Any) -> str:
-    """For keys that take a list of things: a list that holds lists is one list per object."""
+    """Tag for keys that take a list of items: a list that holds lists is one list per object."""
     return PER_OBJECT if _holds_list(value) else ONE
 
 
 def _tag_paths(value: Any) -> str:
-    """For keys that take a list of vectors: a list that holds lists of vectors is one list per object."""
+    """Tag for keys that take a list of vectors: a list that holds lists of vectors is one list per object."""
     return PER_OBJECT if isinstance(value, (list, tuple)) and any(_holds_list(item) for item in value) else ONE
 
 
@@ -73,7 +73,7 @@ def _holds_list(value: Any) -> bool:
 
 
 def _tag_vectors(value: Any) -> str:
-    """For keys that take a vector: text among the numbers is a wrong number, not the value of an object."""
+    """Tag for keys that take a vector: text among the numbers is a wrong number, not the value of one object."""
     per_object = isinstance(value, (list, tuple)) and any(_separate(item) for item in value)
     return PER_OBJECT if per_object else ONE
 
@@ -92,7 +92,7 @@ _DISCRIMINATORS = {
 
 
 _CONTAINED = {"list": {"type": "array"}, "path": {"type": "array", "contains": {"type": "array"}}}
-"""What tells a list of lists per object from one list, to a schema."""
+"""Schema of the elements that distinguish one list per object from a single list."""
 
 
 class PerObject:
@@ -100,9 +100,8 @@ class PerObject:
 
     Args:
         item: Type of one value.
-        kind: What one value is. ``value``: not a list, or a vector, by the general rule. ``vector``: the same, and
-            certainly a vector. ``number``: a list of plain
-            numbers is one number per object, not a vector. ``list``: a list of things. ``path``: a list of vectors.
+        kind: Kind of one value. ``value``: not a list, or a vector. ``vector``: always a vector. ``number``: a number,
+            so a list of numbers is one number per object. ``list``: a list of items. ``path``: a list of vectors.
     """
 
     def __init__(self, item: Any, kind: Literal["value", "vector", "number", "list", "path"] = "value") -> None:
@@ -131,7 +130,7 @@ def any_of(union: JsonSchemaValue) -> JsonSchemaValue:
 
 
 class OrNull:
-    """Type metadata: null is accepted and means ``default``."""
+    """Type metadata of a key for which null is accepted and means ``default``."""
 
     def __init__(self, default: Any) -> None:
         self.default = default

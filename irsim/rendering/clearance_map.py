@@ -12,7 +12,7 @@ from contourpy import FillType, LineType, contour_generator
 import irsim._core as core
 from irsim.graphics.scene.scene import Bounds, Floats, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
-from irsim.metrics.roles import STATIC, company_of
+from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class FreeSpace:
 
     def __init__(self, simulation: Simulation, world: int, box: Bounds, radius: float) -> None:
         first, records = world * simulation.objects, simulation.scenario.objects
-        static = [i for i in np.flatnonzero(company_of(records) == STATIC).tolist() if records[i].static]
+        static = [i for i in np.flatnonzero(kinds_of(records) == STATIC).tolist() if records[i].static]
         parts = [part for i in static for part in placed_parts(simulation.state, first + i, world_frame=True)]
         width, height = box[2] - box[0], box[3] - box[1]
         size = max(math.sqrt(width * height / MAX_CELLS), radius / _CELLS_PER_RADIUS)

@@ -43,7 +43,8 @@ class PlotSteps:
         def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
             """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
-        def _synced(self) -> Any: ...
+        def synced_figure(self) -> Any:
+            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
     @property
     def x_range(self) -> list[float]:
@@ -71,7 +72,7 @@ class PlotSteps:
             **kwargs: Object plot keys that stay in force until the next call.
         """
         self.update(mode, **kwargs)
-        self._synced()
+        self.synced_figure()
         own = {id(view) for view in views(self.env.simulation)}
         for view in objects or ():
             if id(view) not in own:
@@ -103,7 +104,7 @@ class PlotSteps:
             if mode == "all" or (mode == "static") == view.static:
                 self._hidden.add(view.id)
                 view.plot_clear(all=True)
-        self._synced()
+        self.synced_figure()
 
     def _without_hidden(self, scene: Scene) -> Scene:
         for name in ("marks", "beams", "labels", "pictures", "grids") if self._hidden else ():
@@ -112,11 +113,11 @@ class PlotSteps:
 
     def step_world_plot(self) -> None:
         """Bring the fog and everything else up to date."""
-        self._synced()
+        self.synced_figure()
 
     def update_title(self) -> None:
         """Bring the title and everything else up to date."""
-        self._synced()
+        self.synced_figure()
 
     def set_ax_viewpoint(self, objects: Iterable[Any] | None = None) -> None:
         """Centre the view on the ``viewpoint`` of the scenario.
@@ -124,7 +125,7 @@ class PlotSteps:
         Args:
             objects: Ignored; IR-SIM 2.12 searched the viewpoint among them.
         """
-        self._synced()
+        self.synced_figure()
 
     def draw_grid_map(self, grid_map: Any = None, **kwargs: Any) -> None:
         """Draw an additional map over the whole world.
@@ -134,7 +135,7 @@ class PlotSteps:
             **kwargs: Properties of the image: ``alpha``, ``cmap``, ``zorder``, …
         """
         if grid_map is None:
-            self._synced()
+            self.synced_figure()
             return
         levels = np.clip(np.asarray(grid_map), 0, 100).astype(np.uint8)
         layer = GridLayer(self.ax, 0.0)
@@ -151,7 +152,7 @@ class PlotSteps:
             **kwargs: ``color`` and ``alpha``.
         """
         if fog_map is None:
-            self._synced()
+            self.synced_figure()
             return
         x, y = fog_map.world_offset
         extent = x, x + fog_map.width, y, y + fog_map.height

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.animation import AnimationOptions, FrameBuffer, check_suffix
-from irsim.graphics.encoding.picture_files import replacing
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.encoding.png import png_bytes
 from irsim.graphics.encoding.video import VIDEO_OPTIONS

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import reduce_colors
-from irsim.graphics.encoding.picture_files import replacing
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure, fitting_size
 from irsim.graphics.figure.layers import opaque_colors

@@ -1,4 +1,4 @@
-"""One scenario under one behavior: the scenario as written, or with another behavior for every robot."""
+"""Reads a scenario as written, or with another behavior for every robot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
@@ -32,28 +32,20 @@ AS_WRITTEN = "as-written"
 """Stands for the behaviors that the scenario itself gives its robots."""
 _FIX = "give a name such as orca, or {name: orca, timeHorizon: 5}, or as-written for the scenario's own"
 _KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
-"""What a robot is to do, whatever decides how: kept when its behavior is replaced."""
+"""Options that say what a robot does, not how; they are kept when its behavior is replaced."""
 
 
-class BenchmarkError(IrsimError, ValueError):
-    """A benchmark, or an episode with another behavior, that cannot be run as asked.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to ask for instead.
-        where: Which argument it is about; None if there may be several.
-    """
+class BenchmarkError(CodedError, ValueError):
+    """A benchmark, or an episode with another behavior, cannot be run as requested."""
 
     code = "bad-argument"
 
     def __init__(self, message: str, fix: str, where: str | None = None) -> None:
-        self.message, self.fix, self.where = message, fix, where
-        super().__init__(f"{self.code}: {message}. Fix: {fix}{'' if fix.endswith('?') else '.'}")
+        super().__init__(self.code, message, fix, where=where)
 
 
 def behavior_of(text: str) -> dict[str, Any] | None:
-    """What a behavior given as text stands for.
+    """The mapping that a behavior given as text means.
 
     Args:
         text: A name (``orca``), a name with options in YAML (``{name: orca, timeHorizon: 5}``), or ``as-written``.
@@ -62,47 +54,47 @@ def behavior_of(text: str) -> dict[str, Any] | None:
         The mapping to write under ``behavior``; None for ``as-written``.
 
     Raises:
-        BenchmarkError: It is neither.
+        BenchmarkError: The text is none of these.
     """
     text = text.strip()
     if text == AS_WRITTEN:
         return None
     if not text.startswith("{"):
         if not text or any(character in text for character in " :{}[],"):
-            raise BenchmarkError(f"{text!r} is no behavior", _FIX)
+            raise BenchmarkError(f"{text!r} is not a valid behavior", _FIX)
         return {"name": text}
     from irsim.scenario.yaml.document import load_text
 
     document = load_text(text)
     if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
-        raise BenchmarkError(f"{text!r} is no behavior", _FIX)
+        raise BenchmarkError(f"{text!r} is not a valid behavior", _FIX)
     return dict(document.data)
 
 
 def text_of(behavior: str | Mapping[str, Any]) -> str:
-    """A behavior as a command line has it.
+    """A behavior as text, as it is written on a command line.
 
     Raises:
-        BenchmarkError: It is neither text nor a mapping.
+        BenchmarkError: The behavior is neither text nor a mapping.
     """
     if isinstance(behavior, str):
         return behavior.strip()
     if isinstance(behavior, Mapping):
         return yaml_flow(behavior)
-    raise BenchmarkError(f"{as_given(behavior)} is no behavior", _FIX)
+    raise BenchmarkError(f"a behavior must be a name or a mapping, got {as_given(behavior)}", _FIX)
 
 
 def check_known(behavior: str) -> None:
-    """Refuse a behavior that nobody has.
+    """Refuse the name of an unknown behavior.
 
     Raises:
-        BenchmarkError: There is none of that name.
+        BenchmarkError: No behavior has that name.
     """
     known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
     name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
     if name not in known:
         near = nearest(name, known)
-        fix = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
+        fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"
         raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
 
 
@@ -116,21 +108,21 @@ def read_with_behavior(
 ) -> tuple[ResolvedScenario, list[Diagnostic]]:
     """The scenario in which every robot that can move follows one behavior, on its own.
 
-    Robots keep what they are to do (goals, ``wander``, ``loop``) and whom they are shown (``target_roles``). All other
-    options are those given, or defaults: also of robots that have the behavior already, with other ones.
+    Robots keep their task (goals, ``wander``, ``loop``) and the roles that they avoid (``target_roles``). All other
+    options are those given here, or defaults, even for robots that already have this behavior with other options.
 
     Args:
-        document: As written.
+        document: The scenario as written.
         behavior: What to write under ``behavior`` of every robot; None leaves everything as it is.
-        strict: Refuse what IR-SIM would ignore.
+        strict: Treat what IR-SIM 2.12 ignores as an error.
 
     Returns:
-        The scenario, and warnings and hints about it.
+        The scenario, and the warnings and hints about it.
 
     Raises:
-        ScenarioError: It cannot be used.
-        BenchmarkError: The behavior has an option that does not exist, or cannot be what it is, or cannot drive a robot
-            of this scenario.
+        ScenarioError: The scenario cannot be used.
+        BenchmarkError: The behavior has an unknown option or an invalid value, or cannot drive a robot of this
+            scenario.
     """
     if behavior is None or not isinstance(document.data, Mapping):
         return or_raise(read(document, strict=strict, limits=document.limits))
@@ -138,17 +130,17 @@ def read_with_behavior(
     entries = data.get("robot")
     for entry in entries if isinstance(entries, list) else [entries]:
         if isinstance(entry, dict) and entry.get("kinematics") is not None:
-            _give(entry, behavior)
+            _set_behavior(entry, behavior)
     changed = read(replace(document, data=data, text=None, _root=None), strict=strict, limits=document.limits)
     for item in changed.diagnostics:
-        _blame(item, behavior)
+        _raise_if_about_behavior(item, behavior)
     if changed.scenario is None:
-        or_raise(read(document, strict=strict, limits=document.limits))  # what it finds in the text has lines
+        or_raise(read(document, strict=strict, limits=document.limits))  # these findings have line numbers
     return or_raise(changed)
 
 
-def _blame(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
-    """Raise what is found about the behavior that was given, which no file has: IR-SIM's leniency is not for it."""
+def _raise_if_about_behavior(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
+    """Raise a finding about the given behavior: it is an argument, so IR-SIM's leniency for files does not apply."""
     owner = item.path.index("behavior") + 1 if item.path[:1] == ("robot",) and "behavior" in item.path else None
     if owner is None:
         return
@@ -164,16 +156,16 @@ def _blame(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
     raise BenchmarkError(named + message.rstrip("."), fix.replace(f"{place}.", ""))
 
 
-def _give(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
-    """Let the robots of an entry follow a behavior."""
+def _set_behavior(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
+    """Replace the behavior of the robots of an entry."""
     own, group = entry.pop("behavior", None), entry.pop("group_behavior", None)
     if isinstance(own, list):
-        entry["behavior"] = [_merged(one, group, behavior) for one in own]
+        entry["behavior"] = [_merge_options(one, group, behavior) for one in own]
     else:
-        entry["behavior"] = _merged(own, group, behavior)
+        entry["behavior"] = _merge_options(own, group, behavior)
 
 
-def _merged(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
+def _merge_options(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
     own, group = _mapping(own), _mapping(group)
     kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
     return {**kept, **behavior}

@@ -1,4 +1,4 @@
-"""How much a scenario may ask for before it is refused."""
+"""Upper bounds on what a scenario may ask for; a scenario above them is refused."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Limits:
         objects: Objects of the whole scenario.
         robots: Robots among them.
         problems: Diagnostics reported for one file.
-        root: Folder that files named by the scenario must lie in; None: they may lie anywhere.
-        steps: Steps of one run; None: any number. A run whose horizon is farther away ends there.
-        work: Steps times objects of one run; None: any number.
+        root: Folder that must contain all files named by the scenario; None allows any place.
+        steps: Steps of one run; None for no limit. A run with a longer time horizon ends at this step.
+        work: Steps times objects of one run; None for no limit.
         cells: Cells of a map.
         map_bytes: Size of a map file.
     """

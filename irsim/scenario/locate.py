@@ -1,4 +1,4 @@
-"""Which file a scenario name means: four places, as IR-SIM searches them, and help when none has it."""
+"""Finds the file that a scenario name means, in the four places IR-SIM searches, or suggests similar names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from irsim.diagnostics.errors import ScenarioNotFoundError
 
 __all__ = ["default_name", "locate"]
 
-_NEAR_MATCHES = 3
+_MAX_SUGGESTIONS = 3
+"""Similar file names that the message lists."""
 
 
 def default_name() -> str:
@@ -23,15 +24,15 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
     """The path of a scenario file.
 
     Args:
-        name: As the user wrote it; None for the one named like the running script.
+        name: As the user wrote it; None for the file named like the running script.
 
     Returns:
         The first regular file among: the path as given, below ``sys.path[0]``, below the current directory, beside
         the running script.
 
     Raises:
-        ScenarioNotFoundError: None of them exists (or the path is a directory); the message names the places and
-            files with similar names.
+        ScenarioNotFoundError: None of them exists; the message lists the places searched and files with similar
+            names.
     """
     wanted = os.fspath(name) if name is not None else default_name()
     places = _places()
@@ -40,7 +41,7 @@ def locate(name: str | os.PathLike[str] | None = None) -> str:
         if os.path.isfile(candidate):
             return candidate
     for candidate in candidates:
-        if os.path.exists(candidate):  # a directory or device: reading it says what it is
+        if os.path.exists(candidate):  # a directory or device: reading it reports what it is
             return candidate
     searched = _unique(os.path.dirname(os.path.abspath(candidate)) for candidate in candidates)
     raise ScenarioNotFoundError(_message(wanted, searched))
@@ -78,4 +79,4 @@ def _near(wanted: str, places: list[str]) -> list[str]:
                 found.setdefault(entry, os.path.relpath(os.path.join(place, entry)))
     stem = base.rsplit(".", 1)[0]
     by_stem = {entry.lower().rsplit(".", 1)[0]: entry for entry in found}
-    return [found[by_stem[match]] for match in difflib.get_close_matches(stem, by_stem, _NEAR_MATCHES, 0.5)]
+    return [found[by_stem[match]] for match in difflib.get_close_matches(stem, by_stem, _MAX_SUGGESTIONS, 0.5)]

@@ -1,4 +1,4 @@
-"""From a file name to a scenario ready to build, or an exception that holds every problem."""
+"""Opens a scenario file: returns a scenario ready to build, or raises one exception that holds every problem."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.read import Reading, read
 from irsim.scenario.resolve.resolved import ResolvedScenario
-from irsim.scenario.yaml.document import Document
 
 __all__ = ["open_scenario", "or_raise"]
 
@@ -22,27 +21,24 @@ def open_scenario(
 
     Args:
         name: As the user wrote it; None for the file named like the running script.
-        strict: What IR-SIM would ignore is an error.
-        limits: What to refuse.
+        strict: Treat what IR-SIM 2.12 ignores as an error.
+        limits: Upper bounds; a larger scenario is refused.
 
     Returns:
-        The scenario, and warnings and hints about it.
+        The scenario, and the warnings and hints about it.
 
     Raises:
-        ScenarioNotFoundError: There is none of that name.
-        ScenarioError: It cannot be used; NotSimulatedError when that is only for features still to come.
+        ScenarioNotFoundError: No file has that name.
+        ScenarioError: The scenario cannot be used. NotSimulatedError if its only errors are features that this version
+            does not simulate yet.
     """
     return or_raise(read(locate(name), strict=strict, limits=limits or DEFAULT_LIMITS))
 
 
 def or_raise(reading: Reading) -> tuple[ResolvedScenario, list[Diagnostic]]:
-    """The scenario of a reading and what was found, or the exception for it."""
+    """The scenario and the findings of a reading; raises if the scenario cannot be used."""
     if reading.scenario is None:
         errors = [item for item in reading.diagnostics if item.severity == "error"]
         kind = NotSimulatedError if all(e.code == "not-yet-simulated" for e in errors) else ScenarioError
-        raise kind(reading.diagnostics, _text(reading.document))
+        raise kind(reading.diagnostics, reading.document.text)
     return reading.scenario, reading.diagnostics
-
-
-def _text(document: Document) -> str | None:
-    return document.text

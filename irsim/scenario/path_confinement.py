@@ -11,27 +11,27 @@ from pathlib import Path
 __all__ = ["why_outside"]
 
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
-"""Unicode categories: controls, marks that turn text around, halves of characters, line and paragraph separators."""
+"""Unicode categories: control characters, text-direction marks, lone surrogates, line and paragraph separators."""
 _DRIVE = re.compile(r"[A-Za-z]:")
 _WINDOWS_DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 
 def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None:
-    """Why a file name may not be used by someone confined to ``root``.
+    """The reason why a file name is not allowed in a program confined to ``root``.
 
-    Only relative names that lead downwards pass, and only if no link on the way leads out and what they lead to, where
-    it exists, is an ordinary file or folder.
+    A name is allowed if it is relative and leads downwards, no link on its way leads out of ``root``, and its target,
+    if it exists, is an ordinary file or folder.
 
     Args:
-        name: As somebody wrote it.
-        root: The folder to stay in.
+        name: The name as written.
+        root: The folder that the target must lie in.
         bases: Further folders, inside ``root``, that the name may be relative to.
 
     Returns:
-        What is wrong, to be put behind the name: ``"leads upwards ('..')"``; None if the name is fine.
+        What is wrong, worded to follow the name: ``"leads upwards ('..')"``; None if the name is allowed.
     """
     if any(unicodedata.category(character) in _INVISIBLE for character in name):
-        return "holds a control character"
+        return "contains a control character"
     words = re.split(r"[/\\]", name)
     if name.startswith(("/", "\\")) or _DRIVE.match(name):
         return "is an absolute path"
@@ -46,16 +46,17 @@ def why_outside(name: str, root: Path, bases: Iterable[Path] = ()) -> str | None
         for base in (limit, *(limit / base for base in bases)):
             target = (base / name).resolve()
             if not target.is_relative_to(limit):
-                return "is a link that leads out of it"
-            if any(part.is_symlink() for part in (target, *target.parents)):  # from 3.13 on a ring is left as it is
+                return "is a link that leads out of the workspace"
+            # since Python 3.13 resolve() leaves cyclic links as they are
+            if any(part.is_symlink() for part in (target, *target.parents)):
                 return "cannot be followed"
-            if target.exists() and not _ordinary(target):
+            if target.exists() and not _is_ordinary(target):
                 return "is a device or pipe"
-    except (OSError, RuntimeError, ValueError):  # a ring of links, a name too long, …
+    except (OSError, RuntimeError, ValueError):  # cyclic links, a name that is too long, …
         return "cannot be followed"
     return None
 
 
-def _ordinary(target: Path) -> bool:
+def _is_ordinary(target: Path) -> bool:
     mode = target.stat().st_mode
     return stat.S_ISREG(mode) or stat.S_ISDIR(mode)

@@ -1,4 +1,4 @@
-"""The one way in: source → document → validated, checked and resolved scenario, with everything that was found."""
+"""Reads a scenario: source → document → validated, checked and resolved scenario, with all findings."""
 
 from __future__ import annotations
 
@@ -19,22 +19,23 @@ from irsim.scenario.resolve.expand import resolve
 from irsim.scenario.resolve.maps import LoadedMap, load_map
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_data, load_path, load_text
-from irsim.scenario.yaml.edits import applied, removal
+from irsim.scenario.yaml.edits import apply_edits, removal_edit
 
 __all__ = ["Reading", "read"]
 
 Survey = Callable[[Context], Iterable[Finding]]
 _STAND_INS = {"entry.kinematics.name": "diff", "entry.distribution.name": "random"}
-"""Names in place of wrong ones, so that the other checks see something that moves, somewhere."""
-_ROUNDS = 6  # of repairing and validating again; each finds what the errors before had hidden
+"""Valid names that replace wrong ones, so that the later checks still see an object that moves and has a place."""
+_MAX_ROUNDS = 6
+"""Rounds of repairing and validating again; each round finds errors that earlier errors had hidden."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What reading a scenario gave.
+    """Result of reading a scenario.
 
     Attributes:
-        scenario: Ready to build; None if an error stands in the way.
+        scenario: The scenario, ready to build; None if an error makes it unusable.
         diagnostics: Everything found: errors, then warnings, then hints, each in the order of the file.
         document: The scenario as written.
     """
@@ -45,7 +46,7 @@ class Reading:
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """The findings that stand in the way."""
+        """The findings that are errors."""
         return [item for item in self.diagnostics if item.severity == "error"]
 
 
@@ -57,14 +58,14 @@ def read(
     name: str | None = None,
     survey: Survey | None = None,
 ) -> Reading:
-    """Read, validate, check and resolve a scenario. Every problem is found in one go; nothing is raised for any.
+    """Read, validate, check and resolve a scenario. The result holds all problems at once; none raises an exception.
 
     Args:
         source: A document, a path, YAML text (a string with a line break), or the data itself.
-        strict: Keep as errors what IR-SIM 2.12 carries on with; otherwise do what it does, and warn.
-        limits: What to refuse.
-        name: What to call a text in messages.
-        survey: Further checks, of scenarios that nothing stands in the way of.
+        strict: Report what IR-SIM 2.12 tolerates as errors; otherwise do what it does, and warn.
+        limits: Upper bounds; a larger scenario is refused.
+        name: Name of the text in messages.
+        survey: Feasibility checks, which run only if no finding blocks the scenario.
     """
     document = _document(source, limits, name)
     findings = [Finding(problem) for problem in document.problems]
@@ -87,7 +88,7 @@ def _document(source: Any, limits: Limits, name: str | None) -> Document:
 
 
 class _Reader:
-    """Validates, repairs what is wrong on a copy, and goes on, so that one error does not hide the next."""
+    """Validates the data, repairs a copy of it and validates again, so that one error does not hide the next."""
 
     def __init__(
         self, document: Document, limits: Limits, findings: list[Finding], survey: Survey | None = None
@@ -99,13 +100,13 @@ class _Reader:
         self._map: tuple[Any, LoadedMap] | None = None
 
     def resolved(self) -> ResolvedScenario | None:
-        """The scenario with every tolerated problem carried on with; meaningless if a finding is blocking."""
+        """The scenario, its tolerated problems handled as in IR-SIM 2.12; meaningless if a finding is blocking."""
         if not isinstance(self.data, Mapping):
-            self._add([_no_mapping(self.data)])
+            self._add([_not_a_mapping(self.data)])
             return None
-        crowd = _too_many(self.data, self.limits)
-        if crowd is not None:
-            self._add([crowd])
+        too_many = _too_many_objects(self.data, self.limits)
+        if too_many is not None:
+            self._add([too_many])
             return None
         scenario = self._validated()
         if scenario is None:
@@ -116,18 +117,18 @@ class _Reader:
         context = Context(scenario, resolved, self.data, self.document, map_findings)
         found = run_checks(context)
         if self.survey is not None and not any(f.blocking for f in [*self.findings, *found]):
-            found = [*self.survey(context), *found]  # of two findings alike the first is told: it was tried
+            found = [*self.survey(context), *found]  # the first of two equal findings is kept: the survey has tried it
         found = [f for f in found if not self._under_repair(f.diagnostic.path)]
         self._add(found)
         edits = [f.carry_on for f in found if f.carry_on is not None]
         if edits:
-            self.data = applied(self.data, edits)
+            self.data = apply_edits(self.data, edits)
             scenario = self._validated()
             return self._resolve(scenario) if scenario is not None else None
         return resolved
 
     def _validated(self) -> Scenario | None:
-        for _ in range(_ROUNDS):
+        for _ in range(_MAX_ROUNDS):
             try:
                 return Scenario.model_validate(self.data)
             except ValidationError as failure:
@@ -140,14 +141,14 @@ class _Reader:
             self.renamed.update(
                 ((*edit.path[:-1], str(edit.value)), edit.path) for edit in edits if edit.action == "rename"
             )
-            self.data = applied(self.data, edits)
-            if (crowd := _too_many(self.data, self.limits)) is not None:  # a repaired number counts too
-                self._add([crowd])
+            self.data = apply_edits(self.data, edits)
+            if (too_many := _too_many_objects(self.data, self.limits)) is not None:  # a repaired number counts too
+                self._add([too_many])
                 break
         return None
 
     def _repair(self, finding: Finding) -> Edit:
-        """What lets reading go on: 2.12's own reaction, else the suggested value, else leaving the thing out."""
+        """The edit that lets reading continue: 2.12's own reaction, else the suggested value, else a removal."""
         item = finding.diagnostic
         if finding.carry_on is not None:
             return finding.carry_on
@@ -156,8 +157,8 @@ class _Reader:
         if (stand_in := _STAND_INS.get(place(item.path))) is not None:
             return Edit("replace", item.path, stand_in)
         if item.code == "missing-key" or item.path[-1:] == ("name",):
-            return removal(item.path[:-1])
-        return removal(item.path)
+            return removal_edit(item.path[:-1])
+        return removal_edit(item.path)
 
     def _resolve(self, scenario: Scenario) -> ResolvedScenario:
         document = self.document
@@ -173,9 +174,9 @@ class _Reader:
         return resolved
 
     def _loaded_map(self, world: WorldModel) -> LoadedMap:
-        """The map, loaded again only where its options or the extent of the world changed."""
+        """The map; it is loaded again only if its options or the extent of the world changed."""
         key = (world.obstacle_map, world.mdownsample, world.width, world.height, tuple(world.offset))
-        if self._map is None or not _same(self._map[0], key):
+        if self._map is None or not _is_same_map(self._map[0], key):
             section = self.data.get("world") if isinstance(self.data, Mapping) else None
             written = section.get("obstacle_map") if isinstance(section, Mapping) else None
             self._map = key, load_map(world, written, self.document.path, self.limits, self.document.maps)
@@ -193,34 +194,34 @@ class _Reader:
                 self.findings.append(finding)
 
 
-def _written(path: Path, renamed: Mapping[Path, Path]) -> Path:
-    """The path before keys were renamed: the last part that was renamed first."""
+def _path_as_written(path: Path, renamed: Mapping[Path, Path]) -> Path:
+    """The path before keys were renamed; the innermost renamed key is restored first."""
     for end in range(len(path), 0, -1):
         if (before := renamed.get(path[:end])) is not None:
             path = (*before, *path[end:])
     return path
 
 
-def _same(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
-    """Equal options and numbers; an array only if it is the same one."""
+def _is_same_map(a: tuple[Any, ...], b: tuple[Any, ...]) -> bool:
+    """Whether options and numbers are equal; an array is equal only to itself."""
     return a[1:] == b[1:] and (a[0] is b[0] or (not hasattr(a[0], "__array__") and a[0] == b[0]))
 
 
-def _no_mapping(data: Any) -> Finding:
+def _not_a_mapping(data: Any) -> Finding:
     kind = "a list" if isinstance(data, (list, tuple)) else "text" if isinstance(data, str) else type(data).__name__
     return error(
         "not-a-scenario",
         (),
-        f"this is {kind}, not a scenario",
+        f"a scenario must be a mapping, got {kind}",
         allowed="a mapping with the keys world, robot, obstacle, gui, custom",
         fix="start with 'world: {width: 10, height: 10}'",
     )
 
 
-def _too_many(data: Mapping[str, Any], limits: Limits) -> Finding | None:
-    """Refuse a crowd before anything is made for it."""
+def _too_many_objects(data: Mapping[str, Any], limits: Limits) -> Finding | None:
+    """The error if the scenario has too many objects, found before any object is made; else None."""
     total = 0
-    for role, what, most in (
+    for role, what, limit in (
         ("robot", "robots", min(limits.robots, limits.objects)),
         ("obstacle", "objects", limits.objects),
     ):
@@ -232,16 +233,16 @@ def _too_many(data: Mapping[str, Any], limits: Limits) -> Finding | None:
             if not isinstance(number, int) or number < 0:
                 continue
             total += number
-            if total > most:
+            if total > limit:
                 path: Path = (role, index) if isinstance(section, (list, tuple)) else (role,)
                 has_number = isinstance(entry, Mapping) and "number" in entry
                 return error(
                     "too-many-objects",
                     (*path, "number") if has_number else path,
-                    f"{total:,} {what} so far; at most {most:,} are read",
+                    f"the limit is {limit:,} {what}, and up to this entry there are {total:,}",
                     given=number,
-                    allowed=f"at most {most:,} {what} in all",
-                    fix=f"lower 'number', or raise the limit of {what}",
+                    allowed=f"at most {limit:,} {what} in all",
+                    fix=f"lower 'number', or raise the limit on {what}",
                 )
     return None
 
@@ -249,28 +250,28 @@ def _too_many(data: Mapping[str, Any], limits: Limits) -> Finding | None:
 def _diagnostics(
     findings: list[Finding], document: Document, strict: bool, renamed: Mapping[Path, Path] | None = None
 ) -> list[Diagnostic]:
-    """Findings with their positions, in order; tolerated errors are warnings unless strict.
+    """The diagnostics of findings, with positions and in order; tolerated errors become warnings unless strict.
 
     Args:
-        findings: In the terms of the repaired data.
-        document: As it was written.
-        strict: As for reading.
-        renamed: Place of each key that was renamed → where it was written.
+        findings: The findings, with paths into the repaired data.
+        document: The scenario as written.
+        strict: As for :func:`read`.
+        renamed: Path of each renamed key → its path as written.
     """
-    shown, told = [], set[tuple[Any, ...]]()
+    shown, reported = [], set[tuple[Any, ...]]()
     shared = document.text is not None and "*" in document.text  # one mistake may be reached by several aliases
     for finding in findings:
         item = finding.diagnostic
         changes: dict[str, Any] = {"file": document.name}
         path = item.path
         if item.line is None:
-            written = _written(path, renamed or {})
+            written = _path_as_written(path, renamed or {})
             mark = document.mark((*document.prefix, *written), key=item.code in KEY_CODES)
             if mark is not None and shared and item.severity == "error":
                 once = (item.code, mark, path[-1:], repr(item.given))
-                if once in told:
+                if once in reported:
                     continue
-                told.add(once)
+                reported.add(once)
             if mark is not None:
                 changes.update(line=mark.line, column=mark.column, length=mark.length)
             changes["path"] = (*document.prefix, *path)
@@ -280,10 +281,10 @@ def _diagnostics(
             changes["severity"] = "warning"
         shown.append(replace(item, **changes))
     ordered = by_severity(shown)
-    most = document.limits.problems
-    if len(ordered) > most:
-        rest = len(ordered) - most
-        severity = ordered[most].severity  # the worst of those left out
+    limit = document.limits.problems
+    if len(ordered) > limit:
+        rest = len(ordered) - limit
+        severity = ordered[limit].severity  # the highest severity among those left out
         last = Diagnostic("too-many-problems", severity, (), f"and {rest} more like these", file=document.name)
-        ordered = [*ordered[:most], last]
+        ordered = [*ordered[:limit], last]
     return ordered

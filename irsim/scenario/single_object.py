@@ -1,4 +1,4 @@
-"""One object from keywords, as scripts make them while a world is running."""
+"""Reads one object from keyword arguments, as scripts add it to a running world."""
 
 from __future__ import annotations
 
@@ -24,14 +24,15 @@ def read_object(
 ) -> tuple[ObjectRecord, list[Diagnostic]]:
     """The object that an entry with these keys makes.
 
-    It differs from an entry of a file in its defaults: it stands at the origin and has no goal, a list of goals is its
-    way (one after the other), and it follows no group behavior.
+    The defaults differ from those of an entry in a file: the object starts at the origin, has no goal and follows no
+    group behavior, and a list of goals means waypoints.
 
     Args:
         role: Robot or obstacle.
-        keys: Keys of an entry but ``number`` and ``distribution``; arrays and tuples count as lists, None as not given.
-        world: The world it is for.
-        object_id: Its id.
+        keys: Keys of an entry, without ``number`` and ``distribution``; arrays and tuples count as lists, None as not
+            given.
+        world: The world that the object joins.
+        object_id: The id of the object.
 
     Returns:
         The object, and warnings about the keys.

@@ -22,7 +22,7 @@ def failure(code: str, what: str, *, where: str | None = None, fix: str | None =
         fix: What to change.
     """
     if code not in CODES and code not in TOOL_CODES:
-        raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes.py")
+        raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes/")
     place = f" ({clean(where)})" if where else ""
     remedy = f" Fix: {_sentence(fix)}" if fix else ""
     room = _LONGEST - len(f"{code}: {place}.{remedy}")

@@ -108,11 +108,11 @@ def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.scenario.open import or_raise
     from irsim.scenario.read import read
     from irsim.scenario.yaml.document import load_text
-    from irsim.validation.feasibility import survey
+    from irsim.validation.feasibility.check import feasibility_findings
 
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
-    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=survey))
+    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=feasibility_findings))
     warnings = sum(item.severity == "warning" for item in found)
     return json.dumps({"contents": in_words(counts_of(scenario), sensors=False), "warnings": warnings})
 
@@ -158,7 +158,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.api.take_snapshot import drawn
     from irsim.runs import open_run
     from irsim.runs.files import RunError
-    from irsim.runs.resimulation import check_same, has_modules, replayed, step_of
+    from irsim.runs.resimulation import check_reproduced, has_modules, resimulate, step_of
 
     arguments, moments = job["arguments"], None
     run = open_run(arguments["run_id"], job["workspace"])
@@ -167,7 +167,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
             what = "a run with modules of one's own is not simulated again, which a strip would need"
             raise RunError("bad-argument", what, "ask for one step at a time", where="strip")
         moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
-    env = replayed(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
+    env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
     result = drawn(
@@ -183,7 +183,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
         progress=progress,
     )
     if not has_modules(run):
-        check_same(run, env)
+        check_reproduced(run, env)
     png = base64.b64encode(result.png).decode()
     return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
 
@@ -220,9 +220,9 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
     """The result of the episodes that a benchmark had when it was stopped, written beside its log."""
     from irsim.benchmarks import logged
-    from irsim.runs.files import written
+    from irsim.runs.files import replace_file
 
-    written(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
+    replace_file(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
     return "null"
 
 

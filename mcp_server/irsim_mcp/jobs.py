@@ -23,13 +23,13 @@ from typing import Any
 import anyio
 
 from irsim.common.text import clean
-from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, written
+from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, replace_file
 from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
     LOCK,
     META,
     RESULT,
-    made_folder,
+    make_run_folder,
     mark_cancelled,
     recent_ids,
     run_folders,
@@ -93,7 +93,7 @@ class Jobs:
                 f"{len(running)} jobs are running, which is as many as there may be: {', '.join(running)}",
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
-        job = Path(made_folder(folder, _STEM))
+        job = Path(make_run_folder(folder, _STEM))
         held = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)
@@ -231,7 +231,7 @@ def _logged(job: Path) -> int:
 def _note(job: Path, about: Mapping[str, Any]) -> None:
     text = json.dumps(about)
     with suppress(RunError):  # the folder may have been removed by somebody
-        written(job / META, text.encode())
+        replace_file(job / META, text.encode())
 
 
 class _Keeper(threading.Thread):
@@ -254,7 +254,7 @@ class _Keeper(threading.Thread):
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError, RunError):
-                written(self._job / RESULT, text.encode())
+                replace_file(self._job / RESULT, text.encode())
                 (self._job / _LOG).unlink()
         finally:
             self._held.release()

@@ -111,7 +111,7 @@ def test_texts_are_strings(text: Any) -> None:
         lambda: irsim.validate(text=TEXT, base_text=text),
     ]
     for call in calls:
-        with pytest.raises(ArgumentError, match=r"the text is .* Fix: (decode it|give the YAML)"):
+        with pytest.raises(ArgumentError, match=r"text must be a string, got .* Fix: (decode it|give the YAML)"):
             call()
 
 
@@ -119,7 +119,7 @@ def test_texts_are_strings(text: Any) -> None:
 def test_paths_are_paths(path: Any) -> None:
     calls: list[Callable[[Any], object]] = [irsim.validate, irsim.run, irsim.fix]
     for call in calls:
-        with pytest.raises(ArgumentError, match=r"the path is .* Fix: give the path of a file, or its content as text"):
+        with pytest.raises(ArgumentError, match=r"path must be the path of a file, got .* Fix: give the path"):
             call(path)
     told = r"files\[0\] is .*" if isinstance(path, list) else "files is .*"
     with pytest.raises(ArgumentError, match=told + "Fix: give a path"):

@@ -104,7 +104,7 @@ def test_fix_says_which_repair_would_lose_comments(irsim: Run, room: Path) -> No
     assert result.exit_code == 2
     assert room.read_text(encoding="utf-8") == text
     assert [finding["fix"] for finding in parsed(result)["findings"] if finding["severity"] == "error"] == [
-        "write [9, 5] (by hand: --fix leaves it, as the comments there would be lost)"
+        "write [9, 5] (by hand: --fix does not change it, because comments there would be lost)"
     ]
 
 

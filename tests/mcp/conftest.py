@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from irsim_mcp.limits import ServerLimits
-from irsim_mcp.server import IrsimServer, build_server
 from mcp import Client, StdioServerParameters
 from mcp.types import CallToolResult, ImageContent, TextContent
+
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.server import IrsimServer, build_server
 
 ERAS = ("auto", "legacy")
 """Newest protocol, without a handshake, and the one before."""

@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
 from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
-
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform == "win32", reason="limits and links of POSIX")]

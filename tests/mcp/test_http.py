@@ -14,11 +14,11 @@ from pathlib import Path
 import anyio
 import httpx2
 import pytest
-from irsim_mcp.http import Address, HttpRefused, address, application, token_from
-from irsim_mcp.server import build_server
 from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 
+from irsim_mcp.http import Address, HttpRefused, address, application, token_from
+from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, LONG, ROOM, data_of
 from tests.mcp.test_lifetime import children_of, linux, wait_until_gone
 

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from irsim.cli.app import app
-from irsim.results.results import RunResult
+from irsim.results.run import RunResult
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -241,9 +241,9 @@ async def test_next_after_people_stand_since_a_collision_and_after_what_is_parke
         still = data_of(await client.call_tool("run_episode", {"scenario_yaml": parked}))
         looked = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": parked}))
     assert jam["outcome"] == "success"
-    assert "2 of 2 moving obstacles stand since a collision" in jam["summary"]
+    assert "2 of 2 moving obstacles were stopped by a collision" in jam["summary"]
     assert "view=collisions" in jam["next"]
-    assert "2 of 2 moving obstacles stand since a collision" in tried["dry_run"]
+    assert "2 of 2 moving obstacles were stopped by a collision" in tried["dry_run"]
     assert "dry_run" in tried["next"]
     assert still["next"].startswith("Nothing to change")
     assert "dry_run" not in looked["next"]

@@ -85,7 +85,7 @@ async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> Non
 
 async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
     async with connected(workspace) as client:
-        assert "none is kept here; runs are let go 24 h after" in error_of(
+        assert "there are no runs here; runs are deleted 24 h after" in error_of(
             await client.call_tool("inspect_run", {"run_id": "x"})
         )
         run_id = await crashed(client)

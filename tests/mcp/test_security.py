@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mcp import Client
+
 from irsim_mcp import job, worker
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.server import build_server
-from mcp import Client
-
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")

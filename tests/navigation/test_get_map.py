@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 
 import irsim
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import EnvGridMap, Map, coarsen
 
 SCENE = """

@@ -11,9 +11,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from numpy.typing import NDArray
 
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import Map, cells_of, footprint_of, terrain_of
 
 Path = NDArray[np.float64]

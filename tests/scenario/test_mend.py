@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim.scenario.autofix import mend
+from irsim.scenario.autofix import repair_text
 from irsim.scenario.yaml.comments import comments
 
 BAD = sorted((Path(__file__).parents[1] / "bad").glob("*.yaml"))
@@ -57,7 +57,7 @@ obstacle:
 
 
 def test_mends_slips_and_keeps_every_other_character() -> None:
-    mended = mend(FLAWED)
+    mended = repair_text(FLAWED)
     assert mended.text == MENDED
     assert [item.code for item in mended.reading.errors] == ["unknown-key"]  # 'wheels': nobody knows what was meant
     changes = {repair.change for repair in mended.repairs}
@@ -65,17 +65,17 @@ def test_mends_slips_and_keeps_every_other_character() -> None:
 
 
 def test_mending_again_changes_nothing() -> None:
-    mended = mend(mend(FLAWED).text)
+    mended = repair_text(repair_text(FLAWED).text)
     assert (mended.text, mended.repairs) == (MENDED, [])
 
 
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
 def test_never_makes_a_file_worse(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    before = mend(text, path=str(path))
+    before = repair_text(text, path=str(path))
     assert bool(before.repairs) == (before.text != text)
     repaired = {repair.finding.code for repair in before.repairs}
-    again = mend(before.text, path=str(path))
+    again = repair_text(before.text, path=str(path))
     assert again.text == before.text
     assert len(before.reading.errors) <= len(again.reading.errors) or repaired
 
@@ -86,7 +86,7 @@ def test_hints_and_guesses_are_left_alone() -> None:
         "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 1, 0]}\n"  # hint: no behavior
         "obstacle: {shape: {name: polygon, vertices: [[4, 4], [6, 4], [5, 6]]}}\n"  # a warning: where does it stand?
     )
-    mended = mend(text)
+    mended = repair_text(text)
     assert mended.text == text
     assert {"no-behavior", "default-state"} <= {item.code for item in mended.reading.diagnostics}
 
@@ -110,7 +110,7 @@ ROBOT = "state: [1, 5, 0], goal: [9, 5], behavior: {name: dash}"
 )
 def test_values_and_names_that_were_meant(line: str, repaired: str | None) -> None:
     head = "world: {width: 10, height: 10}\nrobot:\n  - {kinematics: {type: diff}, "
-    mended = mend(f"{head}{ROBOT}, {line}}}\n")
+    mended = repair_text(f"{head}{ROBOT}, {line}}}\n")
     expected = f"{head}{ROBOT}, {repaired or line}}}\n".replace("{type: diff}", "{name: diff}")
     assert mended.text == expected
     if repaired:
@@ -119,25 +119,25 @@ def test_values_and_names_that_were_meant(line: str, repaired: str | None) -> No
 
 def test_a_key_is_not_renamed_to_one_that_is_there() -> None:
     text = f"robot:\n  - {{kinematics: {{name: diff}}, {ROBOT}}}\nrobots:\n  - {{kinematics: {{name: omni}}}}\n"
-    mended = mend(text)
+    mended = repair_text(text)
     assert mended.text == text
     (item,) = mended.reading.errors
     assert item.edit is None
-    assert item.fix == "'robot' is what it is called, and stands there already: keep one of them"
-    both = mend(f"robot: {{kinematics: {{name: diff}}, start: [1, 5, 0], pose: [2, 5, 0], {ROBOT[18:]}}}\n")
+    assert item.fix == "the key is called 'robot', which is given here too: keep one of them"
+    both = repair_text(f"robot: {{kinematics: {{name: diff}}, start: [1, 5, 0], pose: [2, 5, 0], {ROBOT[18:]}}}\n")
     assert both.text.count("state:") == 1
 
 
 def test_places_written_as_mappings() -> None:
     text = "robot: {kinematics: {name: diff}, state: {x: 1, y: 5, theta: 0}, goal: {x: 9, y: 5}, waypoints: null}\n"
-    mended = mend(text)
+    mended = repair_text(text)
     assert "state: [1, 5, 0], goal: [9, 5]" in mended.text
-    assert "waypoints: [[9, 5]]" in mend("robot: {kinematics: {name: diff}, waypoints: [9, 5]}\n").text
+    assert "waypoints: [[9, 5]]" in repair_text("robot: {kinematics: {name: diff}, waypoints: [9, 5]}\n").text
 
 
 def test_lines_below_a_renamed_key_are_their_own() -> None:
     text = "world: {width: 10}\nrobots:\n  - kinematics: {name: diff}\n    position: [1, 5, pi]\n    color: bleu\n"
-    mended = mend(text)
+    mended = repair_text(text)
     assert {(repair.finding.code, repair.finding.line) for repair in mended.repairs} == {
         ("unknown-key", 2),
         ("unknown-key", 4),
@@ -172,13 +172,16 @@ obstacle:
 
 
 def test_a_repair_that_would_lose_comments_is_left_to_the_author() -> None:
-    mended = mend(COMMENTED)
+    mended = repair_text(COMMENTED)
     assert mended.text == COMMENTED.replace("nme", "name").replace("{x: 9, y: 5}", "[9, 5]")
     left = {item.path: item.fix or "" for item in mended.reading.errors}
     assert list(left) == [("robot", 0, "state"), ("robot", 0, "sensors"), ("obstacle", 0, "shape", "vertices")]
-    assert all(fix.endswith("(by hand: --fix leaves it, as the comments there would be lost)") for fix in left.values())
+    assert all(
+        fix.endswith("(by hand: --fix does not change it, because comments there would be lost)")
+        for fix in left.values()
+    )
     assert left["robot", 0, "state"].startswith("write [1, 5, 0]")
-    bare = mend("\n".join(line.partition("  #")[0] for line in COMMENTED.splitlines()) + "\n")
+    bare = repair_text("\n".join(line.partition("  #")[0] for line in COMMENTED.splitlines()) + "\n")
     assert not bare.reading.errors
 
 
@@ -187,7 +190,7 @@ def test_goals_of_several_objects_do_not_become_the_way_of_each() -> None:
         "world: {width: 10, height: 10}\nrobot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, "
         "behavior: {name: dash}, number: 2, state: [[1, 5, 0], [1, 7, 0]], goal: [[9, 5], [9, 7], [9, 8]]}\n"
     )
-    mended = mend(text)
+    mended = repair_text(text)
     assert mended.text == text
     (item,) = [item for item in mended.reading.diagnostics if item.code == "goal-levels"]
     assert item.fix is not None
@@ -216,7 +219,7 @@ def test_keys_of_follow_written_into_its_local_behavior_move_one_level_up() -> N
         "    state: [[1, 5, 0], [9, 5, 0]]\n"
         "    behavior: {name: follow, local: {name: orca, target_roles: robot, timeHorizon: 2, wander: true}}\n"
     )
-    mended = mend(text)
+    mended = repair_text(text)
     assert [repair.finding.code for repair in mended.repairs] == ["ignored-key"]
     assert "behavior: {name: follow, local: {name: orca, timeHorizon: 2}, wander: true, target_roles: robot}" in (
         mended.text
@@ -224,7 +227,7 @@ def test_keys_of_follow_written_into_its_local_behavior_move_one_level_up() -> N
     scenario = mended.reading.scenario
     assert scenario is not None
     assert [(o.wander, o.target_roles) for o in scenario.objects] == [(True, "robot")] * 2
-    before = mend(text.replace("target_roles: robot, ", "").replace(", wander: true", ""))
+    before = repair_text(text.replace("target_roles: robot, ", "").replace(", wander: true", ""))
     assert "ignored-key" not in [item.code for item in before.reading.diagnostics]
 
 
@@ -234,4 +237,4 @@ def test_keys_that_stand_in_both_places_go_from_the_inner_one() -> None:
         "  behavior: {name: follow, target_roles: obstacle, local: {name: orca, target_roles: all}}}\n"
         "obstacle: [{shape: {name: circle}, state: [5, 5, 0]}]\n"
     )
-    assert "{name: follow, target_roles: obstacle, local: {name: orca}}" in mend(text).text
+    assert "{name: follow, target_roles: obstacle, local: {name: orca}}" in repair_text(text).text

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from irsim.diagnostics.diagnostic import Edit
-from irsim.scenario.yaml.edits import applied
-from irsim.scenario.yaml.rewrite import rewritten, yaml_flow
+from irsim.scenario.yaml.edits import apply_edits
+from irsim.scenario.yaml.rewrite import rewrite, yaml_flow
 
 TEXT = """\
 # a scene
@@ -54,21 +54,21 @@ obstacle:
     ],
 )
 def test_changes_one_place(edit: Edit, before: str | None, after: str | None) -> None:
-    changed = rewritten(TEXT, edit)
+    changed = rewrite(TEXT, edit)
     assert changed is not None
-    assert yaml.safe_load(changed) == applied(yaml.safe_load(TEXT), [edit])
+    assert yaml.safe_load(changed) == apply_edits(yaml.safe_load(TEXT), [edit])
     if before is not None and after is not None:
         assert TEXT.count(before) == 1
         assert changed == TEXT.replace(before, after)
 
 
 def test_only_pair_of_a_mapping_leaves_an_empty_one() -> None:
-    assert rewritten("a:\n  b: 1  # why\nc: 2\n", Edit("remove", ("a", "b"))) == "a:\n  {}  # why\nc: 2\n"
+    assert rewrite("a:\n  b: 1  # why\nc: 2\n", Edit("remove", ("a", "b"))) == "a:\n  {}  # why\nc: 2\n"
 
 
 def test_windows_line_ends_stay() -> None:
-    assert rewritten("a: 1\r\nb: 2\r\n", Edit("add", ("c",), 3)) == "a: 1\r\nb: 2\r\nc: 3\r\n"
-    assert rewritten("a: 1\r\nb: 2\r\n", Edit("remove", ("a",))) == "b: 2\r\n"
+    assert rewrite("a: 1\r\nb: 2\r\n", Edit("add", ("c",), 3)) == "a: 1\r\nb: 2\r\nc: 3\r\n"
+    assert rewrite("a: 1\r\nb: 2\r\n", Edit("remove", ("a",))) == "b: 2\r\n"
 
 
 @pytest.mark.parametrize(
@@ -86,12 +86,12 @@ def test_windows_line_ends_stay() -> None:
     ],
 )
 def test_leaves_alone_what_it_cannot_change_by_itself(text: str, edit: Edit) -> None:
-    assert rewritten(text, edit) is None
+    assert rewrite(text, edit) is None
 
 
 def test_an_alias_itself_can_be_renamed_or_left_out() -> None:
     text = "a: &x {k: 1}\nb: 2\nc: 3\n"
-    assert rewritten(text, Edit("remove", ("b",))) == "a: &x {k: 1}\nc: 3\n"
+    assert rewrite(text, Edit("remove", ("b",))) == "a: &x {k: 1}\nc: 3\n"
 
 
 scalars = (
@@ -124,9 +124,9 @@ def test_the_text_means_what_the_edit_means(data: dict[str, Any], value: Any, dr
     path = draw.draw(st.sampled_from(places))
     action = draw.draw(st.sampled_from(["remove", "replace", "rename", "add"]))
     edit = Edit(action, (*path[:-1], "new") if action == "add" else path, "renamed" if action == "rename" else value)
-    changed = rewritten(text, edit)
+    changed = rewrite(text, edit)
     if changed is not None:
-        assert _near(yaml.safe_load(changed), applied(data, [edit]))
+        assert _near(yaml.safe_load(changed), apply_edits(data, [edit]))
 
 
 @settings(max_examples=200)

@@ -1,4 +1,4 @@
-"""What every behavior's options have in common."""
+"""Options that all behaviors have in common."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ class BehaviorOptions(Options):
     """Whether it may be named under `group_behavior`: it decides for all members at once."""
 
     name: str
-    """Which behavior."""
+    """Name of the behavior."""
     wander: Bool = False
-    """Start with, and after each arrival draw, a random goal between `range_low` and `range_high`."""
+    """Drive to random goals between `range_low` and `range_high`; each arrival draws the next."""
     loop: Bool = False
-    """After the last goal start over; with one goal, shuttle between it and the start. `wander` wins over it."""
+    """Start again with the first goal after the last; with one goal, shuttle between it and the start. `wander` takes
+    precedence."""
     range_low: Pose | None = None
     """Lower corner of random goals; null is the world's own. Two numbers leave the heading free."""
     range_high: Pose | None = None
     """Upper corner of random goals; null is the world's own. Two numbers leave the heading free."""
     target_roles: Literal["all", "robot", "obstacle"] = "all"
-    """Which other objects the behavior is shown."""
+    """Role of the other objects that the behavior reacts to."""
 
 
 class CustomOptions(BehaviorOptions):
@@ -41,11 +42,11 @@ class CustomOptions(BehaviorOptions):
 
 
 def behavior_fields(options: Any, bounds: tuple[float, float, float, float]) -> dict[str, Any]:
-    """What an object takes over from the options of its behavior, or of none.
+    """The fields of an object that follow from the options of its behavior.
 
     Args:
-        options: The options, or None.
-        bounds: x0, y0, x1, y1 of the world [m]: where wanderers go by default.
+        options: The options; None without a behavior.
+        bounds: x0, y0, x1, y1 of the world [m], the default range of random goals.
     """
     x0, y0, x1, y1 = bounds
     low = getattr(options, "range_low", None) or [x0, y0]

@@ -13,20 +13,20 @@ from irsim.options.units import Radians
 
 
 class Dash(BehaviorOptions):
-    """Drive straight to the goal at full speed, looking at nobody.
+    """Drive straight to the goal at full speed, without avoiding anything.
 
-    `diff` drives at its top speed times the cosine of the heading error: slower while it turns, and backwards, or not
-    at all if `vel_min` allows no reverse, while the goal is more than 90 degrees off. A car never slows down and
+    `diff` drives at its top speed times the cosine of the heading error: slower while it turns and, while the goal is
+    more than 90 degrees off, backwards, or not at all if `vel_min` allows no reverse. A car never slows down, and it
     circles a goal inside its turning circle, of radius wheelbase / tan(largest steering angle): raise `goal_threshold`.
-    What stands in the way is driven into, so it ends in a collision and not in a time-out.
+    It drives into anything in its way, so a blocked path ends in a collision and not in a time-out.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "dash"}, {"name": "dash", "loop": True}]}
 
     name: Literal["dash"] = "dash"
     angle_tolerance: Annotated[Radians, Field(ge=0)] = 0.1
-    """Heading errors smaller than this are not corrected, so the path bends: some 0.2 m off the straight line on 12 m.
-    Below largest turn rate x `step_time` / 2 the heading swings."""
+    """Heading errors smaller than this are not corrected, so the path deviates by about 0.2 m on 12 m. If it is below
+    largest turn rate x `step_time` / 2, the heading oscillates."""
 
 
 BEHAVIORS.register(Dash, kernel=core.DashOptions)

@@ -14,17 +14,17 @@ from irsim.options.units import Meters, Seconds
 
 
 class Follow(BehaviorOptions):
-    """Find a way round everything that stands still, out of dead ends and through mazes, and drive it.
+    """Plan a path round everything static, out of dead ends and through mazes, and follow it.
 
-    The planner knows the whole map from the start. The path keeps clear of everything that stands still and is not
-    `unobstructed`: obstacles, cells of the map, walls round the world. It is planned once per goal, and anew when the
-    object has been pushed off it. Commands that would run into something that stands still are slowed down. Without a
-    path the object stands still, and a `no_path` event says so.
+    The planner knows the whole map from the start. The path keeps clear of everything static that is not
+    `unobstructed`: obstacles, cells of the map, walls round the world. It is planned once per goal, and again when the
+    object has been pushed off it. Commands that would hit something static are slowed down. Without a path the object
+    stays where it is, and a `no_path` event reports it.
 
-    The local behavior avoids who moves (`dash` nobody; `orca` is the usual choice, also for cars). From what stands
-    still it only keeps the room its path needs, without the margins, horizons and forces it has on its own, which would
-    close narrow ways. Where there is no room to turn, `diff` and `acker` drive a way of poses instead, with the turning
-    circle of a car, and wait for who is in the way.
+    The local behavior avoids moving objects (`dash` avoids none; `orca` is the usual choice, also for cars). Towards
+    static objects it keeps only the clearance that the path has, without its own margins, horizons and forces, which
+    would close narrow passages. Where there is no space to turn, `diff` and `acker` follow a path of poses instead,
+    with the turning circle of a car, and wait for objects in the way.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "follow", "planner": "astar", "local": "dash"}]}
@@ -38,9 +38,9 @@ class Follow(BehaviorOptions):
     """Behavior that drives from one corner to the next: its name, or a mapping with its name and options, as in
     `local: {name: orca}`."""
     replan: Annotated[Seconds, Field(gt=0)] | None = None
-    """Plan anew after this time; null plans once per goal, and when the path is lost."""
+    """Plan again after this time; null plans once per goal, and when the path is lost."""
     lookahead: Annotated[Meters, Field(gt=0)] | None = None
-    """Distance along the path of the point headed for; null is the farthest corner in sight."""
+    """Distance along the path to the point that the object heads for; null is the farthest corner in sight."""
 
 
 BEHAVIORS.register(Follow, kernel=core.RouteOptions)

@@ -15,10 +15,10 @@ from irsim.options.units import Count, Meters, MetersPerSecond, Seconds
 class Orca(BehaviorOptions):
     """Take half of the smallest change of velocity that avoids every collision, and leave the rest to the other.
 
-    Movers that are not driven by orca are avoided by the whole change; what stands still is never driven into.
-    It knows walls, the largest speed and turn rate and the turning of a car, but not `acce`; everybody is the circle
-    round its footprint, also long rectangles. Robots that have arrived still give way, leave their goals for that and
-    come back. It stays caught in dead ends, and leaves finding a way round walls to `follow` with it as `local`.
+    It makes the whole change for moving objects that do not run orca, and never drives into static ones. It respects
+    walls, the largest speed and turn rate and the steering of a car, but not `acce`; every object counts as the circle
+    round its footprint, even a long rectangle. Robots that have arrived still give way: they leave their goals and come
+    back. It does not get out of dead ends: to find a way round walls, use `follow` with `orca` as its `local`.
     """
 
     in_group: ClassVar[bool] = True
@@ -27,18 +27,18 @@ class Orca(BehaviorOptions):
 
     name: Literal["orca"] = "orca"
     neighborDist: Annotated[Meters, Field(gt=0)] = 15.0
-    """Movers farther away than this are ignored."""
+    """Moving objects farther away than this are ignored."""
     maxNeighbors: Count = 10
-    """Most movers considered, nearest first; walls and standing circles do not count."""
+    """Number of moving objects considered, nearest first; walls and static circles do not count."""
     timeHorizon: Annotated[Seconds, Field(gt=0)] = 20.0
-    """How far ahead collisions with movers are avoided. Long ones make crowds slow."""
+    """Time horizon within which collisions with moving objects are avoided. A long one makes crowds slow."""
     timeHorizonObst: Annotated[Seconds, Field(gt=0)] = 10.0
-    """How far ahead collisions with walls and standing circles are avoided. Wherever there are walls set 1 to 2 s: with
-    the default robots slow down in corridors and creep to goals near walls."""
+    """Time horizon within which collisions with walls and static circles are avoided. Near walls set 1 to 2 s: with the
+    default, robots are slow in corridors and approach goals near walls very slowly."""
     safe_radius: Annotated[Meters, Field(ge=0)] = 0.1
-    """Added to the own radius."""
+    """Margin added to the radius of the object itself."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Largest speed, and at most what the object can do in every direction; null is just that."""
+    """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -15,8 +15,8 @@ from irsim.options.units import Meters, MetersPerSecond, Number
 class Rvo(BehaviorOptions):
     """Pick the velocity closest to the desired one outside all reciprocal velocity obstacles.
 
-    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. Turns
-    no faster than 1.5 rad/s, whatever `vel_max` allows, and does not know `acce` of the object. It stays caught in dead
+    Walls (static rectangles, polygons, compounds, maps) block a velocity that reaches them within one second. It turns
+    at most at 1.5 rad/s, whatever `vel_max` allows, and ignores the `acce` of the object. It does not get out of dead
     ends.
     """
 
@@ -32,11 +32,11 @@ class Rvo(BehaviorOptions):
     acce: Annotated[MetersPerSecond, Field(gt=0)] = 1.0
     """Largest change of velocity in one step: half the width of the search window, not multiplied by the period."""
     factor: Annotated[Number, Field(ge=0)] = 1.0
-    """Weight of the time to collision when no velocity is free."""
+    """Weight of the time to collision when every velocity leads to a collision."""
     mode: Literal["rvo", "hrvo", "vo"] = "rvo"
-    """Whose share of the avoidance each side takes."""
+    """Share of the avoidance taken: half (`rvo`), all (`vo`), or half on one side and all on the other (`hrvo`)."""
     neighbor_threshold: Annotated[Meters, Field(gt=0)] = 3.0
-    """Others, and walls, farther away than this are ignored; linestrings never are."""
+    """Objects and walls farther away than this are ignored; linestrings are never ignored."""
 
 
 BEHAVIORS.register(Rvo, kernel=core.RvoOptions)

@@ -1,4 +1,4 @@
-"""What every distribution's options have in common."""
+"""Options that all distributions have in common."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class DistributionOptions(Options):
     """How the objects of one entry are placed."""
 
     name: str
-    """Which distribution."""
+    """Name of the distribution."""
 
 
 class WorldExtent(Protocol):

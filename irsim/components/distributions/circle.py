@@ -1,4 +1,4 @@
-"""``circle``: evenly on a circle, everyone facing its middle."""
+"""``circle``: evenly on a circle, facing its middle."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from irsim.options.vectors import Pose
 
 
 class CircleDistribution(DistributionOptions):
-    """Evenly on a circle, facing its middle; goals are the opposite points unless the entry has a `goal`."""
+    """Place objects evenly on a circle, facing its middle; goals are opposite unless the entry has a `goal`."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "circle", "center": [5, 5], "radius": 4.0}]}
 

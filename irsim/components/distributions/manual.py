@@ -1,4 +1,4 @@
-"""``manual``: where ``state`` and ``goal`` say."""
+"""``manual``: places given by ``state`` and ``goal``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from irsim.options.registry import DISTRIBUTIONS
 
 
 class Manual(DistributionOptions):
-    """The entry's own `state` and `goal`: one vector for all objects, or a list with one per object."""
+    """Place objects by `state` and `goal` of the entry: one vector for all objects, or a list with one per object."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "manual"}]}
 

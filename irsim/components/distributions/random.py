@@ -1,4 +1,4 @@
-"""``random``: free places drawn anew for every scene."""
+"""``random``: random free places for every scene."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from irsim.options.vectors import Offset
 
 
 class RandomDistribution(DistributionOptions):
-    """Uniform draws of poses and then goals, anew for every scene.
+    """Draw starts, then goals, uniformly at random for every scene.
 
-    Everything with a fixed place comes first, then such entries in file order; footprints of starts, and of goals,
-    keep clear of all that. Goals may lie on starts. `state` and `goal` of the entry are ignored.
+    Entries are placed in file order. Footprints at starts overlap neither objects with a fixed place nor starts drawn
+    before; footprints at goals overlap neither static objects nor other goals of the entry, but may lie on starts.
+    `state` and `goal` of the entry are ignored.
     """
 
     schema_extra: ClassVar[dict[str, Any]] = {

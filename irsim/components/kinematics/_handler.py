@@ -1,4 +1,4 @@
-"""Drives written in Python: what users derive from, and how it becomes part of the language."""
+"""Drives written in Python: the base class for users, and its registration as part of the language."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PALETTE = {"robot": ROBOT_COLOR, "robot_acker": ACKER_COLOR, "obstacle": OBSTAC
 
 
 class KinematicsHandler(ABC):
-    """A drive: how a state follows from a control. What a subclass leaves out is as for a differential drive.
+    """A drive: how the state follows from a control. Attributes and methods default to those of a differential drive.
 
     States are columns (state_dim, 1): x, y [m], heading [rad], further rows as the drive needs them; controls are
     columns (action_dim, 1).
@@ -34,12 +34,12 @@ class KinematicsHandler(ABC):
 
     Attributes:
         action_dim, state_dim, min_state_dim: Rows of control and state.
-        vel_max, vel_min, acce: Limits where the scenario gives none.
-        color, obstacle_color, color_key, description, show_arrow: How objects with it are drawn by default.
-        passive: Whether it only coasts, in ``collision_mode: contact``.
-        default_mass: Mass where the scenario gives none [kg].
+        vel_max, vel_min, acce: Limits if the scenario gives none.
+        color, obstacle_color, color_key, description, show_arrow: How objects with this drive are drawn by default.
+        passive: Whether the object only coasts, in ``collision_mode: contact``.
+        default_mass: Mass if the scenario gives none [kg].
         translation_rows, yaw_rate_row: Which control rows are speeds [m/s] and which is the yaw rate, for contacts.
-        tau: Lag of the drive in ``collision_mode: contact`` [s]; None takes the world's.
+        tau: Lag of the drive in ``collision_mode: contact`` [s]; None is the world's.
     """
 
     action_dim: ClassVar[int] = 2
@@ -66,7 +66,7 @@ class KinematicsHandler(ABC):
 
     @classmethod
     def default_color(cls, role: str, pushable: bool = False) -> str:
-        """Colour of an object that the scenario gives none."""
+        """Colour of an object if the scenario gives none."""
         if role == "robot":
             return cls.color or _PALETTE.get(cls.color_key, ROBOT_COLOR)
         return cls.obstacle_color or (PUSHABLE_COLOR if pushable else OBSTACLE_COLOR)
@@ -81,11 +81,11 @@ class KinematicsHandler(ABC):
             step_time: Period [s].
 
         Returns:
-            (state_dim, 1); rows that are missing keep their values.
+            (state_dim, 1); missing rows keep their values.
         """
 
     def velocity_to_xy(self, state: Floats, velocity: Floats) -> Floats:
-        """(2, 1) velocity in the world frame [m/s] that a control gives."""
+        """(2, 1) velocity in the world frame [m/s] that follows from a control."""
         theta, forward = float(state[2, 0]), float(np.asarray(velocity)[0, 0])
         return np.array([[forward * math.cos(theta)], [forward * math.sin(theta)]])
 
@@ -100,7 +100,7 @@ class KinematicsHandler(ABC):
     def coast(
         self, velocity: Floats, step_time: float, friction: float, gyration: float = 0.0, gravity: float = 9.81
     ) -> Floats:
-        """(action_dim, 1) control of the next period when nothing drives the object, for contacts: none."""
+        """(action_dim, 1) control of the next period when nothing drives the object, for contacts; zero by default."""
         return np.zeros_like(np.asarray(velocity, dtype=np.float64))
 
     def compute_max_speed(self, vel_max: Floats) -> float:
@@ -113,12 +113,13 @@ class KinematicsHandler(ABC):
 
 
 def register_kinematics(name: str) -> Callable[[Handler], Handler]:
-    """Make a subclass of :class:`KinematicsHandler` the drive ``name`` of scenarios; names are in lower case.
+    """Register a subclass of :class:`KinematicsHandler` as the drive ``name`` of scenarios; names are in lower case.
 
-    It is constructed once per object with ``name``, ``noise``, ``alpha`` and the other keys of its YAML mapping.
+    The class is instantiated once per object with ``name``, ``noise``, ``alpha`` and the other keys of its mapping.
 
     Raises:
-        TypeError: Not such a subclass. ValueError: Another class has the name.
+        TypeError: The class is not such a subclass.
+        ValueError: Another class already has the name.
     """
     key = name.lower()
 
@@ -136,14 +137,14 @@ def register_kinematics(name: str) -> Callable[[Handler], Handler]:
 
 
 def handler_class(name: str | None) -> type[KinematicsHandler] | None:
-    """The class registered for a drive by a user, or None."""
+    """The class that user code has registered for a drive; None if there is no such class."""
     feature = KINEMATICS.get(name) if name is not None else None
     made = feature.function if feature is not None else None
     return made if isinstance(made, type) and issubclass(made, KinematicsHandler) else None
 
 
 def _options_of(name: str, handler: type[KinematicsHandler]) -> type[CustomKinematics]:
-    """The options model of a handler: any key, and what the language must know of the drive."""
+    """The options model of a handler: it accepts any key and holds the facts that the language needs."""
     rows = ("x", "y", "theta", *(f"state{row}" for row in range(3, max(3, handler.state_dim))))
     members = {
         "__doc__": handler.__doc__ or f"The drive {name!r} of user code.",
@@ -166,10 +167,10 @@ def construct(options: Any) -> KinematicsHandler:
     """The handler of one object.
 
     Args:
-        options: The options model of its drive.
+        options: The options of its drive.
 
     Raises:
-        TypeError: Its constructor does not take a key of the mapping.
+        TypeError: The constructor does not accept a key of the mapping.
     """
     maker = handler_class(options.name)
     if maker is None:

@@ -1,4 +1,4 @@
-"""What every drive's options have in common."""
+"""Options that all drives have in common."""
 
 from __future__ import annotations
 
@@ -25,24 +25,24 @@ class KinematicsOptions(Options):
     usual_vel_max: ClassVar[tuple[float, ...]] = ()
     usual_vel_min: ClassVar[tuple[float, ...]] = ()
     usual_acce: ClassVar[tuple[float, ...]] = ()
-    """Limits where a scenario gives none; empty: 1, -1 and infinity for each control component."""
+    """Limits if a scenario gives none; empty means 1, -1 and infinity for each control component."""
     usual_colors: ClassVar[tuple[str, str] | None] = None
-    """Colours of robots and obstacles where a scenario gives none; None: those of every drive."""
+    """Colours of robots and obstacles if a scenario gives none; None means the common colours."""
     picture: ClassVar[str | None] = None
-    """What robots are drawn as where a scenario does not say."""
+    """Image that robots are drawn with if a scenario gives none."""
     arrow: ClassVar[bool] = True
-    """Whether its heading is drawn where a scenario does not say."""
+    """Whether the heading is drawn if a scenario does not say."""
 
     name: str
-    """Which drive: the motion model."""
+    """Name of the drive, which is the motion model."""
     noise: Bool = False
     """Add Gaussian noise to the executed velocity."""
     mode: str | None = None
     """Only `acker` uses it; the other drives accept and ignore it."""
     tau: Annotated[Seconds, Field(ge=0)] | None = None
-    """Lag of the drive in `collision_mode: contact`; null takes `world.drive_tau`."""
+    """Lag of the drive in `collision_mode: contact`; null is `world.drive_tau`."""
     wheelbase: Annotated[Meters, Field(ge=0)] | None = None
-    """Distance between the axles for the motion model; null takes the shape's `wheelbase`."""
+    """Distance between the axles for the motion model; null is the `wheelbase` of the shape."""
 
 
 class CustomKinematics(KinematicsOptions):

@@ -10,16 +10,16 @@ from irsim.options.units import Number
 
 
 class Static(KinematicsOptions):
-    """The object never moves by itself, the same as no `kinematics` at all."""
+    """No drive: the object never moves by itself, as without `kinematics`."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "static"}]}
 
     name: Literal["static"] = "static"
     alpha: list[Number] = []
-    """Accepted and ignored: what does not move has no noise."""
+    """Accepted and ignored, because a static object has no motion noise."""
 
 
 @KINEMATICS.register(Static)
 def stay(pose: Any, control: Any, dt: float) -> Any:
-    """The pose after one period: the same."""
+    """The pose after one period, which is unchanged."""
     return pose

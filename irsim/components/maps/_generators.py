@@ -1,4 +1,4 @@
-"""Map generators as user code writes them: subclasses that are found by their name as soon as they are defined."""
+"""Base class of map generators in user code; defining a named subclass makes it part of the language."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ Floats = NDArray[np.float64]
 class GridMapGenerator(ABC):
     """Makes an occupancy grid: derive, name it, list its parameters, implement ``_build_grid``.
 
-    The subclass is what ``obstacle_map: {name: <its name>, resolution: ...}`` means from then on. It is constructed
+    From then on ``obstacle_map: {name: <its name>, resolution: ...}`` uses the subclass. It is constructed
     with ``width`` and ``height`` in cells and the parameters that the scenario gives.
 
     Attributes:
         name: Name in scenarios.
-        yaml_param_names: Keys of the mapping that are handed to the constructor.
+        yaml_param_names: Keys of the mapping that are passed to the constructor.
         registry: Every generator by its name.
     """
 
@@ -69,7 +69,7 @@ class GridMapGenerator(ABC):
         return made if made is not None else self.generate()._grid_made()
 
     def generate(self) -> GridMapGenerator:
-        """Make the grid (anew) and return the generator."""
+        """Make the grid, again if it exists already, and return the generator."""
         self._grid = np.asarray(self._build_grid(), dtype=np.float64)
         return self
 
@@ -90,7 +90,7 @@ class GridMapGenerator(ABC):
 
         Args:
             path: File to write.
-            invert: Occupied is black.
+            invert: Whether occupied cells are black.
         """
         from PIL import Image
 
@@ -131,9 +131,9 @@ class PerlinGridGenerator(GridMapGenerator):
     ) -> None:
         super().__init__()
         if fractal < 1:
-            raise ValueError(f"fractal counts octaves: at least 1, not {fractal}")
+            raise ValueError(f"fractal, the number of octaves, must be at least 1, got {fractal}")
         if attenuation <= 0:
-            raise ValueError(f"attenuation must be positive, not {attenuation}")
+            raise ValueError(f"attenuation must be positive, got {attenuation}")
         self.width, self.height = width, height
         self.complexity, self.fill, self.fractal = complexity, fill, fractal
         self.attenuation, self.seed = attenuation, seed
@@ -147,7 +147,7 @@ class PerlinGridGenerator(GridMapGenerator):
 def resolve_obstacle_map(
     obstacle_map: Any = None, world_width: float | None = None, world_height: float | None = None
 ) -> Floats | None:
-    """The occupancy grid that a value of ``obstacle_map`` stands for.
+    """The occupancy grid that a value of ``obstacle_map`` means.
 
     Args:
         obstacle_map: None, an array (used as it is), a picture file name, or a mapping with the name of a generator.
@@ -158,9 +158,9 @@ def resolve_obstacle_map(
         (nx, ny) occupancies, 0 to 100; None for None.
 
     Raises:
-        TypeError: None of these.
-        ValueError: Unknown name, or something missing.
-        FileNotFoundError: No such picture.
+        TypeError: The value is none of these.
+        ValueError: The name is unknown, or a key is missing.
+        FileNotFoundError: The picture does not exist.
     """
     if obstacle_map is None:
         return None
@@ -169,7 +169,7 @@ def resolve_obstacle_map(
     if isinstance(obstacle_map, (str, Path)):
         obstacle_map = {"name": "image", "path": str(obstacle_map)}
     if not isinstance(obstacle_map, Mapping) or "name" not in obstacle_map:
-        raise TypeError("a map is None, an array, a file name, or a mapping with the 'name' of a generator")
+        raise TypeError("a map must be None, an array, a file name, or a mapping with the 'name' of a generator")
     if obstacle_map["name"] == "image":
         if "path" not in obstacle_map:
             raise ValueError("an image map needs a 'path'")
@@ -181,12 +181,12 @@ def build_grid_from_generator(spec: dict[str, Any], world_width: float, world_he
     """The grid of a generator that fills a world.
 
     Args:
-        spec: Mapping with ``name``, ``resolution`` (cell size [m]) and parameters; others are ignored.
+        spec: Mapping with ``name``, ``resolution`` (cell size [m]) and parameters; other keys are ignored.
         world_width: Extent of the world in x [m].
         world_height: Extent of the world in y [m].
 
     Raises:
-        ValueError: Unknown name, or no resolution.
+        ValueError: The name is unknown, or the resolution is missing.
     """
     name = spec.get("name")
     generator = GridMapGenerator.registry.get(str(name))
@@ -217,7 +217,7 @@ def _picture(path: str) -> Floats:
 
 
 def _register(name: str, generator: type[GridMapGenerator]) -> None:
-    """Make a generator of user code part of the language."""
+    """Register a generator of user code as part of the language."""
     keys: Any = {key: (Any, None) for key in generator.yaml_param_names if key not in ("name", "resolution")}
     make: Any = create_model
     options = make(
@@ -241,7 +241,7 @@ def _register(name: str, generator: type[GridMapGenerator]) -> None:
         if values.ndim != 2 or not values.size:
             raise MapProblem(
                 "map-generator",
-                f"'{name}' ({generator.__name__}) gave an array of shape {values.shape}, not (nx, ny)",
+                f"'{name}' ({generator.__name__}) must return an (nx, ny) array, got shape {values.shape}",
                 key="name",
             )
         return Raster(values)

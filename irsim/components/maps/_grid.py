@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 __all__ = ["MapCells", "MapGrid", "Walls", "map_grid"]
 
-_MOST_CELLS = 2**31 - 1
-"""Along one side of a map."""
+_MAX_CELLS_ALONG = 2**31 - 1
+"""Largest number of cells along one side of a map."""
 
 
 @dataclass(frozen=True)
 class MapCells:
-    """Shape of the object that a map is; the name is what scripts see.
+    """Shape of the object that represents a map in the world.
 
     Attributes:
         grid: The map.
@@ -38,7 +38,7 @@ class MapCells:
         return [self.grid.part]
 
     def model_dump(self) -> dict[str, str]:
-        """The shape as it would be written."""
+        """The shape as it is written in a scenario."""
         return {"name": self.name}
 
 
@@ -60,7 +60,7 @@ class Walls:
         return [core.Room(vertices=[[x0, y0], [x0, y1], [x1, y1], [x1, y0]])]
 
     def model_dump(self) -> dict[str, str]:
-        """The shape as it would be written."""
+        """The shape as it is written in a scenario."""
         return {"name": self.name}
 
 
@@ -72,9 +72,9 @@ class MapGrid:
         size: Cells along x and y.
         cell: Extent of a cell along x and y [m].
         origin: Lower left corner, world frame [m].
-        part: Shape for the core: fixed cells, or noise that is drawn per scene.
-        raster: The occupancies; None where they are drawn per scene.
-        cells: Occupied cells; None where they are drawn per scene.
+        part: Shape for the core: fixed cells, or noise that is drawn for each scene.
+        raster: The occupancies; None if they are drawn for each scene.
+        cells: The occupied cells; None if they are drawn for each scene.
     """
 
     size: tuple[int, int]
@@ -86,17 +86,17 @@ class MapGrid:
 
     @property
     def occupied(self) -> int:
-        """Number of occupied cells; -1 where it differs from scene to scene."""
+        """Number of occupied cells; -1 if it differs from scene to scene."""
         return self.cells.count if self.cells is not None else -1
 
     def values(self) -> Floats:
         """(nx, ny) occupancies, 0 to 100.
 
         Raises:
-            ValueError: They are drawn per scene.
+            ValueError: They are drawn for each scene.
         """
         if self.raster is None:
-            raise ValueError("this map is drawn per scene")
+            raise ValueError("this map is drawn for each scene, so it has no fixed values")
         return self.raster.values()
 
 
@@ -106,13 +106,13 @@ def map_grid(
     """Lay a raster or noise over a rectangle.
 
     Args:
-        source: What a generator gave.
-        width: Of the rectangle [m].
-        height: Of the rectangle [m].
-        origin: Its lower left corner, world frame [m].
-        downsample: Keep every so many rows and columns.
+        source: Result of a map generator.
+        width: Width of the rectangle [m].
+        height: Height of the rectangle [m].
+        origin: Lower left corner of the rectangle, world frame [m].
+        downsample: Keep every Nth row and column.
     """
-    downsample = min(downsample, _MOST_CELLS)  # that leaves one cell of any map
+    downsample = min(downsample, _MAX_CELLS_ALONG)  # this leaves one cell of any map
     if isinstance(source, Noise):
         nx, ny = (-(-n // downsample) for n in source.size)
         cell = (width / nx, height / ny)

@@ -1,4 +1,4 @@
-"""What every map generator's options have in common."""
+"""Options that all map generators have in common."""
 
 from __future__ import annotations
 
@@ -11,4 +11,4 @@ class MapOptions(Options):
     """Where the occupancy grid of the world comes from."""
 
     name: str
-    """Which generator."""
+    """Name of the generator."""

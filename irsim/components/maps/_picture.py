@@ -1,4 +1,4 @@
-"""Picture files as grey levels."""
+"""Reads picture files as grey levels."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["image_raster", "open_picture", "upright"]
 
 _WEIGHTS = (0.2989, 0.5870, 0.1140)
-"""Of red, green and blue in grey (ITU-R BT.601, rounded as in MATLAB's rgb2gray)."""
+"""Weights of red, green and blue in a grey level (ITU-R BT.601, rounded as in MATLAB's rgb2gray)."""
 
 
 def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bool]:
@@ -26,14 +26,14 @@ def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bo
 
     Args:
         path: The file.
-        name: What to call it in messages.
-        site: Limits.
+        name: Name of the file in messages.
+        site: Upper bounds on the picture.
 
     Returns:
         (H, W) or (H, W, channels) pixels, and whether the file is a PNG.
 
     Raises:
-        MapProblem: It cannot be read, or has too many pixels.
+        MapProblem: The file cannot be read, or has too many pixels.
     """
     try:
         with warnings.catch_warnings():
@@ -57,16 +57,16 @@ def open_picture(path: Path, name: str, site: MapSite) -> tuple[NDArray[Any], bo
 
 
 def upright(pixels: NDArray[Any]) -> NDArray[Any]:
-    """(H, W) rows from the top → (nx, ny), i along +x, j along +y from the bottom."""
+    """Turn (H, W) rows from the top into (nx, ny) with i along +x and j along +y from the bottom."""
     return pixels.T[:, ::-1]
 
 
 def image_raster(pixels: NDArray[Any], is_png: bool) -> Raster:
-    """Occupancy of a picture: black is 100, white 0; colours count by their brightness, opacity not at all.
+    """Occupancy of a picture: black is 100, white 0; colours count by brightness, opacity is ignored.
 
     Args:
         pixels: (H, W) or (H, W, channels).
-        is_png: Levels are scaled to [0, 1] in single precision, as Matplotlib reads PNG files.
+        is_png: Whether to scale levels to [0, 1] in single precision, as Matplotlib reads PNG files.
     """
     full = _full_scale(pixels)
     plain = pixels if pixels.ndim == 2 else _one_channel(pixels)
@@ -78,7 +78,7 @@ def image_raster(pixels: NDArray[Any], is_png: bool) -> Raster:
 
 
 def _occupancy(pixels: NDArray[Any], is_png: bool, full: float, peak: int | None) -> Floats:
-    """100 (1 - grey). ``peak``: the brightest level that occurs; None looks it up."""
+    """Occupancies 100 (1 - grey); ``peak`` is the brightest level that occurs, None to look it up."""
     values: Any = pixels
     if is_png:
         values = (pixels / full).astype(np.float32) if pixels.dtype != np.bool_ else pixels.astype(np.float32)
@@ -96,7 +96,7 @@ def _occupancy(pixels: NDArray[Any], is_png: bool, full: float, peak: int | None
 
 
 def _one_channel(pixels: NDArray[Any]) -> NDArray[Any] | None:
-    """The channel that all colours share."""
+    """The grey channel of a picture without colours; None if it has colours."""
     if pixels.shape[-1] < 3:
         return pixels[..., 0]
     same = bool((pixels[..., 0] == pixels[..., 1]).all() and (pixels[..., 0] == pixels[..., 2]).all())

@@ -22,21 +22,27 @@ __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 Floats = NDArray[np.float64]
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1.0
-_MOST_YAML = 64 * 1024
-_SAMPLES = 3  # per cell and axis, so that thin walls survive a turn
-_SQUARE = 1e-9
-_FREE_PIXEL, _UNKNOWN_PIXEL = 254, 205  # as the map server's own saver writes them
+_MAX_YAML_BYTES = 64 * 1024
+"""Size of the YAML file of a map."""
+_SAMPLES = 3
+"""Samples per cell and axis, so that thin walls survive a rotation."""
+_EXTENT_TOLERANCE = 1e-9
+"""Relative difference of two extents that count as equal."""
+_FREE_PIXEL = 254
+"""Grey level of free cells, as the saver of the map server writes it."""
+_UNKNOWN_PIXEL = 205
+"""Grey level of unknown cells, as the saver of the map server writes it."""
 
 
 @dataclass(frozen=True)
 class RosMeta:
-    """The YAML file.
+    """Content of the YAML file.
 
     Attributes:
         image: Name of the picture.
         resolution: Side of a pixel [m].
         origin: x, y [m] and yaw [rad] of the lower left corner.
-        negate: White is occupied.
+        negate: Whether white is occupied.
         occupied_thresh, free_thresh: Occupancies (0 to 1) above and below which a pixel is occupied and free.
         mode: ``trinary``, ``scale`` or ``raw``.
     """
@@ -63,40 +69,40 @@ def read_meta(path: Path, name: str) -> RosMeta:
     """The YAML file of a map.
 
     Raises:
-        MapProblem: It is none, or has a wrong value; names the key.
+        MapProblem: The file is not that of a map, or has a wrong value; the message names the key.
     """
     try:
         with path.open("rb") as file:
-            content = file.read(_MOST_YAML + 1)
-        if len(content) > _MOST_YAML:
+            content = file.read(_MAX_YAML_BYTES + 1)
+        if len(content) > _MAX_YAML_BYTES:
             raise _wrong(name, "it is too large for the YAML file of a map (is it the picture?)")
         data = yaml.safe_load(content.decode("utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError, RecursionError) as error:
         text = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise _wrong(name, f"it cannot be read as YAML: {text}") from None
     if not isinstance(data, dict):
-        raise _wrong(name, "it is no mapping with the keys image, resolution and origin")
+        raise _wrong(name, "it must be a mapping with the keys image, resolution and origin")
     for key in ("image", "resolution"):
         if key not in data:
             raise _wrong(name, f"'{key}' is missing")
     resolution = _number(data["resolution"], name, "resolution")
     if not 0 < resolution < math.inf:
-        raise _wrong(name, f"'resolution' must be positive, not {resolution:g}")
+        raise _wrong(name, f"'resolution' must be positive, got {resolution:g}")
     origin = data.get("origin", [0.0, 0.0, 0.0])
     if not isinstance(origin, list) or len(origin) not in (2, 3):
-        raise _wrong(name, "'origin' is [x, y, yaw]")
+        raise _wrong(name, "'origin' must be [x, y, yaw]")
     x, y, yaw = (_number(value, name, "origin") for value in [*origin, 0.0][:3])
     occupied, free = (
         _number(data.get(key, standard), name, key)
         for key, standard in (("occupied_thresh", 0.65), ("free_thresh", 0.196))
     )
     if not 0 <= free <= occupied <= 1:
-        raise _wrong(name, f"0 <= free_thresh <= occupied_thresh <= 1 does not hold ({free:g}, {occupied:g})")
+        raise _wrong(name, f"0 <= free_thresh <= occupied_thresh <= 1 must hold, got {free:g} and {occupied:g}")
     mode = data.get("mode", "trinary")
     if mode not in MODES:
-        raise _wrong(name, f"'mode' is one of {', '.join(MODES)}, not '{mode}'")
+        raise _wrong(name, f"'mode' must be one of {', '.join(MODES)}, got '{mode}'")
     if not isinstance(data["image"], str):
-        raise _wrong(name, "'image' is the name of a picture")
+        raise _wrong(name, "'image' must be the name of a picture")
     negate = bool(_number(data.get("negate", 0), name, "negate"))
     return RosMeta(data["image"], resolution, (x, y, yaw), negate, occupied, free, mode)
 
@@ -109,7 +115,7 @@ def occupancy_of(pixels: NDArray[Any], meta: RosMeta) -> Floats:
         meta: Thresholds and mode.
 
     Returns:
-        (H, W) 0 to 100, -1 where it is unknown.
+        (H, W) occupancies 0 to 100, -1 where unknown.
     """
     values = pixels.astype(np.float64)
     scale = float(np.iinfo(pixels.dtype).max) if np.issubdtype(pixels.dtype, np.integer) else 1.0
@@ -133,7 +139,7 @@ def occupancy_of(pixels: NDArray[Any], meta: RosMeta) -> Floats:
 
 
 def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
-    """What :func:`occupancy_of` reads back.
+    """Pixels from which :func:`occupancy_of` reads these occupancies back.
 
     Args:
         values: (nx, ny) occupancies 0 to 100, -1 where unknown.
@@ -162,12 +168,12 @@ def pixels_of(values: Floats, meta: RosMeta) -> NDArray[np.uint8]:
 
 
 def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
-    """A map over the rectangle that the world wants, or over its own.
+    """A map over the rectangle of the world if the scenario gives one, else over its own rectangle.
 
     Args:
         path: The YAML file.
-        name: What to call it in messages.
-        site: The world, and where files may be.
+        name: Name of the file in messages.
+        site: The world, and where to look for files.
         unknown: Occupancy of unknown cells.
 
     Raises:
@@ -185,15 +191,17 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
     )
     size = cells_along(wanted[0], meta.resolution), cells_along(wanted[1], meta.resolution)
     site.check_cells(*size)
-    plain = meta.origin[2] == 0.0 and size == values.shape and wanted[2] == origin
-    if not (plain and abs(wanted[0] - width) <= _SQUARE * width and abs(wanted[1] - height) <= _SQUARE * height):
+    aligned = meta.origin[2] == 0.0 and size == values.shape and wanted[2] == origin
+    width_fits = abs(wanted[0] - width) <= _EXTENT_TOLERANCE * width
+    height_fits = abs(wanted[1] - height) <= _EXTENT_TOLERANCE * height
+    if not (aligned and width_fits and height_fits):
         values = _resampled(values, meta, size, wanted, unknown)
     values = np.where(values < 0, unknown, values)
     return Raster(values, None, wanted[0], wanted[1], wanted[2])
 
 
 def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[float, float]]:
-    """Width, height and lower left corner of the box around the (turned) picture, in whole cells."""
+    """Width, height and lower left corner [m] of the box round the (rotated) picture, in whole cells."""
     r, (x, y, yaw) = meta.resolution, meta.origin
     if yaw == 0.0:
         return shape[0] * r, shape[1] * r, (x, y)
@@ -211,7 +219,7 @@ def _resampled(
     wanted: tuple[float, float, tuple[float, float]],
     unknown: float,
 ) -> Floats:
-    """The highest occupancy that samples of each wanted cell find in the picture; what is outside it is unknown."""
+    """Occupancy of each wanted cell: the highest of several samples of the picture, unknown outside of it."""
     (nx, ny), (x, y, yaw) = size, meta.origin
     c, s = math.cos(yaw), math.sin(yaw)
     best = np.full(size, -math.inf)
@@ -231,13 +239,13 @@ def _resampled(
 def _number(value: Any, name: str, key: str) -> float:
     if isinstance(value, (int, float)) and math.isfinite(value):
         return float(value)
-    raise _wrong(name, f"'{key}' is a number, not {value!r}")
+    raise _wrong(name, f"'{key}' must be a number, got {value!r}")
 
 
 def _wrong(name: str, why: str) -> MapProblem:
     return MapProblem(
         "map-unreadable",
-        f"'{name}' is no ROS map: {why}",
+        f"'{name}' is not a ROS map: {why}",
         given=name,
         fix="give the YAML file with the keys image, resolution, origin, negate, occupied_thresh and free_thresh",
     )

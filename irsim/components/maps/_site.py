@@ -1,4 +1,4 @@
-"""Where a map is wanted, which files it may read, and what a map generator hands back."""
+"""The input and the output of map generators: the world that wants a map, files to read, rasters and noise."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ if TYPE_CHECKING:
 
 __all__ = ["MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
 
-_COUNTABLE = 1e15
+_MAX_CELLS_ALONG = 1e15
+"""Number of cells that a count is cut to, so that it stays an exact integer; no map is that large."""
 
 
 def cells_along(length: float, size: float) -> int:
-    """Cells of about a size over a length [m], at least one; a number too large for any map where there is none."""
-    return max(1, round(min(length / size, _COUNTABLE)))
+    """Number of cells of about ``size`` [m] along a ``length`` [m], at least one."""
+    return max(1, round(min(length / size, _MAX_CELLS_ALONG)))
 
 
 class MapProblem(Exception):
-    """Why there is no map, with the fields of a diagnostic.
+    """The reason why a map cannot be made, with the fields of a diagnostic.
 
     Attributes:
         code: From :data:`irsim.diagnostics.codes.CODES`.
-        key: Key of the mapping that is to blame; None for the mapping itself.
+        key: Key of the mapping that is at fault; None for the mapping itself.
     """
 
     def __init__(
@@ -51,13 +52,13 @@ class MapProblem(Exception):
 
 @dataclass
 class Raster:
-    """Occupancy of a rectangle.
+    """Occupancies of the cells of a rectangle.
 
     Attributes:
         levels: (nx, ny) one number per cell, i along +x, j along +y.
-        table: Occupancy (0 to 100) of each level; None: the levels are occupancies.
-        width, height: Extent that the source itself prescribes [m].
-        origin: Lower left corner that the source itself prescribes [m].
+        table: Occupancy (0 to 100) of each level; None if the levels are occupancies.
+        width, height: Extent that the source prescribes [m]; None if it prescribes none.
+        origin: Lower left corner that the source prescribes [m]; None if it prescribes none.
     """
 
     levels: NDArray[Any]
@@ -82,7 +83,7 @@ class Raster:
 
 @dataclass
 class Noise:
-    """Gradient noise that is drawn anew in every scene: cells along x and y, and the options of the noise."""
+    """Gradient noise that is drawn for each scene: number of cells along x and y, and the options of the noise."""
 
     size: tuple[int, int]
     complexity: float
@@ -93,19 +94,21 @@ class Noise:
 
 @dataclass
 class MapSite:
-    """What a map generator may know.
+    """The world that a map is made for, the files that the generator may read, and its limits.
 
     Attributes:
-        width, height: Extent of the world [m]; None where the scenario leaves it to the map.
-        origin: Lower left corner of the world [m]; None where the scenario leaves it to the map.
-        folders: Where files are looked for, in order.
-        bundled: File by name of the maps that come along.
-        refuse: Tells why a name may not be used, None if it may; gets the name and the folders it may be relative to.
-        most_cells: Cells of a map.
-        most_bytes: Size of a file.
-        notes: (code, sentence) of what the user should know.
-        kept: File by name where it is not looked for; these were found before.
-        found: File by name of what was found, without the maps that come along.
+        width, height: Extent of the world [m]; None if the map determines it.
+        origin: Lower left corner of the world [m]; None if the map determines it.
+        folders: Folders in which files are looked for, in order.
+        bundled: Function from the name of a bundled map to its file.
+        bundled_names: Function that returns the names of the bundled maps.
+        refuse: Function that returns why a file name is not allowed, or None; its arguments are the name and the
+            folders that it may be relative to.
+        max_cells: Largest number of cells of a map.
+        max_bytes: Largest size of a file.
+        notes: Hints for the user, as (code, sentence).
+        kept: Name -> file to read without looking for it.
+        found: Name -> file that was found, without bundled maps.
     """
 
     width: float | None = None
@@ -115,8 +118,8 @@ class MapSite:
     bundled: Callable[[str], Path | None] = lambda name: None
     bundled_names: Callable[[], list[str]] = list
     refuse: Callable[[str, Sequence[Path]], str | None] = lambda name, folders: None
-    most_cells: int = 64_000_000
-    most_bytes: int = 256 * 1024**2
+    max_cells: int = 64_000_000
+    max_bytes: int = 256 * 1024**2
     notes: list[tuple[str, str]] = field(default_factory=list)
     kept: Mapping[str, str] = field(default_factory=dict)
     found: dict[str, str] = field(default_factory=dict)
@@ -125,11 +128,11 @@ class MapSite:
         """The file of that name.
 
         Args:
-            name: As somebody wrote it.
+            name: The name as written.
             beside: Folder to look in first.
 
         Raises:
-            MapProblem: There is none, it may not be read, or it is too large.
+            MapProblem: The file does not exist, is not allowed, or is too large.
         """
         if name in self.kept:
             return self._checked(Path(self.kept[name]), name)
@@ -159,33 +162,33 @@ class MapSite:
         )
 
     def check_cells(self, columns: int, rows: int, key: str | None = "path") -> None:
-        """Refuse a map of too many cells before any are made.
+        """Refuse a map of too many cells before any cell is made.
 
         Raises:
-            MapProblem: Too many.
+            MapProblem: The map would have too many cells.
         """
-        if columns * rows > self.most_cells:
+        if columns * rows > self.max_cells:
             raise MapProblem(
                 "map-too-large",
-                f"{columns:,} x {rows:,} cells; a map may have {self.most_cells:,}",
+                f"a map may have at most {self.max_cells:,} cells, got {columns:,} x {rows:,}",
                 key=key,
-                allowed=f"at most {self.most_cells:,} cells",
+                allowed=f"at most {self.max_cells:,} cells",
                 fix="use a smaller picture, or a coarser resolution",
             )
 
     def _checked(self, path: Path, name: str) -> Path:
         size = path.stat().st_size
-        if size > self.most_bytes:
+        if size > self.max_bytes:
             raise MapProblem(
                 "map-too-large",
-                f"'{name}' has {size:,} bytes; a map file may have {self.most_bytes:,}",
+                f"a map file may have at most {self.max_bytes:,} bytes, but '{name}' has {size:,}",
                 given=name,
-                allowed=f"at most {self.most_bytes:,} bytes",
+                allowed=f"at most {self.max_bytes:,} bytes",
             )
         return path
 
     def _near(self, name: str, folders: Sequence[Path]) -> str | None:
-        """A file with a similar name."""
+        """The name of a file or bundled map that is similar to ``name``; None if none is."""
         choices = list(self.bundled_names())
         suffix = Path(name).suffix.lower()
         for folder in folders:

@@ -19,20 +19,20 @@ class ImageMap(MapOptions):
 
     name: Literal["image"] = "image"
     path: Annotated[str, Field(strict=True, min_length=1)]
-    """Picture file: as written, beside the scenario, or one of the bundled maps."""
+    """Picture file: a path as given or relative to the scenario, or the name of a bundled map."""
 
 
 @MAPS.register(ImageMap)
 def image(options: ImageMap, site: MapSite) -> Raster:
-    """The picture as it is; pixels need not be square.
+    """The picture as a raster; its pixels need not be square.
 
     Raises:
-        MapProblem: There is no such picture, or it cannot be read.
+        MapProblem: The picture does not exist or cannot be read.
     """
     from irsim.components.maps._picture import image_raster, open_picture
 
     path = site.find(options.path)
     own = stand_in(options.path)
     if own is not None and path.name == own:
-        site.notes.append(("map-stand-in", f"'{options.path}' does not come along: '{own}' is used in its place"))
+        site.notes.append(("map-stand-in", f"'{options.path}' is not included: '{own}' is used instead"))
     return image_raster(*open_picture(path, options.path, site))

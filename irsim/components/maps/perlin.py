@@ -27,22 +27,22 @@ class PerlinMap(MapOptions):
     resolution: Annotated[Meters, Field(gt=0)]
     """Cell size."""
     complexity: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "1/cell"})] = 0.142857
-    """Frequency of the noise: larger makes smaller rooms."""
+    """Frequency of the noise: a larger one makes smaller free areas."""
     fill: Fraction = 0.38
     """Share of occupied cells."""
     fractal: Annotated[Integer, Field(ge=1, le=32)] = 1
-    """Octaves of finer and finer detail."""
+    """Number of octaves: each adds finer detail."""
     attenuation: Annotated[Number, Field(gt=0)] = 0.5
-    """Amplitude of detail k is this divided by k + 1."""
+    """Amplitude of octave k, counted from 0, is this divided by k + 1."""
     seed: Annotated[Integer, Field(ge=0)] | None = None
-    """Seed of the noise alone: always the same map; null draws a new one in every scene from the scenario's seed."""
+    """Seed of the noise, for the same map every time; null draws a new map for every scene from the scenario's seed."""
 
 
 def cells_of(site: MapSite, resolution: float) -> tuple[int, int]:
-    """Cells along x and y of about that size over the world, at least one.
+    """Number of cells of about this size along x and y of the world, at least one.
 
     Raises:
-        MapProblem: Too many.
+        MapProblem: The map would have too many cells.
     """
     width, height = site.width or 0.0, site.height or 0.0
     nx, ny = cells_along(width, resolution), cells_along(height, resolution)
@@ -53,7 +53,7 @@ def cells_of(site: MapSite, resolution: float) -> tuple[int, int]:
 def noise_values(
     columns: int, rows: int, complexity: float, fill: float, fractal: int, attenuation: float, seed: int | None
 ) -> Floats:
-    """(columns, rows) 100 where occupied, else 0.
+    """Occupancies of a noise map: (columns, rows) array, 100 where occupied, else 0.
 
     Args:
         columns: Cells along x.
@@ -62,7 +62,7 @@ def noise_values(
         fill: Share of occupied cells.
         fractal: Octaves.
         attenuation: Amplitude of octave k, times k + 1.
-        seed: Of the permutation behind the noise; None takes fresh entropy.
+        seed: Seed of the permutation behind the noise; None takes fresh entropy.
     """
     import numpy as np
 
@@ -73,7 +73,7 @@ def noise_values(
 
 @MAPS.register(PerlinMap)
 def perlin(options: PerlinMap, site: MapSite) -> Raster | Noise:
-    """Fixed cells for a seed, else noise that the core draws per scene."""
+    """Fixed cells if a seed is given, else noise that the core draws for each scene."""
     nx, ny = cells_of(site, options.resolution)
     if options.seed is None:
         return Noise((nx, ny), options.complexity, options.fill, options.fractal, options.attenuation)

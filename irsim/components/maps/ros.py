@@ -17,18 +17,18 @@ class RosMap(MapOptions):
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ros", "path": "map.yaml"}]}
 
     sets_extent: ClassVar[bool] = True
-    """The world takes its extent and offset from the map where the scenario gives none."""
+    """Whether the world takes its extent and offset from the map if the scenario gives none."""
 
     name: Literal["ros"] = "ros"
     path: Annotated[str, Field(strict=True, min_length=1)]
-    """The map's YAML file."""
+    """YAML file of the map."""
     unknown: Literal["free", "occupied"] = "free"
-    """What cells count as that are neither."""
+    """Whether cells that are neither free nor occupied count as free or occupied."""
 
 
 @MAPS.register(RosMap)
 def ros(options: RosMap, site: MapSite) -> Raster:
-    """The map where it says it is; turned ones are sampled anew.
+    """The map at the place that its file gives; a rotated map is resampled.
 
     Raises:
         MapProblem: A file is missing or wrong.

@@ -19,7 +19,7 @@ class InformedRrtStar(RrtStar):
 
     name: Literal["informed_rrt_star"] = "informed_rrt_star"  # type: ignore[assignment]  # an rrt_star by another name
     goal_sample_rate: Annotated[Number, Field(ge=0, le=100)] = 10.0
-    """Share of samples that are the goal, in percent."""
+    """Share of samples placed at the goal, in percent."""
     connect_circle_dist: Annotated[Meters, Field(gt=0)] = 50.0
     """Scale of the radius in which the tree is rewired."""
     search_until_max_iter: Bool = True

@@ -10,7 +10,7 @@ from irsim.options.registry import PLANNERS
 
 
 class Jps(GridPlanner):
-    """The paths of A*, found by jumping over cells that need no decision."""
+    """Jump point search: the paths of A*, found faster by skipping cells without a choice."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "jps"}]}
 

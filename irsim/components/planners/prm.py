@@ -19,9 +19,9 @@ class Prm(PlannerOptions):
 
     name: Literal["prm"] = "prm"
     n_sample: Annotated[Integer, Field(ge=1)] = 500
-    """How many free points are drawn."""
+    """Number of random free points."""
     n_knn: Annotated[Integer, Field(ge=1)] = 10
-    """Most edges per point."""
+    """Largest number of edges per point."""
     max_edge_len: Annotated[Meters, Field(gt=0)] = 30.0
     """Longest edge."""
 

@@ -1,4 +1,4 @@
-"""What sensor options have in common."""
+"""Options that all sensors have in common."""
 
 from __future__ import annotations
 
@@ -16,6 +16,6 @@ class SensorOptions(Options):
     """Whether the first such sensor becomes the object's ``lidar``."""
 
     name: str
-    """Which sensor."""
+    """Name of the sensor."""
     type: str | None = None
-    """Another word for `name`, used where `name` is missing."""
+    """Another key for the name, used if `name` is missing."""

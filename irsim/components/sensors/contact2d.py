@@ -13,7 +13,7 @@ from irsim.options.units import Fraction, Number, Points
 
 
 class Contact2d(SensorOptions):
-    """Shows the forces of the object's contacts as arrows; only the first one listed records."""
+    """Records the contacts of the object and draws their forces as arrows; only the first of several records."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "contact2d"}]}
 
@@ -25,12 +25,12 @@ class Contact2d(SensorOptions):
     linewidth: Annotated[Points, Field(ge=0)] = 1.5
     """Width of the arrows."""
     alpha: Fraction = 0.9
-    """Opacity."""
+    """Opacity of marks and arrows."""
     color: Color = "#CC79A7"
     """Colour of marks and arrows."""
 
 
 @SENSORS.register(Contact2d)
 def contact2d(parent: Any, options: Contact2d, rng: Any) -> Any:
-    """List of :class:`irsim.objects.sensors.contact.ContactReport`: the contacts of the last step."""
+    """List of :class:`irsim.objects.sensors.contact.ContactReport`: of the contacts of the last step."""
     return parent.contact.reports

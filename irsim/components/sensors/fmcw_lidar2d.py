@@ -15,32 +15,32 @@ from irsim.options.units import Bool, Fraction, MetersPerSecond, Number, Points
 
 
 class VelocityColors(Options):
-    """How measured velocities are drawn; null takes the value beside `plot`, else the default."""
+    """How measured velocities are drawn; null is the value of the same key of the sensor, else the default."""
 
     velocity_color: Bool | None = None
     """Colour the beams by radial velocity (default true)."""
     velocity_color_max: Annotated[MetersPerSecond, Field(gt=0)] | None = None
-    """Radial speed of full colour (default 2.0); 1.0 suits walking people."""
+    """Radial speed drawn in full colour (default 2.0); 1.0 suits walking people."""
     velocity_linewidth: Annotated[Points, Field(ge=0)] | None = None
-    """Width of beams that hit (default 2.5)."""
+    """Width of beams that hit something (default 2.5)."""
     no_hit_linewidth: Annotated[Points, Field(ge=0)] | None = None
     """Width of beams that hit nothing (default 0.8)."""
     no_hit_alpha: Fraction | None = None
     """Opacity of beams that hit nothing (default 0.03)."""
     show_velocity_markers: Bool | None = None
-    """Mark the points hit (default true)."""
+    """Mark the points that beams hit (default true)."""
     velocity_marker_size: Annotated[Number, Field(ge=0)] | None = None
     """Area of the marks in square points (default 36)."""
     velocity_marker_edge_color: Color | None = None
     """Outline of the marks (default black)."""
     velocity_marker_edge_width: Annotated[Points, Field(ge=0)] | None = None
-    """Width of that outline (default 0.6)."""
+    """Width of the outline of the marks (default 0.6)."""
     zero_velocity_color: Color | None = None
-    """Colour of what stands still relative to the sensor (default #56B4E9)."""
+    """Colour of hits without radial velocity (default #56B4E9)."""
     positive_velocity_color: Color | None = None
-    """Colour of what moves away (default #CC3311)."""
+    """Colour of hits that move away (default #CC3311)."""
     negative_velocity_color: Color | None = None
-    """Colour of what comes nearer (default #0072B2)."""
+    """Colour of hits that come nearer (default #0072B2)."""
     no_hit_color: Color | None = None
     """Colour of beams that hit nothing (default lightgray)."""
 
@@ -52,7 +52,7 @@ class FmcwPlot(VelocityColors, BeamPlot):
 class FmcwLidar2d(VelocityColors, Lidar2d):
     """Lidar that measures range and radial velocity (positive: receding) of each beam's hit.
 
-    Programs find it as `radial_velocity` in the scan.
+    Programs read the velocities as `radial_velocity` of the scan.
     """
 
     DRAWING: ClassVar[dict[str, Any]] = {
@@ -75,11 +75,11 @@ class FmcwLidar2d(VelocityColors, Lidar2d):
 
     name: Literal["fmcw_lidar2d"] = "fmcw_lidar2d"  # type: ignore[assignment]  # a lidar2d with another name
     motion_compensate: Bool = False
-    """Report the target's own radial speed instead of the relative one."""
+    """Report the radial velocity of the target itself instead of the relative one."""
     velocity_noise_std: Annotated[MetersPerSecond, Field(ge=0)] = 0.0
-    """Standard deviation of the noise on radial velocity; works without `noise`."""
+    """Standard deviation of the noise of the radial velocity; it does not need `noise`."""
     plot: FmcwPlot = FmcwPlot()
-    """Drawing options; they win over the same keys beside them."""
+    """Drawing options; they take precedence over the same keys of the sensor."""
 
     def drawing(self) -> dict[str, Any]:
         """Every velocity drawing option with its effective value."""

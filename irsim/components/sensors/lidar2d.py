@@ -20,13 +20,13 @@ class BeamPlot(Options):
     """How a lidar's beams are drawn."""
 
     alpha: Fraction | None = None
-    """Opacity of the beams; null takes the sensor's own `alpha`."""
+    """Opacity of the beams; null is the `alpha` of the sensor."""
     color: Color | None = None
-    """Colour of the beams; null takes the sensor's own `color`."""
+    """Colour of the beams; null is the `color` of the sensor."""
 
 
 class Lidar2d(SensorOptions):
-    """Planar lidar: `number` beams spread over `angle_range`, both ends included; index 0 is the rightmost."""
+    """Planar lidar: `number` beams spread over `angle_range`, with a beam at both ends; index 0 is the rightmost."""
 
     is_lidar: ClassVar[bool] = True
 
@@ -55,28 +55,28 @@ class Lidar2d(SensorOptions):
 
     name: Literal["lidar2d"] = "lidar2d"
     range_min: Annotated[Meters, Field(ge=0)] = 0.0
-    """Shortest range; nearer hits read this value and are not valid."""
+    """Shortest range; a nearer hit reads this value and is not valid."""
     range_max: Annotated[Meters, Field(gt=0)] = 10.0
     """Length of the beams; a beam that hits nothing reads this value."""
     angle_range: SpanAngle = 3.141592653589793
     """Total opening angle, symmetric about the sensor's x axis; 6.28318 is a full turn."""
     number: Annotated[Integer, Field(ge=1, le=1_000_000)] = 100
-    """How many beams, both ends included; over a full turn the first and the last look the same way: 361 beams are 360
-    directions, for exactly 360 use `angle_range` 6.26573."""
+    """Number of beams. Over a full turn the first and the last point the same way, so 361 beams are 360 directions; for
+    exactly 360 beams in 360 directions use `angle_range` 6.26573."""
     scan_time: Annotated[Seconds, Field(ge=0)] = 0.1
-    """Time of one scan, reported in messages only."""
+    """Duration of one scan, only reported in messages."""
     noise: Bool = False
     """Add Gaussian noise to the ranges of beams that hit something."""
     std: Annotated[Meters, Field(ge=0)] = 0.2
-    """Standard deviation of the range noise."""
+    """Standard deviation of the range noise, with `noise`."""
     angle_std: Annotated[Radians, Field(ge=0)] = 0.0
     """Standard deviation of each beam's direction, with `noise`."""
     offset: Offset = [0.0, 0.0, 0.0]
     """Mounting pose in the body frame: [x, y, theta]."""
     has_velocity: Bool = False
-    """Also record the world velocity of what each beam hits."""
+    """Also record the velocity, world frame, of the object that each beam hits."""
     plot: BeamPlot = BeamPlot()
-    """Drawing options; they win over `alpha` and `color` beside them."""
+    """Drawing options; they take precedence over `alpha` and `color`."""
     alpha: Fraction = 0.3
     """Opacity of the drawn beams."""
     color: Color = "#CC3311"

@@ -1,4 +1,4 @@
-"""What shape options have in common, and the random polygon parameters."""
+"""Options that all shapes have in common, and the parameters of random outlines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class ShapeOptions(Options):
     any_case: ClassVar[bool] = True
 
     name: str
-    """Which shape."""
+    """Name of the shape."""
     wheelbase: Annotated[Meters, Field(ge=0)] | None = None
     """Distance between the axles, for `acker`; rectangles and circles then have their origin at the rear axle."""
 
@@ -31,19 +31,19 @@ class RandomOutline(ShapeOptions):
     vertices: list[Point] | None = None
     """Corners in the body frame, used as given; the object's `state` moves and turns them."""
     random_shape: Bool = False
-    """Draw the vertices at random instead, anew for every scene."""
+    """Draw random vertices for every scene instead."""
     center_range: Annotated[list[Component], vector(("m", "m", "m", "m"), 4)] = [0.0, 0.0, 0.0, 0.0]
-    """Where the middle of a random outline may lie, body frame: [xmin, ymin, xmax, ymax]."""
+    """Range of the middle of a random outline, body frame: [xmin, ymin, xmax, ymax]."""
     avg_radius_range: Annotated[list[Annotated[Component, Field(ge=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]
     """Range of the mean distance of the vertices from the middle."""
     irregularity_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] = [0.0, 1.0]
-    """Range of how uneven the angles between vertices are: 0 even, 1 very uneven."""
+    """Range of the unevenness of the angles between vertices: 0 is even, 1 very uneven."""
     spikeyness_range: Annotated[list[Annotated[Component, Field(ge=0, le=1)]], vector(("1", "1"), 2)] | None = None
-    """Range of how much the distances from the middle differ: 0 not at all; null is [0, 1], or [0, 0] if convex."""
+    """Range of the variation of the distances from the middle: 0 is none; null is [0, 1], or [0, 0] if convex."""
     num_vertices_range: Annotated[list[Annotated[Integer, Field(ge=3)]], vector(("1", "1"), 2)] = [4, 10]
-    """Number of vertices: lowest, and one more than the highest."""
+    """Range of the number of vertices: the smallest number, and one more than the largest."""
     number: Annotated[Integer, Field(ge=1, le=1)] = 1
-    """Always 1: one outline per object."""
+    """Number of outlines per object, which is always 1."""
 
 
 def random_polygon(options: RandomOutline, convex: bool, closed: bool) -> core.RandomPolygon:

@@ -22,11 +22,11 @@ class Circle(ShapeOptions):
     radius: Annotated[Meters, Field(gt=0)] = 0.2
     """Radius of the disc."""
     center: Point = [0.0, 0.0]
-    """Offset of its middle in the body frame; it turns with the heading."""
+    """Offset of the middle of the disc in the body frame; it turns with the heading."""
     random_shape: Bool = False
-    """Draw the radius at random instead, anew for every scene."""
+    """Draw a random radius for every scene instead."""
     radius_range: Annotated[list[Annotated[Meters, Field(gt=0)]], vector(("m", "m"), 2)] = [0.1, 1.0]
-    """Range of a random radius."""
+    """Range of the random radius, with `random_shape`."""
 
 
 @SHAPES.register(Circle)

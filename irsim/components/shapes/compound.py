@@ -21,21 +21,21 @@ class CirclePart(Circle):
     """A disc of a compound."""
 
     pose: Offset = [0.0, 0.0, 0.0]
-    """Where the part sits in the body frame."""
+    """Pose of the part in the body frame: [x, y, theta]."""
 
 
 class RectanglePart(Rectangle):
     """A box of a compound."""
 
     pose: Offset = [0.0, 0.0, 0.0]
-    """Where the part sits in the body frame."""
+    """Pose of the part in the body frame: [x, y, theta]."""
 
 
 class PolygonPart(Polygon):
     """An outline of a compound."""
 
     pose: Offset = [0.0, 0.0, 0.0]
-    """Where the part sits in the body frame."""
+    """Pose of the part in the body frame: [x, y, theta]."""
 
 
 _PARTS: dict[str, type[CirclePart] | type[RectanglePart] | type[PolygonPart]] = {
@@ -63,7 +63,8 @@ class Compound(ShapeOptions):
 
     name: Literal["compound"] = "compound"
     parts: Annotated[list[Part], Field(min_length=1)]
-    """The parts: mappings like a `shape` (circle, rectangle or polygon), each with a `pose` in the body frame."""
+    """Parts of the shape: mappings like a `shape` (circle, rectangle or polygon), each with a `pose` in the body
+    frame."""
 
 
 def _placed(points: list[list[float]], pose: list[float]) -> list[list[float]]:

@@ -21,7 +21,7 @@ class Linestring(RandomOutline):
 
     name: Literal["linestring"] = "linestring"
     is_convex: Bool = True
-    """With `random_shape`: all vertices on a circle."""
+    """With `random_shape`: put all vertices on a circle."""
 
 
 @SHAPES.register(Linestring)

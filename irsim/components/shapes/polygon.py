@@ -24,7 +24,7 @@ class Polygon(RandomOutline):
 
     name: Literal["polygon"] = "polygon"
     is_convex: Bool = False
-    """With `random_shape`: all vertices on a circle."""
+    """With `random_shape`: put all vertices on a circle."""
 
 
 @SHAPES.register(Polygon)

@@ -6,20 +6,20 @@
 #include "geometry/predicates.hpp"
 #include "orca/crowd.hpp"
 #include "orca/obstacles.hpp"
-#include "spec.hpp"
+#include "world/spec.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kLeastSpeed = 1e-6;   // slower wishes are rounding [m/s]
-constexpr double kRouteHorizon = 0.5;  // on a route, farther ahead walls are its business [s]
-constexpr double kCarAngle = 1.2;      // farther off its heading a car does not look for a velocity [rad]
-constexpr double kCarStuck = 0.1;      // share of its speed below which a car backs off
-constexpr double kCarBack = 0.3;       // share of its speed at which it wants to back off
-constexpr double kCarTurn = 0.5;       // largest steering angle while it backs off [rad]
-constexpr double kCarCreep = 0.2;      // least share of a wanted speed at which a car drives on to be able to turn
+constexpr double kMinSpeed = 1e-6;           // slower velocities are rounding errors [m/s]
+constexpr double kRouteHorizon = 0.5;        // time horizon for walls on a route, which already avoids them [s]
+constexpr double kMaxCarAngle = 1.2;         // largest angle between the heading and the velocity of a car [rad]
+constexpr double kStuckShare = 0.1;          // a car below this share of its wanted speed backs up
+constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
+constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
+constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
 
-/// Fastest speed in every direction, or forward for drives that cannot move sideways [m/s].
+/// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
 double top_speed(const OrcaOptions& options, const World& world, int object) {
   const Vec3& top = world.vel_max[object];
   const Drive& drive = world.drive[object];
@@ -28,8 +28,8 @@ double top_speed(const OrcaOptions& options, const World& world, int object) {
   return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed, own) : own);
 }
 
-/// Full speed to the goal; nothing without one, or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
-/// unequal limits leans toward the axis of the world that has the larger one.
+/// Full speed toward the goal; zero without a goal or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
+/// unequal limits leans toward the axis of the world with the larger limit.
 Vec2 preferred_velocity(const World& world, const State& state, int row, int object, double speed) {
   const Goal& goal = state.destination(row);
   if (std::isnan(goal.x)) return {};
@@ -43,37 +43,37 @@ Vec2 preferred_velocity(const World& world, const State& state, int row, int obj
   return length > 0.0 ? way * (speed / length) : Vec2{};
 }
 
-/// How a drive that cannot move sideways turns. Small changes of direction and slow wishes are left out, as in IR-SIM,
-/// but for those that avoid somebody: the next step starts from the true velocity and would ask for the same again.
+/// How a drive that cannot move sideways turns. As in IR-SIM, small changes of direction and slow velocities are
+/// ignored. They count for an object that avoids another one, because the next step would ask for the same change
+/// again.
 Turning turning_for(const World& world, int object, bool avoiding) {
   Turning turning;
   turning.guarantee_time = world.step_time;
   turning.max_rate = world.vel_max[object][1];
-  if (avoiding) turning.min_speed = kLeastSpeed, turning.tolerance = 0.0;
+  if (avoiding) turning.min_speed = kMinSpeed, turning.tolerance = 0.0;
   return turning;
 }
 
-/// A car, which turns only while it rolls: it looks for velocities on either side of its heading only, and wants to go
-/// as far to the side of the goal as that allows. `planes` is empty before; zero is in both.
+/// Restrict the velocities of a car, which turns only while it rolls, to a sector about its heading, and turn
+/// `preferred` into it. `planes` must be empty; both planes added include zero.
 void face_ahead(Vec2 heading, std::vector<HalfPlane>& planes, Vec2& preferred) {
-  const Vec2 most = unit(kCarAngle), left = rotate(heading, most), right = rotate(heading, {most.x, -most.y});
+  const Vec2 most = unit(kMaxCarAngle), left = rotate(heading, most), right = rotate(heading, {most.x, -most.y});
   planes.push_back({{}, right});
   planes.push_back({{}, left * -1.0});
   const bool ahead = planes[0].depth(preferred) >= 0.0 && planes[1].depth(preferred) >= 0.0;
   if (!ahead) preferred = (cross(heading, preferred) > 0.0 ? left : right) * norm(preferred);
 }
 
-/// Controls of a car that shall go with `velocity`: steering acts from the next period on, and is then set such that
-/// the heading is right at its end.
+/// Controls with which a car realises `velocity`. Steering acts in the next period, at whose end the heading is right.
 Vec3 car_control(const AckerOptions& car, const World& world, const State& state, int row, Vec2 velocity, double most) {
   const double speed = norm(velocity), dt = world.step_time, psi = state.extra[std::size_t(row) * state.extra_rows];
   const double wheelbase = car.wheelbase > 0.0 ? car.wheelbase : 1.0;
   Vec3 control;
   double target = psi;
-  if (speed > kLeastSpeed) {
+  if (speed > kMinSpeed) {
     const Vec2 heading = state.heading(row);
-    control[0] = std::min(std::max(dot(heading, velocity), kCarCreep * speed), most);
-    const double rolling = std::max(control[0], kCarCreep * kCarCreep);
+    control[0] = std::min(std::max(dot(heading, velocity), kMinCarShare * speed), most);
+    const double rolling = std::max(control[0], kMinCarShare * kMinCarShare);
     const double error = std::atan2(cross(heading, velocity), dot(heading, velocity));
     target = std::atan(error * wheelbase / (rolling * dt) - std::tan(psi) * control[0] / rolling);
   }
@@ -81,7 +81,7 @@ Vec3 car_control(const AckerOptions& car, const World& world, const State& state
   return control;
 }
 
-/// Fastest speed along `direction` that stays within planes that zero is in [m/s].
+/// Largest speed along `direction` within planes that include zero [m/s].
 double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
   double most = kInfinity;
   for (int k = 0; k < count; ++k) {
@@ -91,31 +91,32 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
   return most;
 }
 
-/// Controls of a car whose way ahead is blocked: back as far as what is behind allows, turning toward `preferred`.
-/// False when that is no faster than `ahead` [m/s]. The first two planes are those of `face_ahead`, which are turned
-/// round.
+/// Find controls with which a blocked car backs up as fast as the obstacles behind it allow, turning toward
+/// `preferred`. Returns false if that is not faster than `ahead` [m/s]. The first two planes are those of `face_ahead`,
+/// which are reversed.
 bool back_off(const AckerOptions& car, const World& world, const State& state, int row, double speed, int hard,
               double ahead, Vec2 preferred, OrcaCrowd& all, Vec3& control) {
   const Vec2 heading = state.heading(row), behind = heading * -1.0;
   for (int k = 0; k < 2; ++k) all.planes[k].direction = all.planes[k].direction * -1.0;
   Vec2 found;
-  choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, behind * (kCarBack * speed),
+  choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, behind * (kBackingShare * speed),
                   all.scratch, found);
   const double back = std::min(dot(found, behind), fastest_along(behind, all.planes.data(), hard));
   if (back <= ahead) return false;
   const double psi = state.extra[static_cast<std::size_t>(row) * state.extra_rows];
-  const double target = -clip(std::atan2(cross(heading, preferred), dot(heading, preferred)), -kCarTurn, kCarTurn);
+  const double target =
+      -clip(std::atan2(cross(heading, preferred), dot(heading, preferred)), -kMaxBackingSteering, kMaxBackingSteering);
   control = {{-back, car.mode == Steering::steer ? target : (target - psi) / world.step_time, 0.0}};
   return true;
 }
 
-/// Whether `viewer` is shown an object of another group.
-bool shown(const World& world, int viewer, int other) {
+/// Whether the behavior of `viewer` targets the role of an object of another group.
+bool is_shown(const World& world, int viewer, int other) {
   const int wanted = world.target_roles[viewer];
   return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
 }
 
-/// Half-planes of walls and standing circles: nearest edges first, those that others cover left out.
+/// Add half-planes of walls and static circles, nearest edges first. Those that other planes cover are left out.
 void avoid_obstacles(double horizon, const World& world, const Obstacles& obstacles, const OrcaAgent& agent, int object,
                      double speed, OrcaCrowd& all) {
   if (obstacles.empty()) return;
@@ -123,16 +124,16 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
   const int edges = static_cast<int>(obstacles.edges.size());
   std::vector<HalfPlane>& planes = all.planes;
   all.edges.clear();
-  all.neighbors.clear();  // the discs
+  all.neighbors.clear();  // holds the discs found
   obstacles.near(box_around(agent.position, reach), [&](int k) {
     if (k >= edges) {
-      const StandingDisc& disc = obstacles.discs[k - edges];
+      const StaticDisc& disc = obstacles.discs[k - edges];
       const double gap = norm(disc.centre - agent.position) - disc.radius;
-      if (gap < reach && shown(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
+      if (gap < reach && is_shown(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
       return;
     }
     const Edge& edge = obstacles.edges[k];
-    if (!edge.faces(agent.position) || (edge.object >= 0 && !shown(world, object, edge.object))) return;
+    if (!edge.faces(agent.position) || (edge.object >= 0 && !is_shown(world, object, edge.object))) return;
     const Vec2 nearest = nearest_on_segment(edge.left.point, edge.right.point, agent.position);
     const double distance2 = squared(nearest - agent.position);
     if (distance2 < reach * reach) all.edges.push_back({distance2, k});
@@ -150,13 +151,13 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
   }
   std::sort(all.neighbors.begin(), all.neighbors.end());
   for (const Nearest::Found& found : all.neighbors) {
-    const StandingDisc& disc = obstacles.discs[found.index];
+    const StaticDisc& disc = obstacles.discs[found.index];
     if (covered(disc.centre, disc.centre, agent.radius + disc.radius)) continue;
     planes.push_back(avoid_disc(agent, disc.centre, disc.radius, horizon));
   }
 }
 
-/// Half-planes of the nearest movers.
+/// Add half-planes of the nearest movers.
 void avoid_movers(const OrcaOptions& options, const World& world, int self, OrcaCrowd& all) {
   const int object = world.moving[self], group = all.member_of[self];
   const OrcaAgent& agent = all.movers[self];
@@ -164,13 +165,13 @@ void avoid_movers(const OrcaOptions& options, const World& world, int self, Orca
   if (most <= 0) return;
   if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
   const auto seen = [&](int m) {
-    return m != self && (all.member_of[m] == group || shown(world, object, world.moving[m]));
+    return m != self && (all.member_of[m] == group || is_shown(world, object, world.moving[m]));
   };
   const int count = all.nearest.find(agent.position, options.neighborDist, most, seen, all.neighbors.data());
   for (int k = 0; k < count; ++k) {
     const int m = all.neighbors[k].index;
-    // who follows orders, stands stopped or is not shown this one does not give way
-    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || shown(world, world.moving[m], object));
+    // An object with a given command, a stopped one, or one that does not see this object does not give way.
+    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || is_shown(world, world.moving[m], object));
     all.planes.push_back(
         avoid_agent(agent, all.movers[m], mutual ? 0.5 : 1.0, options.timeHorizon, world.step_time, self < m));
   }
@@ -192,8 +193,8 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     Vec2 preferred = preferred_velocity(world, state, row, i, speed);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
-    if (const Route* route = state.route_of(row)) {  // which leads past what stands still
-      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->room};
+    if (const Route* route = state.route_of(row)) {  // a route already avoids static objects
+      const OrcaAgent inner{state.pose[row].position(), agent.velocity, route->wall_radius};
       avoid_obstacles(std::min(options.timeHorizonObst, kRouteHorizon), world, obstacles, inner, i, speed, all);
     } else {
       avoid_obstacles(options.timeHorizonObst, world, obstacles, agent, i, speed, all);
@@ -204,12 +205,12 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                       all.scratch, velocity);
     Turning turning = turning_for(world, i, squared(velocity - preferred) > 0.0);
-    // the way it faces may lead into a wall even if the way it wants to go does not
+    // The heading may lead into a wall even if the wanted velocity does not.
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
     if (car != nullptr) {
       Vec3 control;
       const double ahead = std::min(norm(velocity), turning.max_forward);
-      const bool stuck = ahead < kCarStuck * norm(preferred) && world.vel_min[i][0] < 0.0;
+      const bool stuck = ahead < kStuckShare * norm(preferred) && world.vel_min[i][0] < 0.0;
       if (!stuck || !back_off(*car, world, state, row, speed, hard, ahead, preferred, all, control)) {
         control = car_control(*car, world, state, row, velocity, turning.max_forward);
       }

@@ -15,8 +15,8 @@ import numpy as np
 from isal import isal_zlib
 from PIL import Image
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import GifWriter
-from irsim.graphics.encoding.picture_files import replacing
 from irsim.graphics.encoding.pixels import Pixels, fit, from_image
 from irsim.graphics.encoding.png import ApngWriter
 from irsim.graphics.encoding.video import VIDEO_SUFFIXES, VideoWriter

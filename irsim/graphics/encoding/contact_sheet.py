@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from irsim.graphics.encoding.picture_files import replacing
+from irsim.common.files import replacing
 
 __all__ = ["contact_sheet"]
 

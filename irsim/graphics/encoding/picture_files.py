@@ -1,13 +1,11 @@
-"""Paths of picture files, and writing them so that no incomplete file is ever left behind."""
+"""Paths of picture files."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["PICTURE_FORMATS", "picture_path", "replacing"]
+__all__ = ["PICTURE_FORMATS", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
 """File formats of figures."""
@@ -44,18 +42,3 @@ def picture_path(
         raise ValueError(f"cannot save a figure as {suffix!r}: choose one of {', '.join(PICTURE_FORMATS)}")
     index = "" if count is None else f"_{count:04d}"
     return Path(folder) / f"{stem}{index}.{suffix}"
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
-
-    The folder is made if it does not exist.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Checks of a valid scenario: what would not work, or work otherwise than its author expects. One file per family."""
+"""Checks of a valid scenario, one module per family: what will not work, or not as its author expects."""
 
 from __future__ import annotations
 
@@ -14,19 +14,13 @@ from irsim.scenario.checks import (
     names,
     overlap,
     placement,
+    random_placement,
     sensors,
     shapes,
+    tunneling,
     units,
+    unsupported,
     world,
-)
-from irsim.scenario.checks import (
-    random_placement as crowding,
-)
-from irsim.scenario.checks import (
-    tunneling as jumps,
-)
-from irsim.scenario.checks import (
-    unsupported as simulated,
 )
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding
@@ -44,20 +38,20 @@ _FAMILIES = (
     shapes,
     goals,
     placement,
-    crowding,
+    random_placement,
     overlap,
     behaviors,
     groups,
     motion,
-    jumps,
+    tunneling,
     sensors,
     units,
     files,
     maps,
-    simulated,
+    unsupported,
 )
 
 
 def run_checks(context: Context) -> list[Finding]:
-    """The findings of every family."""
+    """The findings of all checks."""
     return [finding for family in _FAMILIES for finding in family.check(context)]

@@ -1,4 +1,4 @@
-"""What a check sees."""
+"""The input of every check."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Context:
     """A valid scenario in all its forms.
 
     Attributes:
-        scenario: The models.
-        resolved: One record per object.
-        data: The data the models were made from.
+        scenario: The validated models.
+        resolved: The resolved scenario, with one record per object.
+        data: The data that were validated.
         document: The document as written.
-        map_findings: What loading the map found.
+        map_findings: Findings made while loading the map.
     """
 
     scenario: Scenario
@@ -47,12 +47,12 @@ class Context:
 
     @property
     def written(self) -> list[ObjectRecord]:
-        """The objects of the entries, without those that the world brings along: its map, its walls."""
+        """The objects made by entries, without the map and the walls round the world."""
         return [record for record in self.resolved.objects if record.path[0] != "world"]
 
     @cached_property
     def driven_groups(self) -> frozenset[int]:
-        """Groups whose first member has a group behavior: it decides for all members."""
+        """Groups whose first member has a group behavior, which decides for all members."""
         leaders: dict[int, ObjectRecord] = {}
         for record in self.written:
             leaders.setdefault(record.group, record)
@@ -65,7 +65,7 @@ class Context:
         return entry
 
     def entry_path(self, record: ObjectRecord, key: str) -> Path:
-        """Where an object's value of ``key`` is written: the key, or the element of its list that is the object's."""
+        """Path of an object's value of ``key``: the key itself or, if it holds a list, the object's element."""
         if record.path[0] == "world":
             return record.path
         value: Any = self.data
@@ -77,7 +77,7 @@ class Context:
         return (*record.path, key)
 
     def has_goals(self, path: Path) -> bool:
-        """Whether a list of goals is written at a path, not a single one."""
+        """Whether a list of goals is written at a path, rather than a single goal."""
         written = at(self.data, path)
         return isinstance(written, (list, tuple)) and not is_vector(written)
 

@@ -1,30 +1,31 @@
-"""Whether an outline is simple, without a geometry library; and its repair, with one."""
+"""Tests whether an outline is simple, without a geometry library, and repairs it with one."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["crosses_itself", "repaired"]
+__all__ = ["crosses_itself", "repair_outline"]
 
 Corner = tuple[float, float]
-_SMALL_AREA = 1e-12
-_LONG = 200
-"""Corners from which loading the geometry library pays."""
+_MIN_AREA = 1e-12
+"""Outlines with a smaller area enclose none [m^2]."""
+_MAX_SWEEP_CORNERS = 200
+"""Corners up to which the sweep is faster than loading the geometry library."""
 
 
 def crosses_itself(corners: Sequence[Corner]) -> bool:
     """Whether the closed outline crosses or touches itself, or encloses no area.
 
     Args:
-        corners: At least 3, without the closing repetition.
+        corners: At least 3 corners; the first is not repeated at the end.
     """
     n = len(corners)
-    if n > _LONG:
+    if n > _MAX_SWEEP_CORNERS:
         from shapely import Polygon
 
         return not Polygon(corners).is_valid
     area = sum(corners[i - 1][0] * corners[i][1] - corners[i][0] * corners[i - 1][1] for i in range(n)) / 2
-    if abs(area) < _SMALL_AREA:
+    if abs(area) < _MIN_AREA:
         return True
     edges = [(corners[i], corners[(i + 1) % n]) for i in range(n)]
     order = sorted(range(n), key=lambda i: min(edges[i][0][0], edges[i][1][0]))
@@ -43,19 +44,19 @@ def crosses_itself(corners: Sequence[Corner]) -> bool:
     return False
 
 
-def repaired(vertices: Sequence[Sequence[float]]) -> list[list[list[float]]] | None:
-    """The area an invalid outline encloses, as outlines of valid polygons; None if it encloses none."""
+def repair_outline(vertices: Sequence[Sequence[float]]) -> list[list[list[float]]] | None:
+    """The area that an invalid outline encloses, as valid polygons; None if it encloses none."""
     import numpy as np
     from shapely import MultiPolygon, Polygon, make_valid
     from shapely.errors import GEOSException
 
-    with np.errstate(all="ignore"):  # corners may be anywhere
+    with np.errstate(all="ignore"):  # coordinates may be huge
         try:
             valid = make_valid(Polygon(vertices), method="structure", keep_collapsed=False)
         except (GEOSException, ValueError):
             return None
         found = [valid] if isinstance(valid, Polygon) else list(valid.geoms) if isinstance(valid, MultiPolygon) else []
-        polygons = [polygon for polygon in sorted(found, key=lambda p: p.bounds) if polygon.area > _SMALL_AREA]
+        polygons = [polygon for polygon in sorted(found, key=lambda p: p.bounds) if polygon.area > _MIN_AREA]
     outlines = [[[float(x), float(y)] for x, y in polygon.exterior.coords[:-1]] for polygon in polygons]
     return outlines or None
 

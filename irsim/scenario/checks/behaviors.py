@@ -1,4 +1,4 @@
-"""Behaviors: known, able to act, and with parameters that mean what they seem to."""
+"""Checks behaviors: whether they are known, can move their object, and have options that take effect."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 
 _OWN = (
-    "one of the names allowed; a behavior of your own is registered in Python before the scenario is read "
+    "use one of the allowed names, or register your own behavior in Python before the scenario is read "
     "(irsim.register_behavior, or --import MODULE on the command line)"
 )
 _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
-"""Keys with the speed that a behavior wants at most."""
+"""Keys with the highest speed that a behavior asks for."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """One finding per entry and key, whatever the number of its objects."""
+    """Check all objects; one finding per path and code."""
     seen: set[tuple[Any, ...]] = set()
     for record in context.written:
         for finding in _of_object(context, record):
@@ -52,7 +52,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "behavior-without-kinematics",
             context.entry_path(record, key),
             f"an object without kinematics never moves, whatever its {key.replace('_', ' ')}",
-            fix=_drive(context, record),
+            fix=_drive_fix(context, record),
         )
     if record.behavior is not None or record.group_behavior is not None:
         return
@@ -62,8 +62,8 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield warning(
             "behavior-without-kinematics",
             context.entry_path(record, goal),
-            "a robot without kinematics never moves: it cannot get to its goal",
-            fix=_drive(context, record),
+            "a robot without kinematics never moves, so it cannot reach its goal",
+            fix=_drive_fix(context, record),
         )
     elif not driven and not record.static and (record.role == "robot" or (record.kinematics is not None and goal)):
         unless = "the program gives it actions" if record.role == "robot" else "the program moves it"
@@ -71,13 +71,13 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "no-behavior",
             record.path,
             f"this {record.role} has no behavior: it stands still unless {unless}",
-            fix="none needed if it is to stand or a program passes actions; otherwise add 'behavior: {name: dash}'",
+            fix="add 'behavior: {name: dash}'; nothing to fix if it is meant to stand still or a program moves it",
             edit=Edit("add", (*record.path, "behavior"), {"name": "dash"}),
         )
 
 
-def _drive(context: Context, record: ObjectRecord) -> str:
-    """What makes an object move that has no kinematics, or those that stand still."""
+def _drive_fix(context: Context, record: ObjectRecord) -> str:
+    """The fix for an object without kinematics, or with kinematics that never move."""
     drives = "(or omni, omni_angular, acker)"
     if "kinematics" not in at(context.data, record.path):
         return f"add 'kinematics: {{name: diff}}' {drives}"
@@ -136,7 +136,7 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         yield warning(
             "wander-and-loop",
             (*path, "loop"),
-            "wander wins over loop",
+            "'wander' and 'loop' exclude each other: only 'wander' takes effect",
             fix="keep one of them",
             edit=Edit("remove", (*path, "loop")),
         )
@@ -148,9 +148,9 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         yield error(
             "range-order",
             (*path, written),
-            f"a lower bound is above the upper bound: {low} and {high}",
+            f"range_low must not exceed range_high, got {low} and {high}",
             given=getattr(options, written),
-            fix="range_low must not be greater than range_high",
+            fix="lower range_low or raise range_high",
         )
         return
     x0, y0, x1, y1 = context.scenario.world.bounds
@@ -160,12 +160,12 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
             "wander-outside",
             (*path, "range_low" if below else "range_high"),
             f"random goals may lie outside the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]",
-            fix="leave range_low and range_high out to use the world's own extent",
+            fix="remove range_low and range_high to use the extent of the world",
         )
 
 
 def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
-    """Keys of the whole that are written into the ``local`` behavior of ``follow``, where nobody reads them."""
+    """Keys written inside the ``local`` behavior of ``follow`` although ``follow`` itself reads them."""
     local: Any = getattr(options, "local", None)
     path = context.entry_path(record, key)
     written: Any = at(context.data, path)
@@ -188,7 +188,7 @@ def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> It
             (*path, "local", name),
             f"within 'local' the key '{name}' has no effect: '{options.name}' reads it one level up",
             given=inner[name],
-            fix=f"remove it: '{name}' stands there already"
+            fix=f"remove it: '{name}' is given there already"
             if there
             else f"{key}: {{name: {options.name}, {name}: {flow(inner[name])}, local: {flow(rest)}}}",
             edit=Edit("remove", (*path, "local", name)) if there else Edit("replace", path, moved),
@@ -196,7 +196,7 @@ def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> It
 
 
 def _capped(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
-    """Speeds that a behavior is given and the drive does not have."""
+    """Speed options of a behavior that are above the limits of the drive."""
     drive = getattr(record.kinematics, "name", "")
     limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
     if drive not in ("diff", "acker", "omni", "omni_angular") or len(limits) < 2 or record.static:
@@ -210,7 +210,7 @@ def _capped(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         yield hint(
             "speed-capped",
             (*context.entry_path(record, key), name),
-            f"'{options.name}' may want {value:g} m/s, but the limits of '{record.name}' allow {top:.3g} m/s",
+            f"'{options.name}' may ask for {value:g} m/s, but the limits of '{record.name}' allow {top:.3g} m/s",
             given=value,
             fix=f"'vel_max: {flow(faster)}' of the object, or {name}: {top:.3g}",
         )

@@ -1,4 +1,4 @@
-"""Files that a scenario names: inside the folder it is confined to, if it is."""
+"""Checks the files that a scenario names: whether images exist, and files are inside the workspace, if any."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, warning
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.resolve.images import BUNDLED, image_places
-from irsim.scenario.yaml.formatting import shown
+from irsim.scenario.yaml.formatting import quote_value
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Files outside the workspace, if there is one; images that are missing."""
+    """Report missing images and, if there is a workspace, files outside it."""
     source = context.document.path
     yield from _missing_images(context, FilePath(source).resolve().parent if source is not None else None)
     root = context.document.limits.root
@@ -30,7 +30,7 @@ def check(context: Context) -> Iterator[Finding]:
             yield error(
                 "path-outside-workspace",
                 path,
-                f"{shown(name)} {wrong}",
+                f"{quote_value(name)} {wrong}",
                 given=name,
                 allowed="files inside the workspace",
                 fix="put the file into the workspace and give its path relative to it or to the scenario",
@@ -49,10 +49,10 @@ def _missing_images(context: Context, folder: FilePath | None) -> Iterator[Findi
         yield warning(
             "image-not-found",
             path,
-            f"there is no image {shown(name)}: the shape is drawn instead",
+            f"there is no image {quote_value(name)}: the shape is drawn instead",
             given=name,
             allowed=f"an image file beside the scenario, or one of {', '.join(BUNDLED)}",
-            fix=f"description: {near}" if near else "text belongs into 'world.description' or a comment",
+            fix=f"description: {near}" if near else "use a file name; text belongs in 'world.description' or a comment",
             edit=Edit("replace", path, near, safe=False) if near else None,
         )
 
@@ -65,7 +65,7 @@ def _is_file(path: FilePath) -> bool:
 
 
 def named_files(context: Context) -> Iterator[tuple[Path, str]]:
-    """Where the scenario names a file, and which."""
+    """The files that a scenario names, each with the path of its name."""
     grid: Any = context.scenario.world.obstacle_map
     name = getattr(grid, "path", None)
     if isinstance(name, str):

@@ -1,4 +1,4 @@
-"""States and goals: nesting, numbers that are dropped, starts and goals outside the world."""
+"""Checks states and goals: nesting, ignored values, places outside the world, goals reached at once."""
 
 from __future__ import annotations
 
@@ -21,20 +21,21 @@ from irsim.scenario.resolve.per_object import is_per_object, kind_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 
-_TURN = 6.3
-_OF_GROUND = 0.5
-"""Nearer than that share of the diagonal of a rectangle are more than half of the pairs of points in it."""
+_MAX_HEADING = 6.3
+"""Largest heading that is surely in radians: a full turn, rounded up [rad]."""
+_MAX_THRESHOLD_RATIO = 0.5
+"""Share of a rectangle's diagonal within which more than half of all pairs of its points lie."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """By entry."""
+    """Check each entry."""
     for path, entry, records in context.entries():
         yield from _levels(path, entry)
         if entry.goal is not None and entry.waypoints is not None:
             yield error(
                 "conflicting-keys",
                 (*path, "waypoints"),
-                "both 'goal' and 'waypoints' say where to go",
+                "'goal' and 'waypoints' exclude each other: both say where to go",
                 fix="keep one of them",
             )
         if entry.distribution is not None and entry.distribution.name != "manual":
@@ -55,7 +56,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Arrival that needs a heading nobody steers for."""
+    """Arrival that requires a heading that the drive never turns to."""
     for record in records:
         drive = getattr(record.kinematics, "name", None)
         behavior = record.behavior or record.group_behavior
@@ -74,7 +75,7 @@ def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Itera
 
 
 def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Goals where the object starts, and waypoints in one place."""
+    """Goals that count as reached at the start, and waypoints that count as reached together."""
     for record in records:
         if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
             continue
@@ -90,18 +91,19 @@ def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                 message = f"'{record.name}' starts {gap} from its {what}: within {record.goal_threshold:g} m it counts"
                 message += " as reached"
             else:
-                message = f"waypoint {index + 1} of '{record.name}' is {gap} from the one before: both count at once"
+                message = f"waypoint {index + 1} of '{record.name}' is {gap} from the one before: both count as "
+                message += "reached at once"
             yield warning(
                 "goal-reached",
                 where,
                 message,
-                fix=f"a place farther away, or a smaller goal_threshold (now {record.goal_threshold:g} m)",
+                fix=f"use a place farther away, or a smaller goal_threshold (now {record.goal_threshold:g} m)",
             )
             break
 
 
 def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """A threshold as wide as the ground on which goals are drawn."""
+    """A goal threshold as large as the area in which goals are drawn."""
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     for record in records:
         if record.static or record.kinematics is None or record.arrive_mode == "state":
@@ -111,14 +113,14 @@ def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[
             continue
         width, height = (ranges.range_high[i] - ranges.range_low[i] for i in range(2))
         diagonal = math.hypot(width, height)
-        if diagonal == 0 or record.goal_threshold < _OF_GROUND * diagonal:
+        if diagonal == 0 or record.goal_threshold < _MAX_THRESHOLD_RATIO * diagonal:
             continue
         sure = record.goal_threshold >= diagonal
         yield warning(
             "goal-reached",
             (*path, "goal_threshold") if "goal_threshold" in entry.model_fields_set else path,
             f"goals are drawn within {width:g} m × {height:g} m and count as reached within "
-            f"{record.goal_threshold:g} m: {'all' if sure else 'most'} are reached before anybody has moved",
+            f"{record.goal_threshold:g} m: {'all' if sure else 'most'} are reached before any object has moved",
             given=record.goal_threshold,
             fix=f"goal_threshold: {min(0.3, diagonal / 20):.2g}; lengths are in metres",
         )
@@ -126,13 +128,13 @@ def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[
 
 
 def _goal_path(context: Context, record: ObjectRecord, key: str, index: int) -> Path:
-    """Where one of the goals of an object is written, in a list of them or alone."""
+    """Path of one of the goals of an object, in a list or alone."""
     path = context.entry_path(record, key)
     return (*path, index) if context.has_goals(path) else path
 
 
 def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
-    """Whether an object that stands at a has reached b."""
+    """Whether an object in state a has reached goal b."""
     turn = 0.0
     if record.arrive_mode == "state" and len(b) > 2:
         turn = math.remainder((a[2] if len(a) > 2 else 0.0) - b[2], 2 * math.pi)
@@ -147,16 +149,16 @@ def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
         return
     state: Any = entry.state
     if isinstance(state, list) and not is_vector(state) and len(state) == len(goal):
-        return  # two lists that belong together, of which 'number' takes the first few
-    if entry.number > 1:  # as waypoints all of them would drive the same way
+        return  # states and goals belong together; 'number' uses the first of both
+    if entry.number > 1:  # as waypoints they would be the same for all objects
         yield warning(
             "goal-levels",
             (*path, "goal"),
             f"{len(goal)} goals, one per object, but the entry makes {entry.number}: only the first {entry.number} are "
             "used",
             given=goal,
-            fix=f"goal: {flow(goal[: entry.number])}, or number: {len(goal)}; for a way of several goals write one "
-            "entry per object, each with its 'waypoints'",
+            fix=f"goal: {flow(goal[: entry.number])}, or number: {len(goal)}; for several goals per object write "
+            "one entry per object, each with its 'waypoints'",
             edit=Edit("replace", (*path, "goal"), goal[: entry.number], safe=False),
         )
         return
@@ -191,7 +193,7 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
             yield warning(
                 "default-state",
                 (*path, "shape"),
-                "without 'state' the object stands at [1, 1, 0], which shifts its vertices by (1, 1)",
+                "without 'state' the object is at [1, 1, 0], which shifts its vertices by (1, 1)",
                 fix="add 'state: [0, 0, 0]' if the vertices are world coordinates",
                 edit=Edit("add", (*path, "state"), [0, 0, 0], safe=False),
             )
@@ -199,7 +201,7 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
             yield hint(
                 "default-state",
                 path,
-                f"without 'state' it stands at {flow(DEFAULT_STATE)}",
+                f"without 'state' the object starts at {flow(DEFAULT_STATE)}",
                 fix="add 'state: [x, y, theta]'",
                 edit=Edit("add", (*path, "state"), DEFAULT_STATE),
             )
@@ -213,7 +215,7 @@ def _state(context: Context, path: Path, entry: Entry, records: list[ObjectRecor
             yield (hint if meant is None else warning)(
                 "state-truncated",
                 (*path, "state"),
-                f"{longest} numbers; the state has {rows}, the rest is dropped",
+                f"'state' must have at most {rows} numbers, got {longest}: the rest is ignored",
                 fix=None if meant is None else f"decimal commas? write {meant}",
             )
 
@@ -224,20 +226,20 @@ def _default_goal(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iter
         yield hint(
             "default-goal",
             path,
-            f"without 'goal' it drives to {flow(DEFAULT_GOAL)}",
+            f"without 'goal' the object drives to {flow(DEFAULT_GOAL)}",
             fix="add 'goal: [x, y]', or 'wander: true' to the behavior",
             edit=Edit("add", (*path, "goal"), DEFAULT_GOAL),
         )
 
 
 def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Headings that are more than a turn and a whole number of degrees."""
+    """Headings above a full turn that are whole numbers, so they may be degrees."""
     for key in ("state", "goal", "waypoints"):
         for record in records:
             if not context.given(record, key):
                 break
             poses = [record.state] if key == "state" else record.goals
-            turned = (i for i, pose in enumerate(poses) if len(pose) > 2 and abs(pose[2]) > _TURN)
+            turned = (i for i, pose in enumerate(poses) if len(pose) > 2 and abs(pose[2]) > _MAX_HEADING)
             if (index := next(turned, None)) is None:
                 continue
             angle = poses[index][2]
@@ -252,7 +254,7 @@ def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
 
 
 def _surplus(path: Path, entry: Entry) -> Iterator[Finding]:
-    """States of objects that are not made."""
+    """States for more objects than the entry makes."""
     state: Any = entry.state
     count = len(state) if isinstance(state, list) and not is_vector(state) else 0
     if count <= entry.number or entry.number == 0:
@@ -264,14 +266,14 @@ def _surplus(path: Path, entry: Entry) -> Iterator[Finding]:
         (*path, "state"),
         f"{count} states, but the entry makes {makes}"
         + ("" if written else ", because it has no 'number'")
-        + ": the other states are left out",
+        + ": the other states are ignored",
         fix=f"number: {count}",
         edit=Edit("replace" if written else "add", (*path, "number"), count, safe=False),
     )
 
 
 def _surplus_values(context: Context, path: Path, entry: Entry) -> Iterator[Finding]:
-    """Names and the like of objects that are not made; where there are as many states, those are told."""
+    """Values of other keys for more objects than the entry makes, unless there are surplus states to report."""
     written: Any = at(context.data, path)
     counts = {
         key: len(written[key])
@@ -288,14 +290,14 @@ def _surplus_values(context: Context, path: Path, entry: Entry) -> Iterator[Find
         yield kind(
             "surplus-states",
             (*path, key),
-            f"{count} values, but the entry makes {makes}: the rest is left out",
+            f"{count} values, but the entry makes {makes}: the rest is ignored",
             given=written[key],
-            fix=f"number: {count}, or as many values as objects",
+            fix=f"number: {count}, or one value per object",
         )
 
 
 def _placed_outside(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    """Starts and goals that a distribution puts outside of the world."""
+    """Starts and goals that a distribution may place outside the world."""
     x0, y0, x1, y1 = context.scenario.world.bounds
     world, options = f"the world [{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]", entry.distribution
     placement = next((p for p in context.resolved.placements if p.path == path), None)
@@ -307,9 +309,9 @@ def _placed_outside(context: Context, path: Path, entry: Entry, records: list[Ob
             yield hint(
                 "outside-world",
                 (*path, "distribution", key) if written else (*path, "distribution"),
-                f"places are drawn with x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
+                f"random places have x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
                 + world,
-                fix="leave 'range_low' and 'range_high' out: they end half a metre inside the world",
+                fix="remove 'range_low' and 'range_high': the defaults end half a metre inside the world",
             )
         return
     lost = [r for r in records if not (x0 <= r.state[0] <= x1 and y0 <= r.state[1] <= y1)]
@@ -321,9 +323,9 @@ def _placed_outside(context: Context, path: Path, entry: Entry, records: list[Ob
     yield hint(
         "outside-world",
         (*path, "distribution"),
-        f"{len(lost)} of {len(records)} objects start outside {world}, '{lost[0].name}' at "
-        f"({lost[0].state[0]:.4g}, {lost[0].state[1]:.4g}) for one",
-        fix=fix if options.name == "circle" else "places inside of the world, or a larger world",
+        f"{len(lost)} of {len(records)} objects start outside {world}, for example '{lost[0].name}' at "
+        f"({lost[0].state[0]:.4g}, {lost[0].state[1]:.4g})",
+        fix=fix if options.name == "circle" else "use places inside the world, or a larger world",
     )
 
 
@@ -342,9 +344,9 @@ def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                 yield hint(
                     "outside-world",
                     _goal_path(context, record, written, index) if key == "goal" else context.entry_path(record, key),
-                    f"{words} at ({x:g}, {y:g}), outside the world "
+                    f"'{record.name}' {words} at ({x:g}, {y:g}), outside the world "
                     f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
                     + ("" if context.given(record, written) else f" (the default {key})"),
-                    fix=f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
+                    fix=f"use x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
                 )
                 break

@@ -1,4 +1,4 @@
-"""Groups: which behavior counts, and whom it drives."""
+"""Checks group behaviors: whether they can drive a group, which one counts, and which objects it drives."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """By group."""
+    """Check each group."""
     groups: dict[int, list[ObjectRecord]] = defaultdict(list)
     for record in context.written:
         groups[record.group].append(record)
@@ -54,7 +54,7 @@ def _not_for_groups(context: Context, members: list[ObjectRecord]) -> Iterator[F
 
 
 def _social_groups(context: Context, leader: ObjectRecord, options: Sfm, size: int) -> Iterator[Finding]:
-    """Each member is in one social group at most, and there is a member of each index."""
+    """Social groups with an index of no member, or with a member of another social group."""
     seen: dict[int, tuple[int, int]] = {}
     for i, together in enumerate(options.social_groups or ()):
         for j, index in enumerate(together):
@@ -62,11 +62,11 @@ def _social_groups(context: Context, leader: ObjectRecord, options: Sfm, size: i
             if index >= size:
                 numbers = "its only member is 0" if size == 1 else f"its members are 0 to {size - 1}"
                 message = f"there is no member {index} in group {leader.group}: {numbers}"
-                fix = f"take {index} out, or raise 'number': indices count the members of the group from 0"
+                fix = f"remove {index}, or raise 'number'; indices count the members of the group from 0"
             elif index in seen:
                 before = f"social_groups[{seen[index][0]}][{seen[index][1]}]"
                 message = f"member {index} is named twice, first in {before}"
-                fix = f"take {index} out here or there: each member walks with one social group"
+                fix = f"remove {index} here or there: a member walks with one social group only"
             else:
                 seen[index] = i, j
                 continue
@@ -86,7 +86,8 @@ def _unused(context: Context, group: int, members: list[ObjectRecord]) -> Iterat
         yield hint(
             "group-behavior-unused",
             context.entry_path(later, "group_behavior"),
-            f"group {group} takes the group behavior of its first member, '{members[0].name}', which has none",
+            f"group {group} takes the group behavior of its first member, '{members[0].name}', which has none: this "
+            "one has no effect",
         )
 
 

@@ -1,4 +1,4 @@
-"""Drives: limits, vectors of control, heading interval, parameters that surprise."""
+"""Checks drives: control vectors and limits, heading interval, surprising parameters."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from irsim.scenario.yaml.formatting import flow
 _CONTROL_KEYS = ("velocity", "vel_min", "vel_max", "acce")
 _BROADCAST = ("vel_min", "vel_max")  # IR-SIM takes a single number for all components
 _ROUNDING = 1e-6
-_ACROSS = 1.58
-"""A quarter turn, however it is rounded [rad]."""
+"""Rounding error allowed in a full turn [rad]."""
+_QUARTER_TURN = 1.58
+"""A quarter turn, rounded up [rad]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """One finding per entry and key, whatever the number of its objects."""
+    """Check all objects; one finding per path and code."""
     seen: set[tuple[Any, ...]] = set()
     for record in context.written:
         for finding in _of_object(context, record):
@@ -31,7 +32,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    wrong = [finding for key in _CONTROL_KEYS if (finding := _length(context, record, key)) is not None]
+    wrong = [finding for key in _CONTROL_KEYS if (finding := _wrong_length(context, record, key)) is not None]
     yield from wrong
     if not wrong:
         yield from _limits(context, record)
@@ -44,7 +45,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield hint(
             "wheelbase-default",
             (*context.entry_path(record, "kinematics"), "name"),
-            "no wheelbase is given: it counts as 1 m",
+            "no 'wheelbase' is given: 1 m is used",
             fix="add 'wheelbase' to the shape or to the kinematics",
         )
     length = getattr(record.shape, "length", None)
@@ -52,8 +53,8 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield hint(
             "wheelbase-over-length",
             context.entry_path(record, "shape" if record.shape.wheelbase is not None else "kinematics"),
-            f"the axles are {record.wheelbase:g} m apart, and the body is only {length:g} m long",
-            fix=f"a length of more than {record.wheelbase:g}, or a wheelbase of about {round(0.6 * length, 3):g}",
+            f"the axles are {record.wheelbase:g} m apart, but the body is only {length:g} m long",
+            fix=f"use a length of more than {record.wheelbase:g}, or a wheelbase of about {round(0.6 * length, 3):g}",
         )
     steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
     if not wrong and options.name == "acker" and options.mode == "steer" and steering >= math.pi / 2:
@@ -65,7 +66,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, key),
             fix=f"angles are in radians: {steering:g} degrees are {math.radians(steering):.4g}",
         )
-    if options.name == "acker" and options.psi_max is not None and options.psi_max > _ACROSS:
+    if options.name == "acker" and options.psi_max is not None and options.psi_max > _QUARTER_TURN:
         yield warning(
             "steering-limit",
             (*context.entry_path(record, "kinematics"), "psi_max"),
@@ -78,13 +79,13 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "omni-noise",
             (*context.entry_path(record, "kinematics"), "noise"),
             "this noise does not vanish at standstill: the object trembles even when commanded to rest",
-            fix="lower 'alpha', or leave noise out",
+            fix="lower 'alpha', or remove 'noise'",
         )
 
 
-def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
+def _wrong_length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
     values = _written(context, record, key)
-    if values is None or len(values) == record.vel_dim or record.kinematics is None:  # without a drive nobody reads it
+    if values is None or len(values) == record.vel_dim or record.kinematics is None:  # unused without a drive
         return None
     drive: Any = record.kinematics
     rows = f" ({', '.join(drive.control_rows)})" if record.vel_dim == len(drive.control_rows) else ""
@@ -94,7 +95,7 @@ def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
     return error(
         "wrong-length",
         path,
-        f"{len(values)} number{'s' if len(values) != 1 else ''}; {name} takes {record.vel_dim}{rows}",
+        f"'{key}' of {name} must have {record.vel_dim} numbers{rows}, got {len(values)}",
         given=values,
         allowed=f"{record.vel_dim} numbers{rows}",
         fix=f"{key}: {flow(values * record.vel_dim)}" if same else None,
@@ -104,7 +105,7 @@ def _length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
 
 
 def _start_velocity(context: Context, record: ObjectRecord, values: list[float]) -> Edit | None:
-    """2.12 reads as much of it as an object needs that decides for itself; one number counts for each component."""
+    """The velocity that 2.12 reads for an object with a behavior: cut, padded, or one number for each component."""
     decides = record.behavior is not None or record.group_behavior is not None
     limited = context.given(record, "acce") and len(values) > 1
     if not decides or limited or not values:
@@ -114,7 +115,7 @@ def _start_velocity(context: Context, record: ObjectRecord, values: list[float])
 
 
 def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
-    """The vector as the file has it for this object."""
+    """The vector that the file gives this object."""
     value: Any = getattr(context.entry(record.path), key)
     if isinstance(value, list) and any(isinstance(item, list) or item is None for item in value):
         value = value[min(record.index, len(value) - 1)]
@@ -131,7 +132,7 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
                 context.entry_path(record, written),
                 f"component {i}: the lower limit {low:g}{other} is above the upper limit {high:g}",
                 given=getattr(record, written),
-                fix="vel_min must not be greater than vel_max, component by component",
+                fix="each number of vel_min must not exceed that of vel_max",
             )
             return
     if record.kinematics is None or context.given(record, "vel_min") or not context.given(record, "vel_max"):
@@ -159,7 +160,7 @@ def _angle_range(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield error(
             "angle-range",
             path,
-            f"this interval is {values[1] - values[0]:.6g} rad wide; it must be one full turn",
+            f"'angle_range' must be one full turn wide, got {values[1] - values[0]:.6g} rad",
             given=values,
             allowed="[low, low + 6.283185307]",
             fix=f"[{values[0]:g}, {values[0] + 2 * math.pi:.9f}], or [-3.141592654, 3.141592654]",

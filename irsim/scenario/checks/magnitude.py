@@ -1,4 +1,4 @@
-"""Numbers that no world is made for: they would only drown in rounding, or in the drawing."""
+"""Finds lengths and speeds that are too large to simulate or draw without loss of precision."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, error
 
-LARGEST = 1e7
-"""Metres, or metres per second."""
+MAX_MAGNITUDE = 1e7
+"""Largest length [m] and speed [m/s]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """The world's extent; places, bodies and speeds of its objects."""
+    """Check the extent of the world, and the places, bodies and speeds of its objects."""
     world = context.scenario.world
     for key, values in (("width", [world.width]), ("height", [world.height]), ("offset", world.offset)):
         yield from _judge(("world", key), values)
@@ -34,11 +34,11 @@ def check(context: Context) -> Iterator[Finding]:
 
 def _judge(path: Path, values: Iterable[float]) -> Iterator[Finding]:
     worst = max((abs(value) for value in values), default=0.0)
-    if worst > LARGEST:
+    if worst > MAX_MAGNITUDE:
         yield error(
             "too-large",
             path,
-            f"{worst:.3g} is more than the {LARGEST:.0e} m (or m/s) that a world can hold",
-            allowed=f"at most {LARGEST:.0e}",
+            f"lengths and speeds must be at most {MAX_MAGNITUDE:.0e} m or m/s, got {worst:.3g}",
+            allowed=f"at most {MAX_MAGNITUDE:.0e}",
             fix="lengths are in metres",
         )

@@ -1,4 +1,4 @@
-"""The map: files that are missing or no pictures, maps without walls or without room."""
+"""Checks the map: missing or unreadable files, maps without occupied or without free cells."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ from irsim.scenario.messages.findings import Finding
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """What loading it found."""
+    """The findings made while loading the map."""
     yield from context.map_findings

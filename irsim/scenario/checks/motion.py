@@ -1,4 +1,4 @@
-"""Motion: behaviors that cannot move their object, goals that are hopped over, and nobody to look at."""
+"""Checks motion: objects that their behavior cannot move, goals that are never reached, roles without objects."""
 
 from __future__ import annotations
 
@@ -10,20 +10,24 @@ from typing import Any
 from irsim.components.behaviors._options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks.magnitude import LARGEST
+from irsim.scenario.checks.magnitude import MAX_MAGNITUDE
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.resolve.body_size import top_speed
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 
 _PASSABLE = ("unobstructed", "reactive")
-_ROUNDS, _MOST_STEPS = 3, 5000
-"""Of a car on its turning circle."""
-_LOOKING = ("rvo", "sfm", "orca", "follow")
+"""Collision modes in which objects pass through each other."""
+_MAX_TURNS = 3
+"""Full turns of a simulated car after which it counts as circling its goal."""
+_MAX_STEPS = 5000
+"""Steps of that simulation; longer ones are skipped."""
+_AVOIDING = ("rvo", "sfm", "orca", "follow")
+"""Behaviors that avoid other objects."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """One finding per entry and code."""
+    """Check all objects; one finding per path and code."""
     seen: set[tuple[str, Path]] = set()
     for finding in _all(context):
         key = (finding.diagnostic.code, finding.diagnostic.path)
@@ -39,10 +43,10 @@ def _all(context: Context) -> Iterator[Finding]:
         if record.kinematics is None:
             continue
         yield from _cannot_move(context, record)
-        yield from _nobody(context, record, counts)
+        yield from _no_targets(context, record, counts)
         if sum(counts.values()) > 0:
-            yield from _unseen(context, record)
-        yield from _never_there(context, record)
+            yield from _unobstructed_robot(context, record)
+        yield from _never_arrives(context, record)
         yield from _overshoot(context, record)
         yield from _circles(context, record)
 
@@ -77,7 +81,7 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield warning(
             "no-speed",
             where,
-            f"its limits are zero, so the behavior '{options.name}' cannot move '{record.name}'",
+            f"the speed limits of '{record.name}' are zero, so its behavior '{options.name}' cannot move it",
             given=getattr(record, written),
             fix=f"vel_max: {flow([1.0] * len(ranges))}, in m/s and rad/s",
         )
@@ -88,18 +92,18 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield warning(
             "no-speed",
             context.entry_path(record, key) if context.given(record, key) else where,
-            f"'{record.name}' never turns and cannot drive {way}, as it would have to for ({goal[0]:g}, {goal[1]:g})",
+            f"'{record.name}' cannot turn or drive {way}, so it cannot reach ({goal[0]:g}, {goal[1]:g})",
             given=getattr(record, key),
-            fix=f"a {'positive' if sign > 0 else 'negative'} {('first', 'second')[row]} number in '{key}'",
+            fix=f"use a {'positive' if sign > 0 else 'negative'} {('first', 'second')[row]} number in '{key}'",
         )
     elif moving == 1 and ranges[0][1] <= 0 and not record.wander:
         yield warning(
             "no-speed",
             where,
-            f"'{record.name}' can only drive backwards (at most {ranges[0][1]:g} m/s), and '{options.name}' wants "
-            "to drive forwards",
+            f"'{record.name}' can only drive backwards (at most {ranges[0][1]:g} m/s), but '{options.name}' "
+            "drives forwards",
             given=getattr(record, written),
-            fix="a positive first number in 'vel_max'",
+            fix="use a positive first number in 'vel_max'",
         )
     elif moving == 1 and all(value == 0 for value in ranges[1]):
         what = "steer" if drive.name == "acker" else "turn"
@@ -108,27 +112,27 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             where,
             f"the second limit is zero, so '{record.name}' cannot {what}: it only drives straight ahead",
             given=getattr(record, written),
-            fix="a second number greater than 0 in 'vel_max', and its negative in 'vel_min'",
+            fix="use a second number greater than 0 in 'vel_max', and its negative in 'vel_min'",
         )
     begin = list(zip(record.acce, record.velocity, strict=False))[:moving]
     if len(begin) == moving and all(rate == 0 and speed == 0 for rate, speed in begin):
         yield warning(
             "no-speed",
             context.entry_path(record, "acce"),
-            f"without acceleration '{record.name}' stays at rest",
+            f"'acce' is zero, so '{record.name}' stays at rest",
             given=record.acce,
-            fix="leave 'acce' out for no limit, or give a rate in m/s²",
+            fix="remove 'acce' for no limit, or give a rate in m/s²",
         )
 
 
 def _lacking(record: ObjectRecord) -> tuple[int, int, list[float]] | None:
-    """Component and sign of the speed that a drive of fixed heading lacks for a goal, and that goal."""
+    """Row and sign of the speed that an object of fixed heading would need to reach a goal but lacks, and the goal."""
     if record.wander or getattr(record.kinematics, "noise", False):
         return None
     cos, sin = math.cos(record.state[2]), math.sin(record.state[2])
     for index, (a, b) in enumerate(itertools.pairwise([record.state, *record.goals])):
         x, y = b[0] - a[0], b[1] - a[1]
-        slack = record.goal_threshold * (1 if index == 0 else 2)  # it may be so far off both ends
+        slack = record.goal_threshold * (1 if index == 0 else 2)  # it may be this far from either end
         for row, part in enumerate((cos * x + sin * y, cos * y - sin * x)):
             if part > slack and record.vel_max[row] <= 0:
                 return row, 1, b
@@ -137,31 +141,32 @@ def _lacking(record: ObjectRecord) -> tuple[int, int, list[float]] | None:
     return None
 
 
-def _never_there(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Arrival is to be nearer than the threshold, and nothing is nearer than 0."""
+def _never_arrives(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """A threshold of 0: an object arrives when its distance is below the threshold, so it never does."""
     behavior = record.behavior or record.group_behavior
     if record.goal_threshold > 0 or record.static or behavior is None:
         return
     yield warning(
         "goal-overshoot",
         (*record.path, "goal_threshold"),
-        f"a goal counts as reached when it is nearer than 0 m: '{record.name}' never arrives",
+        f"a goal counts as reached when it is nearer than 'goal_threshold', here 0 m: '{record.name}' never arrives",
         given=record.goal_threshold,
         fix="goal_threshold: 0.1, in metres",
     )
 
 
-def _nobody(context: Context, record: ObjectRecord, counts: dict[str, int]) -> Iterator[Finding]:
+def _no_targets(context: Context, record: ObjectRecord, counts: dict[str, int]) -> Iterator[Finding]:
+    """``target_roles`` that select no object, or that the behavior does not use."""
     for key in ("behavior", "group_behavior"):
         options: Any = getattr(record, key)
         roles = getattr(options, "target_roles", "all")
         if options is None or roles == "all" or isinstance(options, CustomOptions):
             continue
         where = (*context.entry_path(record, key), "target_roles")
-        if options.name not in _LOOKING:
+        if options.name not in _AVOIDING:
             if "target_roles" in options.model_fields_set:
-                yield hint("ignored-key", where, f"'{options.name}' looks at nobody: 'target_roles' has no effect",
-                           given=roles, fix="remove it")  # fmt: skip
+                message = f"'{options.name}' avoids no other object: 'target_roles' has no effect"
+                yield hint("ignored-key", where, message, given=roles, fix="remove it")
             continue
         others = counts[roles] - (record.role == roles and not record.unobstructed)
         if others <= 0:
@@ -178,8 +183,8 @@ def _nobody(context: Context, record: ObjectRecord, counts: dict[str, int]) -> I
             )
 
 
-def _unseen(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """``unobstructed`` of a robot is about the others, and easily taken for leave to drive through obstacles."""
+def _unobstructed_robot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+    """Robots with ``unobstructed``, which is easily mistaken for permission to drive through obstacles."""
     if record.role != "robot" or not record.unobstructed or record.static:
         return
     if context.scenario.world.collision_mode in _PASSABLE:
@@ -189,33 +194,33 @@ def _unseen(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         (*record.path, "unobstructed"),
         f"others pass through '{record.name}' and lidars do not see it, but it still collides with others itself",
         given=True,
-        fix="to let it pass through obstacles, write 'unobstructed: true' on the obstacles; none needed if others are "
-        "to pass through it",
+        fix="to let it pass through obstacles, write 'unobstructed: true' on the obstacles; nothing to fix if others "
+        "are meant to pass through it",
     )
 
 
 def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Dashing at full speed, an object can hop from one side of its goal to the other for ever."""
+    """Goals that ``dash``, which never slows down, can overshoot again and again."""
     options: Any = record.behavior if record.group_behavior is None else None
     options = getattr(options, "local", options)
     if getattr(options, "name", "") != "dash" or record.static or not record.goals or record.goal_threshold <= 0:
         return
     dt = context.scenario.world.step_time
     step = top_speed(record) * dt
-    if not 2 * record.goal_threshold * (1 + 1e-9) < step <= LARGEST:
+    if not 2 * record.goal_threshold * (1 + 1e-9) < step <= MAX_MAGNITUDE:
         return
     threshold = math.ceil(step / 2 * 100 + 1) / 100
     yield hint(
         "goal-overshoot",
         record.path,
-        f"'{record.name}' drives {step:.3g} m per step and 'dash' does not slow down: it may hop over its goal, which "
+        f"'{record.name}' drives {step:.3g} m per step and 'dash' does not slow down: it may overshoot its goal, which "
         f"counts as reached within {record.goal_threshold:g} m",
         fix=f"goal_threshold: {threshold:g} or more, a smaller step_time, or a lower vel_max",
     )
 
 
 def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """A dashing car steers as far as it can towards a goal inside of its turning circle, and drives round it."""
+    """Goals inside the turning circle of a car: ``dash`` steers towards them as far as it can and circles them."""
     drive: Any = record.kinematics
     options: Any = record.behavior if record.group_behavior is None else None
     if getattr(options, "name", "") != "dash" or drive.name != "acker" or drive.mode != "steer" or drive.noise:
@@ -232,9 +237,9 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if math.dist((x, y), goal[:2]) > 2 * radius:
         return
     least, step = math.inf, speed * context.scenario.world.step_time
-    if _ROUNDS * 2 * math.pi * radius > _MOST_STEPS * step:
+    if _MAX_TURNS * 2 * math.pi * radius > _MAX_STEPS * step:
         return
-    steps = math.ceil(_ROUNDS * 2 * math.pi * radius / step)
+    steps = math.ceil(_MAX_TURNS * 2 * math.pi * radius / step)
     theta, steering = record.state[2], record.state[3] if len(record.state) > 3 else 0.0
     for _ in range(steps):
         least = min(least, math.dist((x, y), goal[:2]))
@@ -248,8 +253,8 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield warning(
         "turning-circle",
         context.entry_path(record, "state") if context.given(record, "state") else record.path,
-        f"'{record.name}' turns in circles of radius {radius:.3g} m at least, and ({goal[0]:g}, {goal[1]:g}) lies "
-        f"inside of one from the start: it drives round it for ever, {least:.2g} m off at best",
+        f"the smallest turning radius of '{record.name}' is {radius:.3g} m, and its goal ({goal[0]:g}, {goal[1]:g}) "
+        f"lies inside that circle: it circles the goal and comes no nearer than {least:.2g} m",
         fix=f"start towards the goal, with heading {towards:.4g}, or goal_threshold: "
         f"{math.ceil(least * 100 + 1) / 100:g}, or more steering in 'vel_max' and 'vel_min'",
     )

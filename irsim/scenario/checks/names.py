@@ -1,4 +1,4 @@
-"""Names: unique, and known where they are referred to."""
+"""Checks names: whether they are unique, and known where they are referred to."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from irsim.scenario.messages.findings import Finding, error
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Duplicate names; a viewpoint that names no object."""
+    """Report duplicate names, and a viewpoint that names no object."""
     first: dict[str, int] = {}
     reported: set[tuple[object, ...]] = set()
     for record in context.resolved.objects:
@@ -24,9 +24,9 @@ def check(context: Context) -> Iterator[Finding]:
         yield error(
             "duplicate-name",
             path,
-            f"'{record.name}' is also the name of object {other}",
+            f"the name '{record.name}' is already taken by object {other}",
             given=record.name,
-            fix="give every object its own name: a list with one per object, or no name",
+            fix="give each object a name of its own (a list with one name per object), or no name",
         )
     viewpoint = context.scenario.world.plot.viewpoint
     if isinstance(viewpoint, str) and viewpoint not in first:

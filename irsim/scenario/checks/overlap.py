@@ -1,4 +1,4 @@
-"""Objects that start in collision."""
+"""Finds objects that start in collision."""
 
 from __future__ import annotations
 
@@ -16,28 +16,37 @@ from irsim.scenario.model.scenario import Entry
 from irsim.scenario.resolve.body_size import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_MOST_REPORTED = 20
-_MOST_PAIRS = 300_000
-"""Pairs that are looked at; thousands of objects in one place have more, and are told of as stacked."""
-_MOST_COUNTED = 10_000
-"""Pairs of two entries that are counted."""
-_DIRECTIONS, _HALVINGS, _RINGS = 16, 12, 30
-_TOUCHING = 1e-4
-"""Depth that nobody would see [m]."""
+_MAX_REPORTED = 20
+"""Findings for one scenario."""
+_MAX_PAIRS = 300_000
+"""Pairs that are examined; thousands of objects in one place have more, and are reported as stacked."""
+_MAX_COUNTED = 10_000
+"""Overlapping pairs of two entries that are counted."""
+_DIRECTIONS = 16
+"""Directions in which a free place or a way out is searched."""
+_HALVINGS = 12
+"""Bisections of the depth of an overlap."""
+_RINGS = 30
+"""Circles round an object on which a free place is searched."""
+_MIN_DEPTH = 1e-4
+"""Smaller overlaps are invisible: the bodies touch [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Pairs with a member that moves or is a robot, unless one is placed at random or not to be collided with."""
+    """Report overlapping pairs with a robot or a moving object.
+
+    Objects placed at random are skipped, as are pairs whose other object is ``unobstructed``.
+    """
     random = {index for placement in context.resolved.placements for index in placement.objects}
     bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
-    told = {path for path, entry, _ in context.entries() if _is_told(entry)}
+    reported = {path for path, entry, _ in context.entries() if _reports_stacking(entry)}
     found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
     for a, b in _near_pairs(bodies):
         mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
-        if other.unobstructed or (mover.path == other.path and mover.path in told):
+        if other.unobstructed or (mover.path == other.path and mover.path in reported):
             continue
         key = (mover.path, other.path)
-        if (len(found) >= _MOST_REPORTED and key not in found) or (key in found and found[key][2] >= _MOST_COUNTED):
+        if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
             continue
         if core.intersects(a.parts, a.record.state[:3], b.parts, b.record.state[:3]):
             first = found.setdefault(key, (mover, other, 0))
@@ -51,7 +60,7 @@ def check(context: Context) -> Iterator[Finding]:
         yield (hint if harmless else warning)(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts {'in one place' if harmless else 'in collision'} with {_named(other)}{deep}"
+            f"'{mover.name}' starts {'overlapping' if harmless else 'in collision with'} {_named(other)}{deep}"
             + (f", and {_more(count)} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
@@ -60,11 +69,11 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _more(count: int) -> str:
-    return f"at least {count - 1}" if count >= _MOST_COUNTED else str(count - 1)
+    return f"at least {count - 1}" if count >= _MAX_COUNTED else str(count - 1)
 
 
 def _depth(a: _Body, b: _Body) -> str:
-    """How deep one is in the other, in words: the least move that would part them, along one of a few directions."""
+    """Depth of an overlap, in words: the shortest move, in one of a few directions, that separates the two."""
     x, y, heading = a.record.state[:3]
     most = 2 * (a.reach + min(b.reach, 10 * a.reach))
     if not math.isfinite(most):
@@ -85,13 +94,13 @@ def _depth(a: _Body, b: _Body) -> str:
             middle = (low + high) / 2
             low, high = (middle, high) if meets(angle, middle) else (low, middle)
         least = high
-    if least < _TOUCHING:
+    if least < _MIN_DEPTH:
         return ": they touch"
     return f", {least:.2g} m deep" if least < most else ", all of it"
 
 
 def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[float, float] | None:
-    """The nearest place with room for a body as it is turned, among all whose place is fixed."""
+    """The nearest position where a body, with its heading, overlaps no object of fixed position."""
     x, y, heading = mover.record.state[:3]
     step = max(mover.reach / 4, 0.02)
     if not math.isfinite(step) or mover.record.shape.name in ("map", "walls"):
@@ -120,8 +129,8 @@ def _named(record: ObjectRecord) -> str:
     return kinds.get(record.shape.name, f"'{record.name}'")
 
 
-def _is_told(entry: Entry) -> bool:
-    """Whether the checks of placement speak of overlaps within this entry."""
+def _reports_stacking(entry: Entry) -> bool:
+    """Whether the placement checks report overlaps within this entry."""
     return entry.distribution is not None or entry.state is None or is_vector(entry.state)
 
 
@@ -134,7 +143,7 @@ def _is_fixed(record: ObjectRecord) -> bool:
 
 
 class _Body:
-    """An object with its geometry, made when somebody comes near."""
+    """An object with its geometry, which is made when another object comes near."""
 
     def __init__(self, record: ObjectRecord) -> None:
         self.record = record
@@ -156,12 +165,12 @@ class _Body:
 
 
 def _matters(record: ObjectRecord) -> bool:
-    """Whether its overlaps are a mistake: obstacles that stand still may form one wall."""
+    """Whether overlaps of an object are a mistake; static obstacles may overlap to form one wall."""
     return not record.static or record.role == "robot"
 
 
 def reach_of(shape: Any) -> float:
-    """No point of the shape is farther from the origin than this [m]."""
+    """Upper bound of the distance of all points of a shape from its origin [m]."""
     wheelbase = (getattr(shape, "wheelbase", None) or 0.0) / 2
     if shape.name == "circle":
         return wheelbase + math.hypot(*shape.center) + float(shape.radius)
@@ -175,7 +184,7 @@ def reach_of(shape: Any) -> float:
 
 
 def _reach_of_part(part: Any) -> float:
-    """The same for geometry of the core, of shapes that somebody has added."""
+    """The reach of a part for the core, for shapes registered by user code [m]."""
     if hasattr(part, "vertices"):
         return max(math.hypot(x, y) for x, y in part.vertices)
     if hasattr(part, "center") and hasattr(part, "radius"):
@@ -184,7 +193,7 @@ def _reach_of_part(part: Any) -> float:
 
 
 def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
-    """Pairs whose bounding circles meet and of which one moves or is a robot; a sweep along x."""
+    """Pairs with a robot or a moving object whose bounding circles meet, by a sweep along x."""
     ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
     active: list[_Body] = []
     looked_at = 0
@@ -192,7 +201,7 @@ def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
         x, y = body.record.state[:2]
         active = [other for other in active if other.record.state[0] + other.reach >= x - body.reach]
         looked_at += len(active)
-        if looked_at > _MOST_PAIRS:
+        if looked_at > _MAX_PAIRS:
             return
         for other in active:
             if not _matters(body.record) and not _matters(other.record):

@@ -1,4 +1,4 @@
-"""Where objects start: on top of each other, or in ranges that make no sense."""
+"""Checks where objects start: several in one place, circles that are too small, ranges that are empty."""
 
 from __future__ import annotations
 
@@ -14,13 +14,12 @@ from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.scenario import Entry
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_NEAR = 1e-9
-_MOST_ALIKE = 50
-"""Obstacles in one place that are compared with each other."""
+_MAX_ALIKE = 50
+"""Obstacles in one place with which another is compared."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """By entry."""
+    """Check each entry, then all static obstacles together."""
     for path, entry, records in context.entries():
         name = entry.distribution.name if entry.distribution is not None else "manual"
         if name == "random":
@@ -45,9 +44,9 @@ def _ranges(context: Context, path: Path) -> Iterator[Finding]:
             yield error(
                 "range-order",
                 (*path, "distribution", key) if given else (*path, "distribution"),
-                f"{axis}: the lower bound {low:g} is above the upper bound {high:g}",
+                f"{axis}: the lower bound must not exceed the upper bound, got {low:g} and {high:g}",
                 given=getattr(options, key),
-                fix="range_low must not be greater than range_high; the defaults end half a metre inside the world",
+                fix="lower range_low or raise range_high; the defaults end half a metre inside the world",
             )
             return
 
@@ -61,35 +60,35 @@ def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
             "circle-overlap",
             (*path, "distribution"),
             f"neighbours on the circle are {gap:.3g} m apart and overlap",
-            fix="a larger 'radius', fewer objects or smaller ones",
+            fix="use a larger 'radius', or fewer or smaller objects",
         )
 
 
 def _twice(context: Context) -> Iterator[Finding]:
-    """The same obstacle written twice, in two entries."""
-    drawn = {index for placement in context.resolved.placements for index in placement.objects}
+    """Static obstacles with the same shape and place as one of another entry."""
+    random = {index for placement in context.resolved.placements for index in placement.objects}
     places: dict[tuple[float, ...], list[ObjectRecord]] = defaultdict(list)
-    told: set[Path] = set()
+    reported: set[Path] = set()
     for record in context.written:
-        if record.role == "robot" or not record.static or record.id in drawn or record.path in told:
+        if record.role == "robot" or not record.static or record.id in random or record.path in reported:
             continue
         same = places[tuple(round(v, 9) for v in record.state[:3])]
         twin = next((other for other in same if other.path != record.path and other.shape == record.shape), None)
         if twin is None or getattr(record.shape, "random_shape", False) or twin.unobstructed != record.unobstructed:
-            same[_MOST_ALIKE:] = []
+            same[_MAX_ALIKE:] = []
             same.append(record)
             continue
-        told.add(record.path)
+        reported.add(record.path)
         yield hint(
             "stacked",
             context.entry_path(record, "state") if context.given(record, "state") else record.path,
-            f"'{record.name}' has the shape and the place of '{twin.name}': one of them is not needed",
-            fix="another 'state', or one entry less",
+            f"'{record.name}' has the same shape and place as '{twin.name}': one of them is not needed",
+            fix="change 'state', or remove one of the two",
         )
 
 
 def _stacked(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
-    if isinstance(entry.shape, list):  # polygons with vertices in world coordinates share a state on purpose
+    if isinstance(entry.shape, list):  # polygons with vertices in world coordinates share one state on purpose
         return
     places: dict[tuple[float, ...], int] = defaultdict(int)
     for record in records:
@@ -104,6 +103,6 @@ def _stacked(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[
             "stacked",
             (*path, key),
             f"{most} objects of this entry start at the same place ({where[0]:g}, {where[1]:g})",
-            fix=("a vector of its own in 'state' for each object" if several else "give 'state' one vector per object")
+            fix=("give each object its own vector in 'state'" if several else "give 'state' one vector per object")
             + ", or a 'distribution': {name: random} or {name: circle}",
         )

@@ -1,4 +1,4 @@
-"""Sensors, fields of view and fog."""
+"""Checks sensors, fields of view and fog."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from irsim.scenario.model.lookup import at
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 
-_MOST_CELLS = 16_000_000
-_USUAL_CELL = 0.1
-_LEAST_SPAN = 1e-3
-"""Beams within less than this are one [rad]."""
+_MAX_FOG_CELLS = 16_000_000
+"""Cells of the fog."""
+_DEFAULT_CELL = 0.1
+"""Cell size of the fog without a map [m]."""
+_MIN_SPAN = 1e-3
+"""Beams within a smaller angle point the same way [rad]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """By entry, then the fog."""
+    """Check the fog, then the sensors of each entry."""
     yield from _fog(context)
     for path, entry, records in context.entries():
         seen = set()
@@ -42,11 +44,12 @@ def check(context: Context) -> Iterator[Finding]:
             yield hint(
                 "fov-radius-ignored",
                 (*path, "fov_radius"),
-                f"without 'fov' this radius does not count: {reach}",
+                f"'fov_radius' has no effect without 'fov': {reach}",
                 fix="add 'fov' (radians)",
             )
         if entry.fov is not None and entry.fov_radius is None and lidar is None:
-            yield hint("fov-without-radius", (*path, "fov"), "without 'fov_radius' nothing is in view", fix="add it")
+            message = "without 'fov_radius' nothing is in view"
+            yield hint("fov-without-radius", (*path, "fov"), message, fix="add 'fov_radius' (metres)")
 
 
 def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
@@ -55,9 +58,9 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
         yield error(
             "range-order",
             (*path, written),
-            f"range_min {sensor.range_min:g} is not below range_max {sensor.range_max:g}",
+            f"range_min must be smaller than range_max, got {sensor.range_min:g} and {sensor.range_max:g}",
             given=getattr(sensor, written),
-            fix="range_min must be smaller than range_max",
+            fix="lower range_min or raise range_max",
         )
     if getattr(sensor, "is_lidar", False):
         written = at(context.document.data, (*path, "angle_range"))
@@ -65,11 +68,13 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
             yield from _beams(path, sensor)
         yield from _unused(path, sensor)
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":
-        yield hint("contact-without-mode", path, "there are no contact forces without 'collision_mode: contact'")
+        yield hint(
+            "contact-without-mode", path, "without 'collision_mode: contact' there are no contact forces to show"
+        )
 
 
 def _blind(context: Context, path: Path, sensor: Any, record: ObjectRecord) -> Iterator[Finding]:
-    """Beams that end inside of the robot's own body, which they do not see."""
+    """Beams that end inside the robot's own body, which they do not see."""
     if not getattr(sensor, "is_lidar", False) or not has_fixed_shape(record.shape):
         return
     if math.hypot(*sensor.offset[:2]) > 0 or sensor.range_max > reach_of(record.shape):
@@ -80,26 +85,28 @@ def _blind(context: Context, path: Path, sensor: Any, record: ObjectRecord) -> I
         yield warning(
             "lidar-blind",
             (*path, "range_max"),
-            f"the beams are {sensor.range_max:g} m long and end inside of the body, which reaches {own:g} m: nothing "
-            "is seen before it is hit",
+            f"the beams are {sensor.range_max:g} m long and end inside the body, which extends {own:g} m: the lidar "
+            "detects nothing before a collision",
             given=sensor.range_max,
             fix="range_max: 10; lengths are in metres",
         )
 
 
 def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
-    """Fans of beams that are not what they look like."""
+    """Numbers and spans of beams that have a surprising effect."""
     count, span, written = sensor.number, sensor.angle_range, sensor.model_fields_set
     if count == 1:
         if span > 0 and "angle_range" in written:
             where = (*path, "angle_range")
-            yield hint("lidar-beams", where, "one beam looks straight ahead, whatever the angle_range", given=span)
+            yield hint(
+                "lidar-beams", where, "a single beam points straight ahead, whatever the angle_range", given=span
+            )
         return
-    if span < _LEAST_SPAN:
+    if span < _MIN_SPAN:
         yield hint(
             "lidar-beams",
             (*path, "angle_range"),
-            f"all {count} beams look the same way"
+            f"all {count} beams point the same way"
             + (f": {span:g} rad are {math.degrees(span):.2g} degrees" if span > 0 else ""),
             given=span,
             fix="number: 1 for a range finder",
@@ -110,7 +117,7 @@ def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
         yield hint(
             "lidar-ends-meet",
             (*path, "number"),
-            f"over a full turn the first and the last of {count} beams look the same way: {count - 1} directions, "
+            f"over a full turn the first and the last of {count} beams point the same way: {count - 1} directions, "
             f"{math.degrees(spacing):.4g} degrees apart",
             given=count,
             fix=f"number: {count + 1}, or angle_range: {FULL_TURN * (count - 1) / count:.6g}, for {count} directions",
@@ -118,16 +125,16 @@ def _beams(path: Path, sensor: Any) -> Iterator[Finding]:
 
 
 def _whole_degrees(directions: int) -> bool:
-    """Whether so many directions are a round number of degrees apart: half or whole ones, or whole parts of one."""
+    """Whether the spacing of this many directions is a multiple of half a degree, or a whole fraction of a degree."""
     return 720 % directions == 0 or directions % 360 == 0
 
 
 def _unused(path: Path, sensor: Any) -> Iterator[Finding]:
-    """Keys that do nothing beside the others."""
+    """Keys that have no effect, given the other keys."""
     written = sensor.model_fields_set
     for key in ("std", "angle_std"):
         if key in written and getattr(sensor, key) > 0 and not sensor.noise:
-            message = f"without 'noise: true' '{key}' does not count"
+            message = f"'{key}' has no effect without 'noise: true'"
             yield hint("lidar-noise-off", (*path, key), message, given=getattr(sensor, key), fix="noise: true")
     if sensor.name == "fmcw_lidar2d" and sensor.has_velocity:
         yield hint(
@@ -143,20 +150,22 @@ def _fog(context: Context) -> Iterator[Finding]:
     if not world.fog_map:
         if world.fog_map_resolution is not None:
             where = ("world", "fog_map_resolution")
-            yield hint("ignored-key", where, "without 'fog_map: true' there is no fog", fix="fog_map: true")
+            yield hint(
+                "ignored-key", where, "'fog_map_resolution' has no effect without 'fog_map: true'", fix="fog_map: true"
+            )
         return
     grid = context.resolved.grid
-    cell = world.fog_map_resolution or (_USUAL_CELL if grid is None else grid.cell[0])
+    cell = world.fog_map_resolution or (_DEFAULT_CELL if grid is None else grid.cell[0])
     cells = (world.width / cell) * (world.height / cell)
-    if cells > _MOST_CELLS:
+    if cells > _MAX_FOG_CELLS:
         key = "fog_map" if world.fog_map_resolution is None else "fog_map_resolution"
-        least = math.sqrt(world.width * world.height / _MOST_CELLS)
+        least = math.sqrt(world.width * world.height / _MAX_FOG_CELLS)
         yield error(
             "fog-too-fine",
             ("world", key),
-            f"cells of {cell:g} m make {cells:.3g} of them",
+            f"the fog must have at most {_MAX_FOG_CELLS:,} cells, got {cells:.3g} of {cell:g} m",
             given=getattr(world, key),
-            allowed=f"at most {_MOST_CELLS:,} cells",
+            allowed=f"at most {_MAX_FOG_CELLS:,} cells",
             fix=f"fog_map_resolution: {least:.2g} or more",
         )
     sees = any(
@@ -168,6 +177,6 @@ def _fog(context: Context) -> Iterator[Finding]:
         yield hint(
             "fog-never-lifts",
             ("world", "fog_map"),
-            "no robot has a lidar or a field of view: nothing is ever seen",
+            "no robot has a lidar or a field of view, so the fog never lifts",
             fix="give a robot 'sensors: [{name: lidar2d}]', or 'fov' and 'fov_radius'",
         )

@@ -1,4 +1,4 @@
-"""Shapes: outlines that are no outlines, and defaults that surprise."""
+"""Checks shapes: invalid outlines, empty ranges and surprising defaults."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks._outline import crosses_itself, repaired
+from irsim.scenario.checks._outline import crosses_itself, repair_outline
 from irsim.scenario.messages.findings import Finding, error, hint
 from irsim.scenario.resolve.expand import DEFAULT_RADIUS
 from irsim.scenario.yaml.formatting import flow
@@ -22,7 +22,7 @@ _RANGES = (
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Every shape that is written once is looked at once."""
+    """Check each written shape once."""
     seen: set[Path] = set()
     for record in context.written:
         if not context.given(record, "shape"):
@@ -31,7 +31,7 @@ def check(context: Context) -> Iterator[Finding]:
                 yield hint(
                     "default-shape",
                     record.path,
-                    f"without 'shape' it is a circle of radius {DEFAULT_RADIUS:g} m",
+                    f"without 'shape' the object is a circle of radius {DEFAULT_RADIUS:g} m",
                     fix="add 'shape: {name: circle, radius: 0.2}'",
                 )
             continue
@@ -48,7 +48,7 @@ def _shape(path: Path, shape: Any) -> Iterator[Finding]:
             yield error(
                 "range-order",
                 (*path, key),
-                f"the lower bound {values[0]:g} is above the upper bound {values[1]:g}",
+                f"the lower bound must not exceed the upper bound, got {values[0]:g} and {values[1]:g}",
                 given=values,
                 fix=f"{key}: {flow([values[1], values[0]])}",
                 edit=Edit("replace", (*path, key), [values[1], values[0]]),
@@ -64,7 +64,7 @@ def _shape(path: Path, shape: Any) -> Iterator[Finding]:
         yield error(
             "range-order",
             (*path, "num_vertices_range"),
-            "the upper bound is exclusive, so this range holds no number",
+            "the upper bound is exclusive, so this range contains no number",
             given=shape.num_vertices_range,
             fix=f"[{shape.num_vertices_range[0]}, {shape.num_vertices_range[0] + 1}]",
         )
@@ -82,13 +82,13 @@ def _polygon(path: Path, shape: Any) -> Iterator[Finding]:
         yield error(
             "too-few-vertices",
             where,
-            f"{len(corners)} corner{'s' if len(corners) != 1 else ''}; a polygon has at least 3",
+            f"a polygon must have at least 3 different corners, got {len(corners)}",
             given=shape.vertices,
         )
         return
     if not crosses_itself(corners):
         return
-    better = repaired(shape.vertices)
+    better = repair_outline(shape.vertices)
     if better is None:
         yield error("invalid-polygon", where, "this outline encloses no area", given=shape.vertices)
     elif len(better) == 1:
@@ -128,13 +128,13 @@ def _linestring(path: Path, shape: Any) -> Iterator[Finding]:
         yield error(
             "too-few-vertices",
             (*path, "vertices"),
-            "a linestring has at least 2 different points",
+            "a linestring must have at least 2 different points",
             given=shape.vertices,
         )
 
 
 def _open(vertices: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
-    """Without repeated neighbours and without the closing repetition of the first corner."""
+    """The corners without repeated neighbours, and without the first corner repeated at the end."""
     corners: list[tuple[float, float]] = []
     for x, y in vertices:
         if not corners or corners[-1] != (x, y):

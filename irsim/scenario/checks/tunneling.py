@@ -1,4 +1,4 @@
-"""Steps that jump over walls: collisions are looked for after each step, not on the way."""
+"""Finds objects that can pass through others: collisions are detected after each step, not during it."""
 
 from __future__ import annotations
 
@@ -20,16 +20,18 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 Point = tuple[float, float]
 Segment = tuple[Point, Point]
 _PASSABLE = ("unobstructed", "reactive")
-_STRAYING = ("contact",)
-"""Modes of collision in which others push an object off its way."""
-_MOST_LEGS = 1000
-_TURNS = 2.0
-"""So many radii of the turning circle there is to be room for where the heading is to be found first."""
-_THINGS = {"map": "the map", "walls": "the walls round the world"}
+"""Collision modes in which objects pass through each other anyway."""
+_PUSHING = ("contact",)
+"""Collision modes in which other objects push an object off its path."""
+_MAX_LEGS = 1000
+"""Legs of a path that is examined; an object with more may be anywhere."""
+_TURNING_RADII = 2.0
+"""Space that an object needs to turn towards its goal, in radii of its turning circle."""
+_NAMES = {"map": "the map", "walls": "the walls round the world"}
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """One finding per entry: what is thinner than a step can be jumped over."""
+    """One finding per entry: an object can pass through another that is thinner than one step."""
     world = context.scenario.world
     if world.collision_mode in _PASSABLE:
         return
@@ -50,31 +52,31 @@ def check(context: Context) -> Iterator[Finding]:
     if not fast or len(there) < 2:
         return
     thin_first = sorted(there, key=lambda b: (b.shape.width, b.record.id))
-    drawn = {index for placement in context.resolved.placements for index in placement.objects}
-    told: set[Path] = set()
+    random = {index for placement in context.resolved.placements for index in placement.objects}
+    reported: set[Path] = set()
     for one in fast:
         own = 2 * one.shape.disc
-        if one.record.path in told or own == 0:  # a line moves along itself as well as across
+        if one.record.path in reported or own == 0:  # a line may move along itself
             continue
-        band = _band(context, one) if one.record.id not in drawn else None
+        band = _band(context, one) if one.record.id not in random else None
         found = None
         for other in thin_first:
             step = one.speed * dt if other.speed == 0 else (one.speed + other.speed) * dt
             if step <= own + other.shape.width and other.speed == 0:
-                break  # and all that follow are thicker, or slower
+                break  # all others are thicker or slower
             if other.record is one.record or step <= own + other.shape.width:
                 continue
-            if _may_meet(one, other, None if other.record.id in drawn else band, dt):
+            if _may_meet(one, other, None if other.record.id in random else band, dt):
                 found = other, own + other.shape.width, step / dt
                 break
         if found is not None:
-            told.add(one.record.path)
-            yield _told(context, one, *found)
+            reported.add(one.record.path)
+            yield _finding(context, one, *found)
 
 
-def _told(context: Context, one: _Body, other: _Body, least: float, speed: float) -> Finding:
+def _finding(context: Context, one: _Body, other: _Body, least: float, speed: float) -> Finding:
     dt = context.scenario.world.step_time
-    thing = _THINGS.get(other.record.shape.name, f"'{other.record.name}'")
+    thing = _NAMES.get(other.record.shape.name, f"'{other.record.name}'")
     together = "" if other.speed == 0 else f", and {thing} {other.speed * dt:.3g} m towards it"
     longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
     return warning(
@@ -88,7 +90,7 @@ def _told(context: Context, one: _Body, other: _Body, least: float, speed: float
 
 
 class _Shape:
-    """What is measured of a shape, once for all objects that have it [m]."""
+    """Sizes of a shape, computed once for all objects that share it [m]."""
 
     def __init__(self, shape: Any) -> None:
         self._shape = shape
@@ -114,8 +116,8 @@ class _Body:
     speed: float
 
     @cached_property
-    def way(self) -> list[Segment]:
-        """Straight from its start to its goals."""
+    def legs(self) -> list[Segment]:
+        """Straight legs from the start to each goal in turn."""
         goals = [] if self.record.kinematics is None else self.record.goals
         points = [(p[0], p[1]) for p in (self.record.state, *goals)]
         if self.record.loop and len(points) > 1:
@@ -124,18 +126,18 @@ class _Body:
 
     @cached_property
     def box(self) -> tuple[float, float, float, float]:
-        """xmin, ymin, xmax, ymax of the way."""
-        x, y = zip(*(point for leg in self.way for point in leg), strict=True)
+        """xmin, ymin, xmax, ymax of the legs."""
+        x, y = zip(*(point for leg in self.legs for point in leg), strict=True)
         return min(x), min(y), max(x), max(y)
 
 
 @dataclass(frozen=True)
 class _Band:
-    """Where a dashing object can be.
+    """Region that an object driven by ``dash`` can reach.
 
     Attributes:
-        far: No point of its body gets farther from the way [m].
-        parts: Where it can get, world frame: along the way, and round goals that it may hop over.
+        far: Largest distance of any point of its body from its straight path [m].
+        parts: The region, world frame: along the path, and round goals that it may overshoot.
     """
 
     far: float
@@ -143,10 +145,10 @@ class _Band:
 
 
 def _may_meet(one: _Body, other: _Body, band: _Band | None, dt: float) -> bool:
-    """Whether they come near each other; anything may happen to who has no straight way."""
+    """Whether two objects can meet; always True if the path of either is not straight."""
     if other.speed > 0:
         if one.record.behavior is None or other.record.behavior is None:
-            return False  # a program drives them: it knows
+            return False  # a program drives them and is responsible for that
         if not (_is_straight(one.record) and _is_straight(other.record)):
             return True
         return _are_near(one, other, one.shape.reach + other.shape.reach + (one.speed + other.speed) * dt)
@@ -158,39 +160,39 @@ def _may_meet(one: _Body, other: _Body, band: _Band | None, dt: float) -> bool:
 
 
 def _are_near(one: _Body, other: _Body, gap: float) -> bool:
-    """Whether the ways come so near to each other; who does not move has only a place."""
-    others = other.way if other.speed > 0 else [(other.way[0][0], other.way[0][0])]
+    """Whether two paths come within ``gap`` of each other; the path of a static object is one point."""
+    others = other.legs if other.speed > 0 else [(other.legs[0][0], other.legs[0][0])]
     a, b = one.box, other.box if other.speed > 0 else (*others[0][0], *others[0][0])
     if a[0] - gap > b[2] or b[0] - gap > a[2] or a[1] - gap > b[3] or b[1] - gap > a[3]:
         return False
-    return min(segment_gap(leg, way) for leg in one.way for way in others) <= gap
+    return min(segment_gap(leg, other_leg) for leg in one.legs for other_leg in others) <= gap
 
 
 def _band(context: Context, body: _Body) -> _Band | None:
-    """None for who may be anywhere."""
+    """The region that an object can reach; None if it may go anywhere."""
     world, record = context.scenario.world, body.record
     driven = record.group_behavior is not None or record.group in context.driven_groups
-    if min(map(len, (record.vel_min, record.vel_max, record.acce))) < 2:  # told of as too short
+    if min(map(len, (record.vel_min, record.vel_max, record.acce))) < 2:  # another check reports them as too short
         return None
-    if not _is_straight(record) or driven or world.collision_mode in _STRAYING or world.control_mode != "auto":
+    if not _is_straight(record) or driven or world.collision_mode in _PUSHING or world.control_mode != "auto":
         return None
-    way = body.way
-    if len(way) > _MOST_LEGS:
+    legs = body.legs
+    if len(legs) > _MAX_LEGS:
         return None
     heading = record.state[2] if len(record.state) > 2 else 0.0
     off = 0.0
-    for start, end in way:
-        off = max(off, _off(record, heading, start, end))
+    for start, end in legs:
+        off = max(off, _deviation(record, heading, start, end))
         heading = math.atan2(end[1] - start[1], end[0] - start[0])
     step = body.speed * world.step_time
     side = body.shape.reach + record.goal_threshold + off
     far = side
-    if step > 2 * record.goal_threshold:  # it may hop over the goal, and turn round
-        far += step + (_turning(record) if getattr(record.kinematics, "name", "") in ("diff", "acker") else 0.0)
+    if step > 2 * record.goal_threshold:  # it may overshoot the goal and turn back
+        far += step + (_turning_space(record) if getattr(record.kinematics, "name", "") in ("diff", "acker") else 0.0)
     if not math.isfinite(far):
         return None
-    parts: list[Any] = [core.Circle(radius=side, center=list(way[0][0]))]
-    for (ax, ay), (bx, by) in way:
+    parts: list[Any] = [core.Circle(radius=side, center=list(legs[0][0]))]
+    for (ax, ay), (bx, by) in legs:
         length = math.hypot(bx - ax, by - ay)
         parts.append(core.Circle(radius=far, center=[bx, by]))
         if length > 0:
@@ -200,8 +202,8 @@ def _band(context: Context, body: _Body) -> _Band | None:
     return _Band(far, parts)
 
 
-def _off(record: ObjectRecord, heading: float, start: Point, end: Point) -> float:
-    """How far off the straight way ``dash`` may get [m]; infinity where it is not straight."""
+def _deviation(record: ObjectRecord, heading: float, start: Point, end: Point) -> float:
+    """Largest deviation of ``dash`` from a straight leg [m]; infinity if its path is not straight."""
     drive, length = record.kinematics, math.dist(start, end)
     if length == 0:
         return 0.0
@@ -216,17 +218,17 @@ def _off(record: ObjectRecord, heading: float, start: Point, end: Point) -> floa
         return math.inf
     if name == "acker" and (error > tolerance or any(record.state[3:])):
         return math.inf
-    if error <= tolerance:  # not corrected, until it has grown
+    if error <= tolerance:  # `dash` does not correct errors within its tolerance
         return length * math.sin(min(error, math.pi / 2))
-    return _turning(record) + length * math.sin(min(tolerance, math.pi / 2))
+    return _turning_space(record) + length * math.sin(min(tolerance, math.pi / 2))
 
 
-def _turning(record: ObjectRecord) -> float:
-    """Room to turn in at full speed [m]; infinity where it is unknown."""
+def _turning_space(record: ObjectRecord) -> float:
+    """Space that an object needs to turn at full speed [m]; infinity if unknown."""
     rate = abs(record.vel_max[1])
     if getattr(record.kinematics, "name", "") != "diff" or rate == 0 or record.acce[1] < math.inf:
         return math.inf
-    return _TURNS * abs(record.vel_max[0]) / rate
+    return _TURNING_RADII * abs(record.vel_max[0]) / rate
 
 
 def _is_straight(record: ObjectRecord) -> bool:

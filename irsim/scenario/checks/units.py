@@ -1,4 +1,4 @@
-"""Units: angles that look like degrees, lengths that look like centimetres, times that look like milliseconds."""
+"""Checks units: angles that may be degrees, lengths that may be centimetres, times that may be milliseconds."""
 
 from __future__ import annotations
 
@@ -14,27 +14,34 @@ from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
 
-_TURN = 6.3
-_FASTEST_TURN = 20.0
-"""Three turns a second [rad/s]: hardly a robot is meant to be faster."""
-_FASTEST = 45.0
-"""162 km/h [m/s]."""
-_LONGEST_STEP = 1.0
-_WIDEST = 20.0
-"""The longest lorries [m]."""
-_OF_WORLD = 0.5
-"""Something as long as that share of its world may be a ship."""
-_FAR = 2.0
-"""So many times the size of the world outside of it is nowhere."""
-_ON_EDGE = 1e-6
-_WIDEST_SPREAD = 0.5
-"""No lidar is as inexact [rad]."""
-_LONG_BEAM, _OFF, _LEAST_BODY = 100.0, 5.0, 0.1
-"""Beams so many times as long as the world; offsets so many times the reach of the body, of 0.1 m at least."""
+_MAX_HEADING = 6.3
+"""Largest heading that is surely in radians: a full turn, rounded up [rad]."""
+_MAX_TURN_RATE = 20.0
+"""Highest plausible turn rate, about three turns per second [rad/s]."""
+_MAX_SPEED = 45.0
+"""Highest plausible speed, 162 km/h [m/s]."""
+_MAX_STEP_TIME = 1.0
+"""Longest plausible period of one step [s]."""
+_MAX_LENGTH = 20.0
+"""Length of the longest lorries [m]; a longer robot may be a ship, or given in centimetres."""
+_MAX_SHARE_OF_WORLD = 0.5
+"""Length of a plausible ship, as a share of the shorter side of the world."""
+_MAX_DISTANCE_RATIO = 2.0
+"""Distance of a plausible obstacle from the world, in multiples of the longer side of the world."""
+_EDGE_TOLERANCE = 1e-6
+"""Distance from the edge within which a corner is inside the world [m]."""
+_MAX_ANGLE_STD = 0.5
+"""Largest plausible error of a beam's direction [rad]."""
+_MAX_BEAM_RATIO = 100.0
+"""Length of a plausible beam, in multiples of the longer side of the world."""
+_MAX_OFFSET_RATIO = 5.0
+"""Plausible offset of a sensor, in multiples of the reach of the body."""
+_MIN_REACH = 0.1
+"""Reach of the body that is assumed at least for that [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """One finding per place and code."""
+    """Check all objects; one finding per path and code."""
     yield from _times(context)
     seen: set[tuple[str, Path]] = set()
     for record in context.written:
@@ -49,14 +56,14 @@ def check(context: Context) -> Iterator[Finding]:
 
 def _times(context: Context) -> Iterator[Finding]:
     world = context.scenario.world
-    if world.step_time >= _LONGEST_STEP:
+    if world.step_time >= _MAX_STEP_TIME:
         likely = world.step_time / 1000
-        meant = f"; {world.step_time:g} ms are {likely:g}" if world.step_time >= 5 else ""
+        meant = f"; {world.step_time:g} ms are {likely:g} s" if world.step_time >= 5 else ""
         far = max((top_speed(r) for r in context.written if r.kinematics is not None), default=0.0) * world.step_time
         yield (warning if max(world.width, world.height) <= far < math.inf else hint)(
             "step-time-long",
             ("world", "step_time"),
-            f"one step lasts {world.step_time:g} s, in which everything drives blindly{meant}",
+            f"one step lasts {world.step_time:g} s, and nothing can react during a step{meant}",
             given=world.step_time,
             fix="step_time: 0.1; times are in seconds",
         )
@@ -80,7 +87,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Bodies that have no room in their world, or that no robot has."""
+    """Bodies that do not fit into their world, or are larger than any robot."""
     if not context.given(record, "shape") or not has_fixed_shape(record.shape):
         return
     if record.role != "robot":
@@ -88,16 +95,18 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     world = context.scenario.world
     reach = reach_of(record.shape)
-    if 2 * reach < min(world.width, world.height, _WIDEST) or not math.isfinite(reach):
+    if 2 * reach < min(world.width, world.height, _MAX_LENGTH) or not math.isfinite(reach):
         return
     width = 2 * inner_disc(parts_of(record.shape))[2]
-    if 2 * reach > _WIDEST or width >= min(world.width, world.height):
+    if 2 * reach > _MAX_LENGTH or width >= min(world.width, world.height):
         why = (
             f"does not fit into the world ({world.width:g} m × {world.height:g} m)"
             if width >= min(world.width, world.height)
             else "is longer than any lorry"
         )
-        may_be = width < min(world.width, world.height) and 2 * reach < _OF_WORLD * min(world.width, world.height)
+        may_be = width < min(world.width, world.height) and 2 * reach < _MAX_SHARE_OF_WORLD * min(
+            world.width, world.height
+        )
         yield (hint if may_be else warning)(
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
@@ -107,7 +116,7 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Obstacles that fill their world, and those far from it."""
+    """Obstacles that fill their world, and obstacles far outside it."""
     world, reach = context.scenario.world, reach_of(record.shape)
     if record.unobstructed or not math.isfinite(reach):
         return
@@ -117,30 +126,30 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         yield hint(
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
-            f"'{record.name}' is {width:.3g} m thick, and the world is {world.width:g} m × {world.height:g} m",
+            f"'{record.name}' is {width:.3g} m thick, but the world is only {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
         )
     elif record.shape.name in ("polygon", "linestring"):
-        told = list(_outline(context, record))
-        yield from told
-        if told:
+        found = list(_outline(context, record))
+        yield from found
+        if found:
             return
     x0, y0, x1, y1 = world.bounds
     x, y = record.state[:2]
     if not context.given(record, "state"):
         return
     far = math.hypot(max(x0 - x, 0.0, x - x1), max(y0 - y, 0.0, y - y1)) - reach
-    if far > _FAR * max(world.width, world.height) and x0 <= x / 100 <= x1 and y0 <= y / 100 <= y1:
+    if far > _MAX_DISTANCE_RATIO * max(world.width, world.height) and x0 <= x / 100 <= x1 and y0 <= y / 100 <= y1:
         yield hint(
             "looks-like-centimetres",
             context.entry_path(record, "state"),
-            f"'{record.name}' stands {far:.3g} m outside of the world, which is {world.width:g} m × {world.height:g} m",
+            f"'{record.name}' is {far:.3g} m outside the world, which is {world.width:g} m × {world.height:g} m",
             fix=f"lengths are in metres: ({x:g}, {y:g}) cm are ({x / 100:g}, {y / 100:g})",
         )
 
 
 def _outline(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    """Corners far outside of the world, which in centimetres would all be inside."""
+    """Outlines that reach far outside the world but, read as centimetres, lie inside it."""
     world, (x, y, theta) = context.scenario.world, record.state[:3]
     x0, y0, x1, y1 = world.bounds
     cos, sin = math.cos(theta), math.sin(theta)
@@ -150,26 +159,28 @@ def _outline(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         for u, v in getattr(part, "vertices", ())
     ]
     inside = all(
-        x0 - _ON_EDGE <= u / 100 <= x1 + _ON_EDGE and y0 - _ON_EDGE <= v / 100 <= y1 + _ON_EDGE for u, v in corners
+        x0 - _EDGE_TOLERANCE <= u / 100 <= x1 + _EDGE_TOLERANCE
+        and y0 - _EDGE_TOLERANCE <= v / 100 <= y1 + _EDGE_TOLERANCE
+        for u, v in corners
     )
     far = max((max(u - x1, v - y1, x0 - u, y0 - v) for u, v in corners), default=0.0)
-    if not inside or far <= _FAR * max(world.width, world.height):
+    if not inside or far <= _MAX_DISTANCE_RATIO * max(world.width, world.height):
         return
     u, v = max(corners, key=lambda corner: max(abs(corner[0]), abs(corner[1])))
     yield hint(
         "looks-like-centimetres",
         context.entry_path(record, "shape"),
-        f"'{record.name}' reaches ({u:.4g}, {v:.4g}), and the world is {world.width:g} m × {world.height:g} m",
+        f"'{record.name}' reaches ({u:.4g}, {v:.4g}), but the world is only {world.width:g} m × {world.height:g} m",
         fix=f"lengths are in metres: ({u:.4g}, {v:.4g}) cm are ({u / 100:.4g}, {v / 100:.4g})",
     )
 
 
 def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> Iterator[Finding]:
-    """Beams far longer than the world, and sensors far off their robot."""
+    """Beams far longer than the world, very inexact beams, and sensors far away from their robot."""
     world: Any = context.scenario.world
     written: Any = getattr(sensor, "model_fields_set", ())
     reach, offset = getattr(sensor, "range_max", 0.0), getattr(sensor, "offset", None) or [0.0, 0.0]
-    if "range_max" in written and _LONG_BEAM * max(world.width, world.height) <= reach < math.inf:
+    if "range_max" in written and _MAX_BEAM_RATIO * max(world.width, world.height) <= reach < math.inf:
         yield hint(
             "looks-like-centimetres",
             (*path, "range_max"),
@@ -178,20 +189,20 @@ def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> 
             fix=f"lengths are in metres: {reach:g} cm are {reach / 100:g}, {reach:g} mm are {reach / 1000:g}",
         )
     spread = getattr(sensor, "angle_std", 0.0)
-    if "angle_std" in written and spread > _WIDEST_SPREAD:
+    if "angle_std" in written and spread > _MAX_ANGLE_STD:
         yield hint(
             "heading-in-degrees",
             (*path, "angle_std"),
-            f"beams that are {spread:g} radians off look anywhere: that is {math.degrees(spread):.3g} degrees",
+            f"beams that deviate by {spread:g} rad, which is {math.degrees(spread):.3g} degrees, may point anywhere",
             given=spread,
             fix=f"angles are in radians: {spread:g} degrees are {math.radians(spread):.4g}",
         )
     away = math.hypot(*offset[:2])
-    if has_fixed_shape(record.shape) and away > _OFF * max(reach_of(record.shape), _LEAST_BODY):
+    if has_fixed_shape(record.shape) and away > _MAX_OFFSET_RATIO * max(reach_of(record.shape), _MIN_REACH):
         yield hint(
             "looks-like-centimetres",
             (*path, "offset"),
-            f"this sensor is {away:g} m off the middle of '{record.name}', whose body reaches "
+            f"this sensor is {away:g} m away from the middle of '{record.name}', but the body extends only "
             f"{reach_of(record.shape):.3g} m",
             given=offset,
             fix=f"lengths are in metres: {away:g} cm are {away / 100:g}",
@@ -207,17 +218,17 @@ def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     for row, value in zip(rows, record.vel_max, strict=True):
         if not math.isfinite(value):
             continue
-        if ("yaw" in row or "angular" in row or (by_rate and row == "steer")) and value > _FASTEST_TURN:
+        if ("yaw" in row or "angular" in row or (by_rate and row == "steer")) and value > _MAX_TURN_RATE:
             right = [*record.vel_max]
             right[rows.index(row)] = round(math.radians(value), 4)
             yield hint(
                 "rate-in-degrees",
                 where,
-                f"{value:g} rad/s are {value / 2 / math.pi:.3g} turns a second",
+                f"{value:g} rad/s are {value / 2 / math.pi:.3g} turns per second",
                 given=record.vel_max,
-                fix=f"rates of turning are in rad/s: {flow(right)} for {value:g} degrees a second",
+                fix=f"turn rates are in rad/s: {flow(right)} for {value:g} degrees per second",
             )
-        elif "yaw" not in row and "angular" not in row and "steer" not in row and value > _FASTEST:
+        elif "yaw" not in row and "angular" not in row and "steer" not in row and value > _MAX_SPEED:
             yield hint(
                 "speed-in-centimetres",
                 where,
@@ -228,13 +239,13 @@ def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _ranges(path: Path, options: Any) -> Iterator[Finding]:
-    """Headings among the bounds of random poses."""
+    """Check the headings of the bounds of random poses."""
     for key in ("range_low", "range_high"):
         yield from _heading((*path, key), list(getattr(options, key, None) or []))
 
 
 def _heading(path: Path, pose: list[float]) -> Iterator[Finding]:
-    if len(pose) > 2 and abs(pose[2]) > _TURN and pose[2] == int(pose[2]):
+    if len(pose) > 2 and abs(pose[2]) > _MAX_HEADING and pose[2] == int(pose[2]):
         yield hint(
             "heading-in-degrees",
             path,

@@ -1,4 +1,4 @@
-"""What the language has and this version does not compute yet: said before anything runs, never silently left out."""
+"""Reports features of the language that this version does not simulate yet, before anything runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from irsim.scenario.messages.findings import Finding, error
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Features without a kernel, and modes that nothing implements."""
+    """Report features without a kernel or function."""
     world = context.scenario.world
     name = getattr(world.obstacle_map, "name", None)
     if name is not None and not _computed(MAPS, name):
@@ -35,7 +35,7 @@ def check(context: Context) -> Iterator[Finding]:
 
 
 def _uses(context: Context) -> Iterator[tuple[Path, str]]:
-    """Paths of features that are only part of the language."""
+    """The used features that are part of the language only, each with its path."""
     for record in context.written:
         for key, registry in (("kinematics", KINEMATICS), ("shape", SHAPES)):
             options: Any = getattr(record, key)

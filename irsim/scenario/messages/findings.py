@@ -1,4 +1,4 @@
-"""Findings while a scenario is read: a diagnostic, and what carrying on in spite of it means."""
+"""Findings made while a scenario is read: a diagnostic, and how IR-SIM 2.12 would continue in spite of it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["Finding", "error", "hint", "place", "warning"]
 
 @dataclass(frozen=True)
 class Finding:
-    """A diagnostic, and the edit under which IR-SIM 2.12 would carry on (its reaction, not the best repair)."""
+    """A diagnostic, and an edit with the effect of IR-SIM 2.12's own reaction, which is not the best repair."""
 
     diagnostic: Diagnostic
     carry_on: Edit | None = None
@@ -44,7 +44,7 @@ def error(
     tolerated: bool = False,
     carry_on: Edit | None = None,
 ) -> Finding:
-    """An error; ``carry_on`` makes it one that 2.12 tolerates, ``tolerated`` one that needs no edit for that."""
+    """An error. IR-SIM 2.12 tolerates it if ``carry_on`` (an edit with the same effect) or ``tolerated`` is given."""
     return _finding(
         "error", code, path, message, given, allowed, fix, edit, tolerated or carry_on is not None, carry_on
     )
@@ -60,7 +60,7 @@ def warning(
     fix: str | None = None,
     edit: Edit | None = None,
 ) -> Finding:
-    """Something that runs, but is likely not what was meant."""
+    """A finding about a scenario that runs, but probably not as meant."""
     return _finding("warning", code, path, message, given, allowed, fix, edit, False, None)
 
 
@@ -73,7 +73,7 @@ def hint(
     fix: str | None = None,
     edit: Edit | None = None,
 ) -> Finding:
-    """Something worth knowing."""
+    """A finding that is worth knowing and may need no change."""
     return _finding("hint", code, path, message, given, None, fix, edit, False, None)
 
 

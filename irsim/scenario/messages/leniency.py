@@ -1,7 +1,7 @@
-"""Where IR-SIM 2.12 carries on with something wrong, and what it then does (section 14 of the format).
+"""Errors that IR-SIM 2.12 tolerates, and what it does about them (section 14 of the format).
 
-``irsim.make`` and ``irsim run`` do the same and warn; ``validate`` and everything strict reports an error. Each
-function returns the edit that has the same effect, or None where 2.12 fails too.
+``irsim.make`` and ``irsim run`` do the same and warn; ``validate`` and all strict modes report an error. Each
+function returns the edit that has the same effect, or None if 2.12 fails too.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ _CHECKED_IN_GROUPS = {
     ),
     "orca": ("maxNeighbors",),
 }
-"""Keys with which 2.12 fails to make a group behavior: it says so and goes on without one."""
+"""Keys whose wrong values make 2.12 fail to create a group behavior; it logs that and continues without one."""
 _NO_CHANGE = 1e-9
-"""A change of velocity that leaves an object where it is [m/s]."""
+"""Change of velocity that is too small to move an object [m/s]."""
 
 
 def carry_on_group(path: Path, data: Any) -> Edit | None:
-    """2.12 goes on without a group behavior that has no name or that it fails to make.
+    """2.12 continues without a group behavior that has no name or that it fails to create.
 
     Args:
-        path: Of a wrong value, or of a missing name.
+        path: Path of a wrong value, or of a missing name.
         data: The whole document.
     """
     if "group_behavior" not in path[:-1]:
@@ -92,10 +92,10 @@ def carry_on_type(kind: str, path: Path, value: Any) -> Edit | None:
     return None
 
 
-def carry_on_value(kind: str, path: Path, value: Any, most: int | None = None) -> Edit | None:
+def carry_on_value(kind: str, path: Path, value: Any, max_length: int | None = None) -> Edit | None:
     """2.12 falls back to a default mode, clips, cuts long vectors, and notices bad colors only when it draws.
 
-    With an ``acce`` of zero or less its ``rvo`` finds no velocity to change to: the object stays where it is.
+    With an ``acce`` of zero or less its ``rvo`` finds no new velocity, so the object does not move.
     """
     where = place(path)
     if kind == "unknown-value" and where in _FALLBACKS:
@@ -106,6 +106,6 @@ def carry_on_value(kind: str, path: Path, value: Any, most: int | None = None) -
         return Edit("replace", path, _CLIPPED[where])
     if kind == "greater_than" and where == "entry.behavior.acce":
         return Edit("replace", path, _NO_CHANGE)
-    if kind == "too_long" and where.rsplit(".", 1)[-1] in _TRUNCATED and most is not None:
-        return Edit("replace", path, list(value)[:most])
+    if kind == "too_long" and where.rsplit(".", 1)[-1] in _TRUNCATED and max_length is not None:
+        return Edit("replace", path, list(value)[:max_length])
     return None

@@ -1,4 +1,4 @@
-"""Text where a number should be: what was meant."""
+"""Finds the number that was meant by text in its place, such as ``2 m``, ``pi/2`` or ``1,5``."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-__all__ = ["Reading", "decimal_commas", "read_number"]
+__all__ = ["ParsedNumber", "decimal_commas", "read_number"]
 
 
-class Reading(NamedTuple):
-    """The number that a text stands for.
+class ParsedNumber(NamedTuple):
+    """The number that a text means.
 
     Attributes:
-        value: The number, None if there is no telling.
-        note: Something to add to "write <value>".
-        is_number: The text is a number in most languages, only not in YAML 1.1.
+        value: The number; None if it is not clear.
+        note: Remark to add to "write <value>".
+        is_number: Whether the text is a number in most languages, but not in YAML 1.1.
     """
 
     value: float | None
@@ -25,13 +25,13 @@ class Reading(NamedTuple):
 
 
 def decimal_commas(values: Sequence[Any], most: int, written: str | None, *, apart: bool = False) -> str | None:
-    """The list that was meant if ``[1,5, 2,5, 0]`` has decimal commas; None if it can't be, or is not too long.
+    """The list that was meant if ``[1,5, 2,5, 0]`` has decimal commas; None if it has not, or is not too long.
 
     Args:
-        values: As read.
-        most: So many numbers there should be at most.
-        written: Their text: a comma with a space behind it is none of a number.
-        apart: Only where spaces part one number from the next.
+        values: The numbers as read.
+        most: Largest number of values that the key takes.
+        written: Text of the numbers; a comma followed by a space is not a decimal comma.
+        apart: Require a space between one number and the next.
     """
     count = (len(values) + 1) // 2
     whole = all(isinstance(value, int) and not isinstance(value, bool) for value in values)
@@ -75,30 +75,34 @@ _FACTORS = {
 }
 
 
-def read_number(text: str, unit: str | None) -> Reading:
-    """What number a text stands for.
+def read_number(text: str, unit: str | None) -> ParsedNumber:
+    """The number that a text means.
 
     Args:
-        text: What was written.
+        text: The text as written.
         unit: Unit of the key, as in the schema.
     """
     text = text.strip()[:200]
     if text.lower() in _INFINITE:
-        return Reading(None, "infinity is .inf in YAML")
+        return ParsedNumber(None, "infinity is .inf in YAML")
     if re.fullmatch(_NUMBER, text):
         value = float(text)
-        return Reading(value, is_number=True) if math.isfinite(value) else Reading(None, "this number is too large")
+        return (
+            ParsedNumber(value, is_number=True)
+            if math.isfinite(value)
+            else ParsedNumber(None, "this number is too large")
+        )
     if pi := _PI.match(text):
         sign, before, divisor, after = pi.groups()
         value = math.pi * float(before or 1) * float(after or 1) * (-1 if sign == "-" else 1)
         if divisor is None or float(divisor) != 0:
-            return Reading(value / float(divisor or 1), " (YAML knows no pi)")
+            return ParsedNumber(value / float(divisor or 1), " (YAML knows no pi)")
     if (fraction := _FRACTION.match(text)) and float(fraction.group(2)) != 0:
-        return Reading(float(fraction.group(1)) / float(fraction.group(2)), " (YAML does not calculate)")
+        return ParsedNumber(float(fraction.group(1)) / float(fraction.group(2)), " (YAML does not calculate)")
     if quantity := _QUANTITY.match(text):
         number, given = quantity.groups()
         factor = _FACTORS.get((given.lower(), unit or ""))
         if factor is not None:
-            return Reading(float(f"{float(number) * factor:.12g}"), f": numbers stand alone, here in {unit}")
-        return Reading(None, f"write the number alone{f', in {unit}' if unit else ''}")
-    return Reading(None)
+            return ParsedNumber(float(f"{float(number) * factor:.12g}"), f" (in {unit}, without the unit)")
+        return ParsedNumber(None, f"write the number alone{f', in {unit}' if unit else ''}")
+    return ParsedNumber(None)

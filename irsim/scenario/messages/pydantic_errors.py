@@ -1,4 +1,4 @@
-"""One error of pydantic in the words of the scenario language."""
+"""Turns one pydantic error into a finding in the words of the scenario language."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from irsim.diagnostics.codes import CODES
 from irsim.diagnostics.diagnostic import Edit, Path, format_path, nearest, surely
 from irsim.options.vectors import is_vector
 from irsim.scenario.messages.findings import Finding, error, place
+from irsim.scenario.messages.flat_poses import split_poses, split_waypoints
 from irsim.scenario.messages.leniency import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.messages.number_text import decimal_commas, read_number
-from irsim.scenario.messages.points import places_in, waypoints_meant
-from irsim.scenario.messages.synonyms import instead_of, vector_of
+from irsim.scenario.messages.synonyms import advice_on_key, vector_of
 from irsim.scenario.model.lookup import at, field_at, lengths_of, literals, model_at, unit_of
 from irsim.scenario.model.scenario import Scenario
 from irsim.scenario.yaml.document import Document
-from irsim.scenario.yaml.formatting import flow, number, shown
+from irsim.scenario.yaml.formatting import flow, number, quote_value
 
 __all__ = ["Explainer"]
 
@@ -41,7 +41,8 @@ _EXPECTED = {
 _NUMBERS = ("float_type", "float_parsing", "int_type", "int_from_float", "int_parsing")
 _BOOLEANS = {"1": True, "0": False, "yes": True, "no": False, "true": True, "false": False, "on": True, "off": False}
 _CONTROLS = ("entry.vel_min", "entry.vel_max", "entry.acce", "entry.velocity")
-_LARGE = 1e9
+_MAX_WHOLE = 1e9
+"""Largest float that is suggested as a whole number."""
 _BOUNDS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", "≥"),
@@ -51,7 +52,7 @@ _BOUNDS = {
 
 
 def _bounds_of(part: Any) -> dict[str, Any]:
-    """The bounds that a piece of field metadata holds."""
+    """The bounds in a piece of field metadata."""
     return {name: getattr(part, name, None) for name, _ in _BOUNDS.values()}
 
 
@@ -59,10 +60,10 @@ class Explainer:
     """Turns one error into a finding.
 
     Args:
-        path: Where in the data.
+        path: Path of the error in the data.
         item: The error as pydantic lists it.
-        data: What was validated.
-        document: Where it came from, to look at how values were written.
+        data: The data that were validated.
+        document: The document of the data, to look up how values were written.
     """
 
     def __init__(self, path: Path, item: Any, data: Any, document: Document) -> None:
@@ -74,7 +75,7 @@ class Explainer:
         self.field = field_at(Scenario, path, data)
 
     def finding(self) -> Finding:
-        """The finding."""
+        """The finding for this error."""
         if self.kind in CODES:
             return self._own()
         if self.kind in ("extra_forbidden", "invalid_key"):
@@ -95,7 +96,7 @@ class Explainer:
         return error("invalid-value", self.path, self.message.removeprefix("Value error, "), given=self.value)
 
     def _own(self) -> Finding:
-        """Raised by the language's own validators: message, allowed and fix come with it."""
+        """An error of the language's own validators, which bring message, allowed values and fix."""
         context = self.context
         meant = context.get("replace")
         sure = not isinstance(meant, str) or surely(self.value, meant)
@@ -119,7 +120,7 @@ class Explainer:
 
     def _unknown_key(self) -> Finding:
         key, parent = self.path[-1], self.path[:-1]
-        if self.kind == "invalid_key":  # a number or a YAML 1.1 boolean; the location has lost which
+        if self.kind == "invalid_key":  # a number or a YAML 1.1 boolean, which the location holds as text
             raw = next((k for k in at(self.data, parent) or () if not isinstance(k, str) and k == key), key)
             key = str(raw)
             self.path = (*parent, key)
@@ -129,14 +130,14 @@ class Explainer:
         near = meant or nearest(key, allowed)
         where = f"'{format_path(parent)}'" if parent else "a scenario"
         written = at(self.data, parent)
-        other, like = (None, None) if meant else instead_of(self.path, self.data)
+        other, like = (None, None) if meant else advice_on_key(self.path, self.data)
         edit, fix = None, other
         if (meant_number := self._after_comma(key, written)) is not None:
             fix = f"a decimal comma? write {meant_number}"
         elif like is not None:
             edit = Edit("rename", self.path, like, safe=False)
         elif other is None and near is not None and isinstance(written, Mapping) and near in written:
-            fix = f"'{near}' is what it is called, and stands there already: keep one of them"
+            fix = f"the key is called '{near}', which is given here too: keep one of them"
         elif other is None and near is not None:
             fix, edit = f"rename it to '{near}'", Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
         elif other is None:
@@ -153,7 +154,7 @@ class Explainer:
         )
 
     def _after_comma(self, key: Any, written: Any) -> str | None:
-        """What was meant by ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
+        """What to write for ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
         keys = list(written) if isinstance(written, Mapping) else []
         place = next((i for i, other in enumerate(keys) if str(other) == key), 0)
         if not str(key).isdigit() or place == 0 or written[keys[place]] is not None:
@@ -169,7 +170,7 @@ class Explainer:
         return error(
             "unknown-value",
             self.path,
-            f"{shown(self.value)} is not one of the words this key takes",
+            f"{quote_value(self.value)} is not a valid value of '{self._key()}'",
             given=self.value,
             allowed=allowed,
             fix=f"{self._key()}: {near}" if near else None,
@@ -187,7 +188,7 @@ class Explainer:
         return error(
             "out-of-range",
             self.path,
-            f"{shown(self.value)} is out of range",
+            f"{quote_value(self.value)} is out of range",
             given=self.value,
             allowed=" and ".join(limits.values()) + self._unit(),
             carry_on=self._carry_on(),
@@ -199,7 +200,7 @@ class Explainer:
         return error(
             "infinite-number",
             self.path,
-            "this key takes no infinity",
+            f"'{self._key()}' must be finite",
             given=self.value,
             allowed="a finite number" + self._unit(),
         )
@@ -210,12 +211,13 @@ class Explainer:
         numbers = count > 0 and all(isinstance(v, (int, float)) for v in self.value)
         wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
-            return error("wrong-length", self.path, f"this list has {count} elements", allowed=f"{wanted} elements")
+            message = f"this list must have {wanted} elements, got {count}"
+            return error("wrong-length", self.path, message, allowed=f"{wanted} elements")
         fix, edit = self._shorter(most)
         return error(
             "wrong-length",
             self.path,
-            f"{count} number{'s' if count != 1 else ''}; this key takes {wanted}",
+            f"'{self._key()}' must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
             given=self.value,
             allowed=f"{wanted} numbers",
             fix=fix,
@@ -224,7 +226,7 @@ class Explainer:
         )
 
     def _shorter(self, most: int | None) -> tuple[str | None, Edit | None]:
-        """What a vector that is too long was meant to be."""
+        """Fix and edit for a vector that is too long."""
         value, several = self.value, place(self.path) == "entry.waypoints"
         if most is None or not isinstance(value, (list, tuple)) or len(value) <= most:
             return None, None
@@ -234,12 +236,12 @@ class Explainer:
             return f"decimal commas? write {meant}", None
         if not several:
             return None, None
-        places = waypoints_meant(self.path, self.data)
-        if places is None:
-            return "a place is [x, y] or [x, y, theta]", None
-        edit = Edit("replace", self.path[:-1], places.value, safe=places.sure)
-        own = places_in(value)
-        return f"one list per place: {shown(own.value if own else None)[1:-1]}", edit
+        poses = split_waypoints(self.path, self.data)
+        if poses is None:
+            return "write each waypoint as [x, y] or [x, y, theta]", None
+        edit = Edit("replace", self.path[:-1], poses.value, safe=poses.sure)
+        own = split_poses(value)
+        return f"write one list per waypoint: {quote_value(own.value if own else None)[1:-1]}", edit
 
     def _type(self) -> Finding:
         expected = _EXPECTED[self.kind]
@@ -257,7 +259,7 @@ class Explainer:
         return error(
             "wrong-type",
             self.path,
-            f"{shown(self.value)} is not {expected}",
+            f"{quote_value(self.value)} is not {expected}",
             given=self.value,
             allowed=expected + (self._unit() if self.kind in _NUMBERS else ""),
             fix=fix,
@@ -269,18 +271,18 @@ class Explainer:
         value, path = self.value, self.path
         if expected == "text" and isinstance(value, (int, float)):
             return f"quote it: '{value}'", Edit("replace", path, str(value))
-        if expected == "a whole number" and isinstance(value, float) and value.is_integer() and abs(value) < _LARGE:
+        if expected == "a whole number" and isinstance(value, float) and value.is_integer() and abs(value) < _MAX_WHOLE:
             return f"{self._key()}: {int(value)}", Edit("replace", path, int(value))
         if expected == "a list" and (vector := vector_of(value)) is not None:
             return f"write {flow(vector)}", Edit("replace", path, vector)
         if expected == "a list" and isinstance(value, Mapping) and value and is_vector(list(value.values())):
-            return f"numbers alone, in a list: {flow(list(value.values()))}", None
+            return f"write the numbers alone, in a list: {flow(list(value.values()))}", None
         if expected == "a list" and place(path) == "entry.waypoints" and is_vector(points := at(self.data, path[:-1])):
-            places = places_in(points)
-            if places is None:
-                return "a list of places: waypoints: [[x, y], [x, y]]", None
-            edit = Edit("replace", path[:-1], places.value, safe=places.sure)
-            return f"a list of places: waypoints: {shown(places.value, 200)}", edit
+            poses = split_poses(points)
+            if poses is None:
+                return "write one list per waypoint: waypoints: [[x, y], [x, y]]", None
+            edit = Edit("replace", path[:-1], poses.value, safe=poses.sure)
+            return f"write one list per waypoint: waypoints: {quote_value(poses.value, 200)}", edit
         if expected == "a list" and isinstance(value, Mapping):
             return "put it into a list: [{...}], or start it with '- '", Edit("replace", path, [value])
         if value is None:
@@ -289,47 +291,47 @@ class Explainer:
             meant = _BOOLEANS[str(value).strip().lower()]
             return f"write {str(meant).lower()}", Edit("replace", path, meant)
         if expected == "a list" and isinstance(value, (int, float)) and place(path) in _CONTROLS:
-            return f"one number per control component: [{value}, {value}]", None
+            return f"write one number per control component: [{value}, {value}]", None
         return None, None
 
     def _number_as_text(self, expected: str) -> Finding:
-        reading = read_number(self.value, unit_of(self.field) if self.field is not None else None)
+        parsed = read_number(self.value, unit_of(self.field) if self.field is not None else None)
         written = self.document.source_text((*self.document.prefix, *self.path))
-        plain_float = reading.is_number and written is not None and written[:1] not in "'\""
+        plain_float = parsed.is_number and written is not None and written[:1] not in "'\""
         code = "yaml-number-text" if plain_float else "wrong-type"
         why = "text, by the rules of YAML 1.1" if plain_float else f"text, not {expected}"
-        value: float | int | None = reading.value
+        value: float | int | None = parsed.value
         if expected == "a whole number" and value is not None:
-            value = int(value) if float(value).is_integer() and abs(value) < _LARGE else None
+            value = int(value) if float(value).is_integer() and abs(value) < _MAX_WHOLE else None
         # a plain 1e+308 would be text again
         text = repr(value) if value is None or "e" not in repr(value) else number(value)
-        fix = None if value is None else f"write {text}{reading.note}"
+        fix = None if value is None else f"write {text}{parsed.note}"
         return error(
             code,
             self.path,
-            f"{str(self.value)[:60] if plain_float else shown(self.value)} is {why}",
+            f"{str(self.value)[:60] if plain_float else quote_value(self.value)} is {why}",
             given=self.value,
             allowed=expected + self._unit(),
-            fix=fix or reading.note or None,
+            fix=fix or parsed.note or None,
             edit=Edit("replace", self.path, value) if value is not None else None,
         )
 
     def _list_for_number(self, expected: str) -> Finding:
         if place(self.path) in ("entry.state", "entry.goal", "entry.waypoints"):
-            message, fix = "the brackets are nested too deep here", "one vector is [x, y, theta]"
+            message, fix = "the brackets are nested too deeply here", "write one vector as [x, y, theta]"
         else:
-            message = f"this key takes {expected} for all objects of the entry, not a list"
-            fix = "write one entry per value, each with its own number"
+            message = f"'{self._key()}' must be {expected} for all objects of the entry, got a list"
+            fix = "write one entry per value, each with its own 'number'"
         return error("scalar-list", self.path, message, given=self.value, allowed=expected + self._unit(), fix=fix)
 
     def _list_for_boolean(self) -> Finding:
         return error(
             "scalar-list",
             self.path,
-            "this key takes true or false for all objects of the entry; a list counts as true",
+            f"'{self._key()}' must be true or false for all objects of the entry; a list counts as true",
             given=self.value,
             allowed="true or false",
-            fix="write one entry per value, each with its own number",
+            fix="write one entry per value, each with its own 'number'",
             carry_on=carry_on_type(self.kind, self.path, self.value),
         )
 

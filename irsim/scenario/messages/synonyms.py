@@ -1,4 +1,4 @@
-"""Words that say in another way what some keys of the language say: not the same value under another name."""
+"""Advice on common keys that the language lacks and that need more than a new name, such as ``diameter``."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from irsim.scenario.messages.findings import place
 from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.formatting import flow
 
-__all__ = ["instead_of", "vector_of"]
+__all__ = ["advice_on_key", "vector_of"]
 
 _HEADINGS = ("theta", "yaw", "heading", "angle", "orientation")
 _SIDES = ("size", "dimensions", "extent")
 
 
-def instead_of(path: Path, data: Any) -> tuple[str | None, str | None]:
-    """What to write for a key that the language lacks, in words, and the key to rename it to where that may be meant.
+def advice_on_key(path: Path, data: Any) -> tuple[str | None, str | None]:
+    """What to write instead of an unknown key, in words, and the key to rename it to if that may be what was meant.
 
     Args:
-        path: Of the unknown key.
+        path: Path of the unknown key.
         data: The whole document.
     """
     key, parent, value = str(path[-1]).lower(), at(data, path[:-1]), at(data, path)
@@ -39,7 +39,7 @@ def instead_of(path: Path, data: Any) -> tuple[str | None, str | None]:
 
 
 def vector_of(value: Any) -> list[float] | None:
-    """The vector that a mapping ``{x: 9, y: 5}`` stands for; None for any other."""
+    """The vector that a mapping such as ``{x: 9, y: 5}`` means; None for any other value."""
     if not isinstance(value, Mapping) or not {"x", "y"} <= set(value):
         return None
     heading = [key for key in value if key in _HEADINGS]
@@ -50,19 +50,17 @@ def vector_of(value: Any) -> list[float] | None:
 def _of_entry(key: str, value: Any, parent: Mapping[Any, Any]) -> str | None:
     if key in ("x", "y") or key in _HEADINGS:
         pose = _pose(key, value, parent)
-        return f"it belongs into 'state', which is [x, y, theta]: {pose}"
+        return f"it belongs in 'state', which is [x, y, theta]: {pose}"
     if key in ("radius", "diameter"):
-        return (
-            f"it belongs into 'shape': {{name: circle, radius: {_half(value) if key == 'diameter' else _text(value)}}}"
-        )
+        return f"it belongs in 'shape': {{name: circle, radius: {_half(value) if key == 'diameter' else _text(value)}}}"
     if key in ("length", "width"):
         sides = (_text(parent.get("length")), _text(parent.get("width")))
-        return f"it belongs into 'shape': {{name: rectangle, length: {sides[0]}, width: {sides[1]}}}"
+        return f"it belongs in 'shape': {{name: rectangle, length: {sides[0]}, width: {sides[1]}}}"
     return None
 
 
 def _pose(key: str, value: Any, parent: Mapping[Any, Any]) -> str:
-    """The state that the keys of an entry stand for, as far as they say."""
+    """The state given by the keys of an entry; a missing coordinate stays a letter."""
     known: dict[str, Any] = dict(zip(("x", "y", "theta"), ("x", "y", 0), strict=True))
     written: Any = next((parent[name] for name in ("state", "pose", "position", "start") if name in parent), None)
     if is_vector(written):
@@ -75,7 +73,7 @@ def _pose(key: str, value: Any, parent: Mapping[Any, Any]) -> str:
 
 def _of_shape(key: str, value: Any, parent: Mapping[Any, Any]) -> tuple[str | None, str | None]:
     if key == "diameter":
-        return f"write its half as the radius: 'radius: {_half(value)}'", None
+        return f"write half of it as the radius: 'radius: {_half(value)}'", None
     if str(parent.get("name")).lower() != "rectangle":
         return None, None
     if key in _SIDES:

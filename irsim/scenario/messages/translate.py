@@ -1,4 +1,4 @@
-"""What pydantic found wrong, as findings."""
+"""Turns the errors of a pydantic validation into findings."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def translate(failure: ValidationError, data: Any, document: Document, most: int
 
     Args:
         failure: The exception of ``Scenario.model_validate``.
-        data: What was validated.
-        document: Where it came from, to look at how values were written.
-        most: Upper bound of the result.
+        data: The data that were validated.
+        document: The document of the data, to look up how values were written.
+        most: Largest number of findings.
     """
     found: dict[tuple[str, Path], list[Finding]] = {}
     for item in failure.errors(include_url=False):

@@ -79,44 +79,45 @@ class Entry(Options):
     }
 
     number: Annotated[Integer, Field(ge=0)] = 1
-    """How many objects this entry makes."""
+    """Number of objects that this entry makes."""
     distribution: Annotated[Any, Select(DISTRIBUTIONS, null=True)] = None
-    """How they are placed; null is `manual`: by `state` and `goal`."""
+    """How the objects are placed; null is `manual`: by `state` and `goal`."""
     name: Annotated[Any, PerObject(Text | None)] = None
     """Unique name; null is `<role>_<id>`."""
     tags: Annotated[Any, PerObject(list[Text], "list")] = []
-    """Free words; `pedestrian` is what metrics count as human."""
+    """Free words; metrics count objects with the tag `pedestrian` as humans."""
     role: Literal["robot", "obstacle"] | None = None
-    """The section's own name; accepted because it is documented."""
+    """Name of the section that the entry is in; it has no effect."""
     state: Annotated[Any, PerObject(State | None, "vector")] = None
     """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
     goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
-    """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; waypoints take
-    three levels of brackets, or `waypoints`."""
+    """Goal [x, y] or [x, y, theta]; null is [1, 9, 0]. A list of vectors is one goal per object; several goals for
+    each object go under `waypoints`, or need three levels of brackets."""
     waypoints: Annotated[Any, PerObject(Annotated[list[Pose], Field(min_length=1)] | None, "path")] = None
     """Goals to visit one after the other: [[x, y], [x, y, theta], ...]."""
     velocity: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Initial control; null is zero."""
     kinematics: Annotated[Any, PerObject(KinematicsField)] = None
-    """How it moves; null never moves."""
+    """Drive of the object; null is an object that never moves."""
     shape: Annotated[Any, PerObject(ShapeField)] = None
-    """Its footprint; null is a circle of radius 1 m."""
+    """Footprint of the object; null is a circle of radius 1 m."""
     behavior: Annotated[Any, PerObject(BehaviorField)] = None
-    """What it does when nobody commands it."""
+    """How the object decides where to move when no program commands it."""
     group_behavior: Annotated[Any, PerObject(GroupBehaviorField)] = None
-    """What all members of its group do together; the first member's counts."""
+    """Behavior that decides for all members of a group together; that of the first member counts."""
     sensors: Annotated[Any, PerObject(list[SensorField] | None, "list")] = None
-    """Its sensors; the first lidar is its `lidar`."""
+    """Sensors of the object; programs find the first lidar as `lidar`."""
     plot: Annotated[Any, PerObject(ObjectPlot)] = ObjectPlot()
-    """How it is drawn."""
+    """How the object is drawn."""
     color: Annotated[Any, PerObject(ObjectColor | None)] = None
-    """Its colour, or `cycle` for one palette colour after the other; null depends on role and drive."""
+    """Colour, or `cycle` for a different palette colour per object; null is a colour by role and drive."""
     description: Annotated[Any, PerObject(Text | None)] = None
     """Picture drawn instead of the footprint: a bundled name or a file."""
     static: Annotated[Bool, OrNull(False)] = False
-    """Never moves although it has kinematics."""
+    """The object never moves, although it has kinematics."""
     vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
-    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. Beginning with 0: no reverse."""
+    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. With 0 as the first the
+    object cannot reverse."""
     vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Upper limits of the controls, such as top speed and turn rate; null is 1 each.
 
@@ -127,30 +128,30 @@ class Entry(Options):
     angle_range: Annotated[Any, PerObject(Range | None, "vector")] = None
     """Interval of the heading, one turn wide; null is [-π, π]."""
     goal_threshold: Annotated[Meters, Field(ge=0)] = 0.1
-    """Distance at which a goal counts as reached."""
+    """A goal counts as reached when it is nearer than this."""
     arrive_mode: Annotated[Any, PerObject(Literal["position", "state"])] = "position"
-    """What must match at the goal: the position, or the heading too."""
+    """What must match at the goal: `position` alone, or `state`, which includes the heading."""
     group: Integer | None = None
-    """Group number; objects with the same number form a group. Null numbers the entries."""
+    """Group number; objects with the same number form a group. Null gives each entry a number of its own."""
     group_name: Annotated[Any, PerObject(Text | None)] = None
     """Name of the group; null is `<role>_<group>`."""
     unobstructed: Annotated[Bool, OrNull(False)] = False
-    """Others do not collide with it and lidars do not see it; it still collides with others."""
+    """Other objects do not collide with this one and lidars do not see it; it still collides with others."""
     fov: SpanAngle | None = None
     """Opening angle of the field of view; null is the lidar's."""
     fov_radius: Annotated[Meters, Field(ge=0)] | None = None
     """Reach of the field of view; null is the lidar's."""
     fov_occlusion: Bool = False
-    """Things hidden behind others are not in the field of view."""
+    """Objects hidden behind others are not in the field of view."""
     state_dim: Annotated[Integer, Field(ge=3, le=64)] | None = None
-    """Rows of the state; null is what the kinematics has. Surplus rows keep their value."""
+    """Number of state rows; null is that of the kinematics. Additional rows keep their values."""
     vel_dim: Annotated[Integer, Field(ge=1, le=64)] | None = None
-    """Components of the control; null is what the kinematics has."""
+    """Number of control components; null is that of the kinematics."""
     mass: Annotated[Any, PerObject(Mass | None, "number")] = None
-    """For `collision_mode: contact`; null is 1 with kinematics and infinite without."""
+    """Mass for `collision_mode: contact`; null is 1 with kinematics and infinite without."""
     friction: Annotated[Any, PerObject(Grip | None, "number")] = None
-    """Grip on the ground, for `collision_mode: contact`; null is the world's."""
+    """Coefficient of friction with the ground, for `collision_mode: contact`; null is the world's."""
     inertia: Annotated[Any, PerObject(Inertia | None, "number")] = None
-    """Resistance to turning, for `collision_mode: contact`; null follows from shape and mass."""
+    """Moment of inertia for `collision_mode: contact`; null follows from shape and mass."""
     restitution: Annotated[Any, PerObject(Fraction | None, "number")] = None
-    """Bounciness, for `collision_mode: contact`; null is the world's."""
+    """Coefficient of restitution (1 bounces fully), for `collision_mode: contact`; null is the world's."""

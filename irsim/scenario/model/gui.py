@@ -14,31 +14,31 @@ __all__ = ["Gui", "Keyboard", "Mouse"]
 
 
 class Keyboard(Options):
-    """Keyboard control; it needs `world.control_mode: keyboard` or the key `x`."""
+    """Keyboard control of one robot; on with `world.control_mode: keyboard` or after pressing the key `x`."""
 
     backend: Literal["pynput", "mpl"] = "pynput"
     """Where key presses come from: a global listener (package pynput) or the figure window."""
     global_hook: Bool = False
-    """`pynput`: react even when the window is not in front."""
+    """With `pynput`: react even when the window is not in front."""
     key_lv_max: Annotated[MetersPerSecond, Field(ge=0)] = 3.0
     """Linear speed while a key is held."""
     key_ang_max: Annotated[RadiansPerSecond, Field(ge=0)] = 1.0
     """Angular speed while a key is held."""
     key_lv: MetersPerSecond = 0.0
-    """Linear speed at the start."""
+    """Initial linear speed."""
     key_ang: RadiansPerSecond = 0.0
-    """Angular speed at the start."""
+    """Initial angular speed."""
     key_rot: RadiansPerSecond = 0.0
-    """Yaw rate at the start (`omni_angular`)."""
+    """Initial yaw rate (`omni_angular`)."""
     key_id: Count = 0
-    """Index of the robot that is driven."""
+    """Index of the robot that the keyboard drives."""
 
 
 class Mouse(Options):
     """Mouse control of the view."""
 
     zoom_factor: Annotated[Number, Field(gt=0)] = 1.1
-    """Ratio of one step of the scroll wheel."""
+    """Zoom ratio per step of the scroll wheel."""
 
 
 class Gui(Options):

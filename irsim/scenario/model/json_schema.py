@@ -15,8 +15,8 @@ __all__ = ["INEXPRESSIBLE", "SCHEMA_ID", "build_schema", "check", "json_schema",
 SCHEMA_ID = "https://irsim.dev/schema/scenario.schema.json"
 
 INEXPRESSIBLE: dict[str, str] = {
-    "yaml-syntax": "the text is no YAML, so there is no data to validate",
-    "empty-document": "what there is of YAML has no data",
+    "yaml-syntax": "the text is not valid YAML, so there is no data to validate",
+    "empty-document": "the document has no data",
     "multiple-documents": "a schema sees one document",
     "duplicate-key": "the parsed mapping has the key once",
     "bad-key": "JSON has only text as keys",
@@ -43,7 +43,7 @@ INEXPRESSIBLE: dict[str, str] = {
     "too-large": "places of one object come from several keys",
     "invalid-polygon": "geometry",
     "too-few-vertices": "closing and repeated corners do not count",
-    "not-yet-simulated": "it is part of the language, only not of this version's engine",
+    "not-yet-simulated": "it is part of the language, but this version does not simulate it",
     "behavior-for-other-drive": "depends on what user code has registered",
     "wrong-type (whole floats)": "to a schema 36.0 is an integer",
 }
@@ -51,14 +51,14 @@ INEXPRESSIBLE: dict[str, str] = {
 
 
 def json_schema(*, user_code: bool = True) -> dict[str, Any]:
-    """The schema of scenario files: everything built in and everything installed plug-ins offer.
+    """The schema of scenario files, with all built-in features and those of installed plug-ins.
 
     Args:
-        user_code: Also what user code has registered in this process.
+        user_code: Include the features that user code has registered in this process.
     """
     definitions = _definitions(user_code)
     definitions["Wrapped"] = {
-        "description": "A file shared with another simulator: only what is under 'irsim' counts.",
+        "description": "A file shared with another simulator: only the part under 'irsim' is read.",
         "type": "object",
         "required": ["irsim"],
         "properties": {
@@ -84,7 +84,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
 
 
 def _definitions(user_code: bool) -> dict[str, Any]:
-    """The schema of every model, the scenario's own and those of all features it can name."""
+    """The schemas of all models: those of the scenario itself and of all features that it can name."""
     makers: dict[str, Callable[[], dict[str, Any]]] = {"Scenario": Scenario.model_json_schema}
     definitions: dict[str, Any] = {}
     collecting = SCHEMA_PARTS.set(SchemaParts(makers, user_code))
@@ -100,7 +100,7 @@ def _definitions(user_code: bool) -> dict[str, Any]:
 
 
 def _with_references(node: Any) -> Any:
-    """The node with references in place of the names of shared parts."""
+    """The node with the names of shared parts replaced by references."""
     if isinstance(node, list):
         return [_with_references(item) for item in node]
     if not isinstance(node, dict):
@@ -115,12 +115,12 @@ build_schema = json_schema
 
 
 def schema_text() -> str:
-    """The schema as it stands in ``schema/scenario.schema.json``."""
+    """The text of ``schema/scenario.schema.json``."""
     return json.dumps(json_schema(user_code=False), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def check(path: str | os.PathLike[str]) -> bool:
-    """Whether the file at ``path`` is the schema of these models."""
+    """Whether the file at ``path`` is up to date with the models."""
     try:
         with open(path, encoding="utf-8") as file:
             return file.read() == schema_text()

@@ -1,4 +1,4 @@
-"""Which model and field of the language a path of a document belongs to."""
+"""Finds the model and the field of the language that a path of a document belongs to."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["at", "field_at", "lengths_of", "literals", "model_at", "unit_of"]
 
 
 def at(data: Any, path: Path) -> Any:
-    """The value at a path, or None where there is none."""
+    """The value at a path; None if the path does not exist."""
     for part in path:
         try:
             data = data[part]
@@ -54,7 +54,7 @@ def field_at(root: type[BaseModel], path: Path, data: Any) -> FieldInfo | None:
 
 
 def lengths_of(field: FieldInfo | None, least: int | None, most: int | None) -> tuple[int | None, int | None]:
-    """Both bounds of a list's length, of which a failed validation knows one."""
+    """Both bounds of a list's length; a failed validation reports only one of them."""
     pairs = []
     for part in _all_parts(field) if field is not None else ():
         bounds = [*getattr(part, "metadata", ()), part]
@@ -73,7 +73,7 @@ def lengths_of(field: FieldInfo | None, least: int | None, most: int | None) -> 
 
 
 def literals(field: FieldInfo) -> list[str]:
-    """The words a field accepts, empty if it is not a choice of words."""
+    """The words that a field accepts; empty if it is not a choice of words."""
     return [str(word) for part in _all_parts(field) if get_origin(part) is Literal for word in get_args(part)]
 
 
@@ -102,7 +102,7 @@ def _all_parts(field: FieldInfo) -> Iterator[Any]:
 
 
 def _parts(annotation: Any) -> Iterator[Any]:
-    """An annotation, what it is made of, and the metadata in it."""
+    """An annotation, all its parts, and their metadata."""
     yield annotation
     for part in (*get_args(annotation), *([annotation.item] if isinstance(annotation, PerObject) else [])):
         yield from _parts(part)

@@ -18,14 +18,14 @@ Width = Annotated[Points, Field(ge=0)]
 
 
 class ObjectPlot(Options):
-    """How an object, its goal, trail, labels and sensors are drawn. A null color is the object's own."""
+    """How an object, its goal, trail, labels and sensors are drawn. A null colour is the object's own."""
 
     obj_color: Color | None = None
-    """Fill of the footprint."""
+    """Fill colour of the footprint."""
     obj_alpha: Fraction = 1.0
     """Opacity of the footprint."""
     obj_linestyle: LineStyle = "-"
-    """Outline of the footprint."""
+    """Line style of the outline."""
     obj_linewidth: Width = 1.0
     """Width of the outline."""
     obj_zorder: Number | None = None
@@ -71,49 +71,49 @@ class ObjectPlot(Options):
     """Drawing order of the heading arrow."""
 
     show_trajectory: Bool = False
-    """Draw the path driven as a line."""
+    """Draw the trajectory as a line."""
     traj_color: Color | None = None
-    """Colour of that line."""
+    """Colour of the trajectory."""
     traj_style: LineStyle = "-"
-    """Style of that line."""
+    """Line style of the trajectory."""
     traj_width: Annotated[Meters, Field(ge=0)] | None = None
-    """Width of that line in metres; null is the width of the object."""
+    """Width of the trajectory; null is the width of the object."""
     traj_alpha: Fraction = 0.5
-    """Opacity of that line."""
+    """Opacity of the trajectory."""
     traj_zorder: Number = 0
-    """Drawing order of that line."""
+    """Drawing order of the trajectory."""
     keep_traj_length: Count = 0
-    """Number of last states in the line; 0 is all."""
+    """Number of latest states in the trajectory; 0 is all."""
 
     show_trail: Bool = False
-    """Draw snapshots of the footprint along the path."""
+    """Draw snapshots of the footprint along the trajectory."""
     trail_freq: Annotated[Integer, Field(ge=1)] = 2
-    """A snapshot every so many steps."""
+    """Number of steps between two snapshots."""
     trail_type: Annotated[str, Field(strict=True)] | None = None
     """Shape of the snapshots: `circle`, `rectangle`, `polygon`, `ellipse`, ...; null is the object's own."""
     trail_edgecolor: Color | None = None
-    """Outline of the snapshots."""
+    """Colour of the outline of the snapshots."""
     trail_linewidth: Width = 0.8
-    """Width of that outline."""
+    """Width of the outline of the snapshots."""
     trail_alpha: Fraction = 0.7
     """Opacity of the snapshots."""
     trail_fill: Bool = False
     """Fill the snapshots."""
     trail_color: Color | None = None
-    """Fill of the snapshots."""
+    """Fill colour of the snapshots."""
     trail_zorder: Number = 0
     """Drawing order of the snapshots."""
     keep_trail_length: Count = 0
-    """Most snapshots kept; 0 is all."""
+    """Number of latest snapshots that are drawn; 0 is all."""
 
     show_sensor: Bool = True
     """Draw the sensors."""
     show_fov: Bool = False
     """Draw the field of view; needs `fov` and `fov_radius`."""
     fov_color: Color = "#56B4E9"
-    """Fill of the field of view."""
+    """Fill colour of the field of view."""
     fov_edge_color: Color = "#0072B2"
-    """Outline of the field of view."""
+    """Colour of the outline of the field of view."""
     fov_alpha: Fraction = 0.5
     """Opacity of the field of view."""
     fov_zorder: Number = 1

@@ -1,4 +1,4 @@
-"""The whole scenario language: what a file may contain."""
+"""The model of a whole scenario file."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ class Scenario(Options):
     gui: Gui = Gui()
     """Keyboard and mouse."""
     custom: Any = {}
-    """Anything; kept as it is for user code, reachable as `env.config["custom"]`."""
+    """Any data for user code, which reads it as `env.config["custom"]`."""
 
     def entries(self, role: Literal["robot", "obstacle"]) -> list[tuple[tuple[str | int, ...], Entry]]:
-        """The entries of a section, each with its path: ("robot", 0), or ("robot",) for a single mapping."""
+        """The entries of a section, each with its path: ("robot", 0), or ("robot",) if it is written without a list."""
         section = getattr(self, role)
         if section is None:
             return []

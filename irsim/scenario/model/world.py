@@ -42,28 +42,28 @@ def _viewpoint(value: Any) -> list[float] | str | None:
         return value
     if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
         return [float(v) for v in value]
-    raise problem("wrong-type", "this is no viewpoint", allowed="[x, y] in metres, or the name of an object")
+    raise problem("wrong-type", "this is not a valid viewpoint", allowed="[x, y] in metres, or the name of an object")
 
 
 class SavedFigure(Options):
     """How figures and animation frames are saved."""
 
     dpi: Annotated[Number, Field(gt=0, le=2400, json_schema_extra={"x-unit": "px/inch"})] = 100
-    """Resolution; also that of the window."""
+    """Resolution of saved pictures and of the window."""
     bbox_inches: Text | None = "tight"
-    """`tight` cuts empty margins away; null keeps the whole figure."""
+    """`tight` removes empty margins; null keeps the whole figure."""
     format: Text | None = None
     """File format; null takes it from the file name."""
     transparent: Bool = False
-    """Leave the background out."""
+    """Make the background transparent."""
     facecolor: Color | None = None
     """Background colour."""
     edgecolor: Color | None = None
     """Border colour."""
     pad_inches: Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "inch"})] = 0.1
-    """Margin left by `bbox_inches: tight`."""
+    """Margin that `bbox_inches: tight` keeps."""
     metadata: dict[str, Any] | None = None
-    """Written into the file where the format has a place for it."""
+    """Metadata written into the file, if its format allows it."""
 
 
 class WorldPlot(Options):
@@ -80,13 +80,13 @@ class WorldPlot(Options):
     no_axis: Bool = False
     """Hide the axes."""
     tight: Bool = True
-    """Use the whole figure for the world."""
+    """Fill the whole figure with the world, without margins."""
     viewpoint: Annotated[Any, PlainValidator(_viewpoint), WithJsonSchema(_VIEWPOINT)] = None
-    """Keep the view centred on a point [x, y], or follow the object of that name."""
+    """Centre of the view: a point [x, y], or the name of an object to follow."""
 
 
 class _MapSelect(Select):
-    """Grid maps may also come as an array from Python."""
+    """A selection that also accepts an array from Python."""
 
     def validate(self, value: Any) -> Any:
         if not isinstance(value, (Mapping, list, tuple)) and hasattr(value, "__array__"):
@@ -123,7 +123,7 @@ class WorldModel(Options):
     width: Annotated[Meters, Field(gt=0)] = 10
     """Extent in x."""
     depth: Annotated[Meters, Field(gt=0)] = 10
-    """Extent in z that the 3D view draws; the world is flat all the same."""
+    """Extent in z, used only to draw the 3D view: the world is flat."""
     offset: Annotated[Point, OrNull([0.0, 0.0])] = [0.0, 0.0]
     """Lower left corner of the world: [x, y]. Objects do not move with it."""
     step_time: Annotated[Seconds, Field(gt=0)] = 0.1
@@ -131,32 +131,33 @@ class WorldModel(Options):
     sample_time: Annotated[Seconds, Field(gt=0)] | None = None
     """Period of drawing and recording; null is every step."""
     time_limit: Annotated[Seconds, Field(gt=0)] | None = None
-    """How long a run lasts at most when its caller does not say; null is derived from distances and speeds."""
+    """Longest duration of a run, unless its caller gives one; null derives it from distances and speeds."""
     seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
-    """Seed of everything random when the caller gives none; null draws a fresh one."""
+    """Seed of everything random, unless the caller gives one; null draws a new seed."""
     step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_trimmed)] = "internal"
-    """Who moves the objects: the simulator, or the calling program, which sets their states."""
+    """What moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
+    states."""
     control_mode: Annotated[Literal["auto", "keyboard"], OrNull("auto")] = "auto"
-    """Who drives the robot chosen in `gui.keyboard`: its behavior or the keyboard."""
+    """What drives the robot chosen in `gui.keyboard`: its behavior (`auto`) or the `keyboard`."""
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
-    """What a collision does: `stop` both objects, nothing (`unobstructed`, `reactive`), stop robots only
-    (`unobstructed_obstacles`), or push and slide (`contact`)."""
+    """What a collision does: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
+    only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""
     boundary: Literal["none", "walls"] = "none"
-    """What is at the world's edge: nothing, or four walls that collide, are seen and avoided."""
+    """What is at the edge of the world: nothing, or four walls that objects collide with, see and avoid."""
     obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
     mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1
-    """Keep every so many rows and columns of the grid."""
+    """Keep every Nth row and column of the grid."""
     fog_map: Annotated[Bool, OrNull(False)] = False
     """Cover the world with fog that sensors clear."""
     fog_map_resolution: Annotated[Meters, Field(gt=0)] | None = None
     """Cell size of the fog; null is the map's, or 0.1 m without a map."""
     gravity: Annotated[Number, Field(gt=0, json_schema_extra={"x-unit": "m/s^2"})] = 9.81
-    """For `collision_mode: contact`."""
+    """Gravity for `collision_mode: contact`."""
     friction: Annotated[Number, Field(ge=0, json_schema_extra={"x-unit": "1"})] = 0.5
-    """Default friction of objects, for `collision_mode: contact`."""
+    """Default friction of objects with the ground, for `collision_mode: contact`."""
     restitution: Fraction = 0.0
-    """Default bounciness of objects, for `collision_mode: contact`."""
+    """Default coefficient of restitution of objects, for `collision_mode: contact`."""
     drive_tau: Annotated[Seconds, Field(ge=0)] = 0.0
     """Default lag of the drives, for `collision_mode: contact`."""
     status: Annotated[Text, OrNull("None")] = "None"

@@ -1,1 +1,1 @@
-"""From what a user wrote to one record for each object."""
+"""Turns a validated scenario into one record per object."""

@@ -1,4 +1,4 @@
-"""How large bodies are: the disc inside, the circle around, the smallest extent; without a geometry library."""
+"""Sizes and top speeds of bodies: largest inner disc, smallest extent; computed without a geometry library."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ if TYPE_CHECKING:
 __all__ = ["has_fixed_shape", "inner_disc", "parts_of", "segment_gap", "thickness", "top_speed"]
 
 Point = tuple[float, float]
-_ROUNDS, _PER_SIDE = 4, 12
-"""Of the search for the largest disc: each round looks at so many points per side of a smaller square."""
-_MANY_CORNERS = 64
+_SEARCH_ROUNDS = 4
+"""Rounds of the search for the largest disc; each searches a smaller square."""
+_POINTS_PER_SIDE = 12
+"""Intervals along each side of that square."""
+_MAX_CORNERS = 64
+"""Corners of an outline whose width is computed, which takes time cubic in them."""
 
 
 def has_fixed_shape(shape: Any) -> bool:
-    """Whether the body is the same in every scene."""
+    """Whether the shape is the same in every scene."""
     if hasattr(shape, "fixed"):  # a map, or the walls round the world
         return bool(shape.fixed)
     parts = shape.parts if shape.name == "compound" else [shape]
@@ -34,7 +37,7 @@ def has_fixed_shape(shape: Any) -> bool:
 
 
 def parts_of(shape: Any) -> list[Any]:
-    """Geometry for the core: body frame; of a map and the walls round the world the world frame."""
+    """Geometry for the core: in the body frame, or in the world frame for the map and the walls round the world."""
     if hasattr(shape, "fixed"):
         return list(shape.parts())
     feature = SHAPES.get(shape.name)
@@ -44,16 +47,16 @@ def parts_of(shape: Any) -> list[Any]:
 
 
 def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:
-    """x, y, radius of a large disc inside of the body, body frame [m]; radius 0 where nothing is filled.
+    """x, y, radius of a large disc inside the body, body frame [m]; radius 0 if the body has no filled part.
 
-    Of one part: of several that overlap, a larger disc may fit into their union.
+    The disc lies inside one part; the union of overlapping parts may hold a larger one.
     """
     best = (0.0, 0.0, 0.0)
     for part in parts:
         if isinstance(part, core.Circle):
             found = (part.center[0], part.center[1], part.radius)
         elif isinstance(part, core.Polygon):
-            found = _inside(tuple((x, y) for x, y in part.vertices))
+            found = _largest_disc(tuple((x, y) for x, y in part.vertices))
         else:
             continue
         if found[2] > best[2]:
@@ -62,14 +65,14 @@ def inner_disc(parts: Sequence[Any]) -> tuple[float, float, float]:
 
 
 def thickness(shape: Any) -> float:
-    """The least extent across the body [m]: 0 for lines, of several parts that of the thinnest; infinity if unknown."""
+    """The smallest extent of the thinnest part of the body [m]: 0 for lines, infinity if unknown."""
     parts, cell = parts_of(shape), min(shape.grid.cell) if hasattr(shape, "grid") else math.inf
     least = math.inf
     for part in parts:
         if isinstance(part, core.Circle):
             least = min(least, 2 * part.radius)
         elif isinstance(part, core.Polygon):
-            least = min(least, _width([(x, y) for x, y in part.vertices]))
+            least = min(least, _min_width([(x, y) for x, y in part.vertices]))
         elif isinstance(part, (core.Linestring, core.Room)):
             return 0.0
         elif isinstance(part, core.GridCells):
@@ -90,7 +93,7 @@ def segment_gap(first: tuple[Point, Point], second: tuple[Point, Point]) -> floa
 
 
 def _gap(p: Point, a: Point, b: Point) -> float:
-    """Distance from a point to a segment."""
+    """Distance from a point to a segment [m]."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length = dx * dx + dy * dy
     t = min(1.0, max(0.0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / length)) if length > 0 else 0.0
@@ -98,7 +101,7 @@ def _gap(p: Point, a: Point, b: Point) -> float:
 
 
 def top_speed(record: Any) -> float:
-    """No behavior makes the object faster [m/s]; 0 without kinematics, infinity for drives of user code."""
+    """Highest speed that any behavior reaches [m/s]: 0 without kinematics, infinity for drives of user code."""
     drive = record.kinematics
     if drive is None or record.static:
         return 0.0
@@ -116,7 +119,7 @@ def top_speed(record: Any) -> float:
 
 
 def _own_limit(options: Any) -> float:
-    """Speed that a behavior does not exceed of its own accord [m/s]."""
+    """Speed limit among the options of a behavior [m/s]; infinity if it has none."""
     name = getattr(options, "name", "")
     if name == "rvo":
         return math.hypot(options.vxmax, options.vymax)
@@ -126,32 +129,32 @@ def _own_limit(options: Any) -> float:
 
 
 @lru_cache(maxsize=256)  # thousands of objects may have one shape
-def _inside(corners: tuple[tuple[float, float], ...]) -> tuple[float, float, float]:
-    """Centre and radius of nearly the largest disc inside of an outline."""
+def _largest_disc(corners: tuple[tuple[float, float], ...]) -> tuple[float, float, float]:
+    """Centre and radius of nearly the largest disc inside an outline."""
     import numpy as np
 
-    square = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, _PER_SIDE + 1)] * 2), axis=-1).reshape(-1, 2)
+    square = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, _POINTS_PER_SIDE + 1)] * 2), axis=-1).reshape(-1, 2)
     low, high = np.min(corners, axis=0), np.max(corners, axis=0)
     middle, half = (low + high) / 2, (high - low) / 2
-    best = (float(middle[0]), float(middle[1]), max(0.0, float(_room(corners, middle[None])[0])))
-    for _ in range(_ROUNDS):
+    best = (float(middle[0]), float(middle[1]), max(0.0, float(_signed_distance(corners, middle[None])[0])))
+    for _ in range(_SEARCH_ROUNDS):
         points = np.array(best[:2]) + square * half
-        room = _room(corners, points)
-        k = int(np.argmax(room))
-        if room[k] > best[2] * (1 + 1e-9):
-            best = (float(points[k, 0]), float(points[k, 1]), float(room[k]))
-        half = half * (2 / _PER_SIDE)
+        distance = _signed_distance(corners, points)
+        k = int(np.argmax(distance))
+        if distance[k] > best[2] * (1 + 1e-9):
+            best = (float(points[k, 0]), float(points[k, 1]), float(distance[k]))
+        half = half * (2 / _POINTS_PER_SIDE)
     return best
 
 
-def _room(corners: Sequence[tuple[float, float]], points: Floats) -> Floats:
+def _signed_distance(corners: Sequence[tuple[float, float]], points: Floats) -> Floats:
     """(P,) distances from (P, 2) points to the outline, negative outside."""
     import numpy as np
 
     a = np.asarray(corners, dtype=np.float64)
     edge = np.roll(a, -1, axis=0) - a
     off = points[:, None] - a
-    with np.errstate(over="ignore", invalid="ignore"):  # corners may be anywhere
+    with np.errstate(over="ignore", invalid="ignore"):  # coordinates may be huge
         length = (edge**2).sum(axis=1)
         along = np.clip((off * edge).sum(axis=2) / np.where(length > 0, length, 1.0), 0.0, 1.0)
         least = np.sqrt(((off - along[..., None] * edge) ** 2).sum(axis=2)).min(axis=1)
@@ -165,9 +168,9 @@ def _room(corners: Sequence[tuple[float, float]], points: Floats) -> Floats:
     return signed
 
 
-def _width(corners: list[tuple[float, float]]) -> float:
-    """Least distance between two parallel lines that hold the outline between them."""
-    if len(corners) > _MANY_CORNERS:
+def _min_width(corners: list[tuple[float, float]]) -> float:
+    """Smallest distance between two parallel lines that enclose the outline [m]."""
+    if len(corners) > _MAX_CORNERS:
         return math.inf
     least = math.inf
     for i, (ax, ay) in enumerate(corners):

@@ -1,4 +1,4 @@
-"""From a validated scenario to one record per object: spread, defaulted, numbered."""
+"""Turns a validated scenario into one record per object: spreads lists, applies defaults, assigns ids."""
 
 from __future__ import annotations
 
@@ -26,9 +26,11 @@ DEFAULT_STATE = [1.0, 1.0, 0.0]
 DEFAULT_GOAL = [1.0, 9.0, 0.0]
 DEFAULT_RADIUS = 1.0
 NO_GROUP = -1
-"""Group of what the world brings along: its map, its walls."""
-_STATIC_CONTROLS = 3  # rows of the control of an object that never moves, as in IR-SIM
-_MARGIN = 0.5  # of random placement and the circle distribution, from the world's edge [m]
+"""Group of the objects that no entry makes: the map and the walls round the world."""
+_STATIC_CONTROLS = 3
+"""Control components of an object that never moves, as in IR-SIM."""
+_MARGIN = 0.5
+"""Distance of random placement from the edge of the world [m]."""
 
 
 def resolve(
@@ -40,7 +42,7 @@ def resolve(
     text: str | None = None,
     grid: MapGrid | None = None,
 ) -> ResolvedScenario:
-    """Every object of a scenario with its own value of every key.
+    """Resolve a scenario: every object gets its own value of every key.
 
     Robots get their ids first, in file order, then obstacles, then the map if any of its cells is occupied, then the
     walls round the world.
@@ -86,7 +88,7 @@ def resolve(
 
 
 def _scenery(world: WorldModel, object_id: int, shape: MapCells | Walls, name: str) -> ObjectRecord:
-    """The record of something that stands still and that no entry made; it is in no group."""
+    """The record of a static object that no entry makes: the map, or the walls round the world."""
     return ObjectRecord(
         id=object_id,
         role="obstacle",
@@ -244,7 +246,7 @@ class _Maker:
             return [list(point) for point in value["waypoints"]]
         goal = value["goal"]
         if goal is None and isinstance(self.entry.goal, list):
-            return []  # null among the goals of the objects: this one has none
+            return []  # null in a list of goals: this object has no goal
         if goal is None:
             return [placed[1] if placed is not None else list(DEFAULT_GOAL)]
         return [list(point) for point in goal] if isinstance(goal[0], list) else [list(goal)]
@@ -305,27 +307,27 @@ def _default_shape() -> BaseModel:
 
 
 def _control(values: list[float] | None, default: float, size: int, kinematics: Any) -> list[float]:
-    """A vector of control components; without a drive nobody reads it, so any length is brought to ``size``."""
+    """A vector of control components. Without a drive it is unused, so any length is cut or padded to ``size``."""
     if values is None:
         return [default] * size
     return list(values) if kinematics is not None else (list(values) + [default] * size)[:size]
 
 
 def _limit(values: list[float] | None, key: Literal["vel_min", "vel_max"], size: int, kinematics: Any) -> list[float]:
-    """Limits of the control components; a single number holds for all of them."""
+    """Limits of the control components; a single number applies to all of them."""
     if values is not None and len(values) == 1:
         return list(values) * size
     return _control(_usual(values, key, size, kinematics), 1.0 if key == "vel_max" else -1.0, size, kinematics)
 
 
 def _usual(values: list[float] | None, key: str, size: int, kinematics: Any) -> list[float] | None:
-    """What was written, or what the drive usually has, if anything."""
+    """The values as written, else the default values of the drive, else None."""
     usual: tuple[float, ...] = getattr(kinematics, f"usual_{key}", ())
     return list(usual) if values is None and len(usual) == size else values
 
 
 def _fitted(values: Sequence[float], length: int) -> list[float]:
-    """Cut, or filled up with zeros, to ``length`` numbers."""
+    """The values cut, or padded with zeros, to ``length`` numbers."""
     return [*(float(v) for v in values[:length]), *([0.0] * (length - len(values)))]
 
 
@@ -339,7 +341,7 @@ def _wheelbase(kinematics: KinematicsOptions | None, shape: BaseModel) -> float 
 
 
 def _view(entry: Entry, sensors: Sequence[Any]) -> tuple[float | None, float | None]:
-    """Field of view: the entry's own, else the lidar's; without an own angle an own radius does not count."""
+    """Angle and radius of the field of view: the entry's, else the lidar's; a radius without an angle is ignored."""
     lidar = next((sensor for sensor in sensors if getattr(sensor, "is_lidar", False)), None)
     reach = lidar.range_max if lidar is not None else None
     if entry.fov is None:

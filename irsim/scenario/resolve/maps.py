@@ -1,4 +1,4 @@
-"""The map a scenario asks for: found, read and laid over the world, or what stands in the way."""
+"""Finds and reads the map of a scenario and lays it over the world, or reports why that fails."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _PATH = ("world", "obstacle_map")
 
 @dataclass(frozen=True)
 class LoadedMap:
-    """What became of ``world.obstacle_map``.
+    """Result of loading ``world.obstacle_map``.
 
     Attributes:
         grid: The map; None without one.
-        world: The world, with the extent of a map that prescribes one.
-        findings: What was wrong, and what is worth knowing.
-        files: By the name in the scenario, the files that it was read from.
+        world: The world; it has the extent of the map if the map prescribes one.
+        findings: Errors, warnings and hints about the map.
+        files: Name in the scenario -> path of the file that was read.
     """
 
     grid: MapGrid | None
@@ -43,23 +43,23 @@ class LoadedMap:
 def load_map(
     world: WorldModel, written: Any, source: str | None, limits: Limits, kept: Mapping[str, str] | None = None
 ) -> LoadedMap:
-    """Make the occupancy grid of a world. Whatever is wrong ends up in ``findings``, never in an exception.
+    """Make the occupancy grid of a world. Problems are listed in ``findings``; none raises an exception.
 
     Args:
         world: The validated section.
-        written: ``obstacle_map`` as the scenario has it.
+        written: ``obstacle_map`` as written in the scenario.
         source: Path of the scenario file.
-        limits: Size of maps, and the folder to stay in.
-        kept: Files that stand in for those of these names.
+        limits: Upper bounds on maps, and the folder that must contain their files.
+        kept: Files to read instead, by the name in the scenario.
     """
     options: Any = world.obstacle_map
     name = getattr(options, "name", None)
-    if options is None or (name is not None and not _simulated(name)):
+    if options is None or (name is not None and not _is_simulated(name)):
         return LoadedMap(None, world)
     site = _site(world, source, limits, kept or {})
     try:
         made = _make(options, site)
-        world = _fitted(world, made)
+        world = _with_map_extent(world, made)
         origin = (float(world.offset[0]), float(world.offset[1]))
         grid = map_grid(made, world.width, world.height, origin, world.mdownsample)
     except MapProblem as problem:
@@ -69,10 +69,10 @@ def load_map(
             problem.code, path, problem.message, given=problem.given, allowed=problem.allowed, fix=problem.fix
         )
         return LoadedMap(None, world, [found])
-    return LoadedMap(grid, world, [*_notes(site, written), *_share(grid, world)], site.found)
+    return LoadedMap(grid, world, [*_notes(site, written), *_check_occupancy(grid, world)], site.found)
 
 
-def _simulated(name: str) -> bool:
+def _is_simulated(name: str) -> bool:
     feature = MAPS.get(name)
     return feature is not None and feature.function is not None
 
@@ -87,22 +87,24 @@ def _site(world: WorldModel, source: str | None, limits: Limits, kept: Mapping[s
         folders=_folders(scenario, limits.root),
         bundled=bundled_map,
         bundled_names=bundled_names,
-        refuse=_guard(limits.root),
-        most_cells=limits.cells,
-        most_bytes=limits.map_bytes,
+        refuse=_refusal(limits.root),
+        max_cells=limits.cells,
+        max_bytes=limits.map_bytes,
         kept=kept,
     )
 
 
 def _folders(scenario: Sequence[FilePath], root: str | None) -> list[FilePath]:
-    """The current directory, beside the scenario, ``sys.path[0]``, beside the script; inside a workspace only that."""
+    """Folders searched for map files: with a workspace only it and the scenario's, else as IR-SIM searches them."""
     if root is not None:
         return [FilePath(root), *scenario]
     script = [FilePath(os.path.abspath(sys.argv[0])).parent] if sys.argv and sys.argv[0] else []
     return [FilePath(), *scenario, FilePath(sys.path[0] or "."), *script]
 
 
-def _guard(root: str | None) -> Any:
+def _refusal(root: str | None) -> Any:
+    """The function that says why a file name is not allowed."""
+
     def refuse(name: str, folders: Sequence[FilePath]) -> str | None:
         return None if root is None else why_outside(name, FilePath(root), folders)
 
@@ -115,11 +117,10 @@ def _make(options: Any, site: MapSite) -> Raster | Noise:
     feature = MAPS.get(options.name)
     assert feature is not None
     assert feature.function is not None
-    whole = site
     if not getattr(options, "sets_extent", False):
-        whole.width = site.width if site.width is not None else WorldModel.model_fields["width"].default
-        whole.height = site.height if site.height is not None else WorldModel.model_fields["height"].default
-    made: Raster | Noise = feature.function(options, whole)
+        site.width = site.width if site.width is not None else WorldModel.model_fields["width"].default
+        site.height = site.height if site.height is not None else WorldModel.model_fields["height"].default
+    made: Raster | Noise = feature.function(options, site)
     return made
 
 
@@ -131,7 +132,7 @@ def _of_array(array: Any, site: MapSite) -> Raster:
     if values.ndim != 2 or not values.size or not numbers or np.iscomplexobj(values):
         raise MapProblem(
             "map-values",
-            f"an occupancy grid is an array of (nx, ny) numbers from 0 to 100, not one of shape {values.shape}",
+            f"an occupancy grid must be an (nx, ny) array of numbers from 0 to 100, got shape {values.shape}",
             key=None,
             fix="i counts along +x, j along +y; values above 50 are occupied",
         )
@@ -139,8 +140,8 @@ def _of_array(array: Any, site: MapSite) -> Raster:
     return Raster(values.astype(np.float64))
 
 
-def _fitted(world: WorldModel, made: Raster | Noise) -> WorldModel:
-    """The world with the extent that the map prescribes where the scenario has none of its own."""
+def _with_map_extent(world: WorldModel, made: Raster | Noise) -> WorldModel:
+    """The world with the extent that the map prescribes, for the keys that the scenario does not give."""
     if isinstance(made, Noise) or made.width is None:
         return world
     assert made.origin is not None
@@ -156,7 +157,7 @@ def _notes(site: MapSite, written: Any) -> list[Finding]:
     return [hint(code, path, message) for code, message in site.notes]
 
 
-def _share(grid: MapGrid, world: WorldModel) -> list[Finding]:
+def _check_occupancy(grid: MapGrid, world: WorldModel) -> list[Finding]:
     if grid.cells is None:
         return []
     total = grid.size[0] * grid.size[1]
@@ -175,7 +176,7 @@ def _share(grid: MapGrid, world: WorldModel) -> list[Finding]:
                 "map-full",
                 _PATH,
                 f"{'the only cell is' if total == 1 else f'all {total:,} cells are'} occupied: nothing can move",
-                fix=f"a smaller 'mdownsample' ; now every {world.mdownsample}th row and column is kept"
+                fix=f"use a smaller 'mdownsample' (now {world.mdownsample})"
                 if (world.mdownsample or 1) > 1
                 else "black is occupied and white is free: invert the picture",
             )

@@ -1,4 +1,4 @@
-"""How the value of a key is spread over the objects of an entry (the same rule for every key, with few exceptions)."""
+"""Spreads the value of a key over the objects of an entry, by one rule with few exceptions."""
 
 from __future__ import annotations
 
@@ -23,21 +23,20 @@ _EXCEPTIONS: dict[str, Kind] = {
 
 
 def kind_of(key: str) -> Kind:
-    """What one value of an entry's key is; ``value`` is the general rule."""
+    """The kind of value that an entry's key takes; ``value`` is the general rule."""
     return _EXCEPTIONS.get(key, "value")
 
 
 def spread(value: Any, count: int, kind: Kind = "value") -> list[Any]:
-    """The value each of ``count`` objects gets.
+    """The value that each of ``count`` objects gets.
 
     The general rule (``kind="value"``):
 
-    * what is not a list, and a list of numbers only (one vector; the empty list too), goes to every object;
-    * of any other list object i gets element i. A shorter list repeats its last element, of a longer one the rest
-      is dropped.
+    * a value that is not a list, and a list of only numbers (one vector; also the empty list), goes to every object;
+    * of any other list, object i gets element i. A short list repeats its last element, a long list is cut.
 
     Args:
-        value: As written or validated; it is never changed.
+        value: The value, as written or validated; it is not changed.
         count: Number of objects, not negative.
         kind: ``number``: one value is a number, so a list of numbers is one per object. ``list``: one value is a
             list (of sensors, of tags), so only a list that holds lists is one per object. ``path``: one value is a
@@ -53,7 +52,7 @@ def spread(value: Any, count: int, kind: Kind = "value") -> list[Any]:
 
 
 def is_per_object(value: Any, kind: Kind = "value") -> bool:
-    """Whether a value holds one value per object."""
+    """Whether a value is a list with one value per object."""
     if not isinstance(value, (list, tuple)) or not value or _is_color(value):
         return False
     if kind == "list":
@@ -68,5 +67,5 @@ def _holds_list(value: Any) -> bool:
 
 
 def _is_color(value: Any) -> bool:
-    """Validated colors are tuples of floats, which is a vector."""
+    """Whether a value is a validated colour, which is a tuple of floats."""
     return isinstance(value, tuple) and is_vector(value)

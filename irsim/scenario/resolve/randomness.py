@@ -1,4 +1,4 @@
-"""What a scenario leaves to chance."""
+"""Finds the parts of a scenario that are random."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SAMPLING_PLANNERS = ("rrt", "rrt_star", "informed_rrt_star", "prm")
 
 
 def random_parts(scenario: ResolvedScenario) -> list[str]:
-    """What the seed decides, in words; empty if every seed gives the same run."""
+    """The parts of a run that depend on the seed, in words; empty if every seed gives the same run."""
     found: dict[str, None] = {}
     if scenario.placements:
         found["placement"] = None

@@ -1,4 +1,4 @@
-"""The scenario with everything spread, defaulted and resolved: one record per object, ready to build or describe."""
+"""The resolved scenario: one record per object with all defaults applied, ready to build or describe."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ObjectRecord:
 
     ``state`` has ``state_dim`` numbers, limits have ``vel_dim`` numbers. ``kinematics``, ``shape``, ``behavior``,
     ``group_behavior`` and ``sensors`` are validated options models of the registries; ``kinematics`` is None for an
-    object that never moves by itself. ``behavior`` may be a :class:`irsim.components.behaviors._options.CustomOptions`.
+    object without a drive. ``behavior`` may be a :class:`irsim.components.behaviors._options.CustomOptions`.
     """
 
     id: int
@@ -33,7 +33,7 @@ class ObjectRecord:
     path: Path  # of the entry: ("robot", 0) or ("robot",); ("world", key) of the map and the walls round the world
     index: int  # among the objects of its entry
     kinematics: BaseModel | None
-    shape: Any  # options model; for the map and the walls round the world what stands in for one
+    shape: Any  # options model; MapCells or Walls for the map and the walls round the world
     state: list[float]
     goals: list[list[float]]
     velocity: list[float]
@@ -45,7 +45,7 @@ class ObjectRecord:
     angle_range: tuple[float, float]
     goal_threshold: float
     arrive_mode: Literal["position", "state"]
-    static: bool  # effective: also true for what has neither kinematics nor a finite mass
+    static: bool  # effective: also true for an object with neither kinematics nor a finite mass
     unobstructed: bool
     behavior: BaseModel | None
     group_behavior: BaseModel | None
@@ -68,7 +68,7 @@ class ObjectRecord:
     restitution: float
     drive_tau: float  # effective: kinematics first, then world
     tags: tuple[str, ...] = ()
-    joined: bool = True  # follows the behavior of its group, if that has one
+    joined: bool = True  # whether it follows the behavior of its group
 
 
 @dataclass(slots=True)
@@ -86,8 +86,8 @@ class Placement:
 class ResolvedScenario:
     """A whole scenario, resolved.
 
-    ``objects`` stand in the order of the rows of a simulation. An object keeps its ``id`` when others are taken out, so
-    an id is a row only as long as that has not happened.
+    ``objects`` are in the order of the rows of a simulation. An object keeps its ``id`` when others are removed, so ids
+    equal rows only until the first removal.
     """
 
     name: str
@@ -100,18 +100,18 @@ class ResolvedScenario:
     source: str | None = None  # path of the file
     text: str | None = None
     grid: MapGrid | None = None  # the map, whether or not any cell is occupied
-    map_files: dict[str, str] = field(default_factory=dict)  # by the name in the scenario, what the map was read from
+    map_files: dict[str, str] = field(default_factory=dict)  # name in the scenario -> path of the map file
 
     def robots(self) -> Sequence[ObjectRecord]:
         """The robots, in id order."""
         return [o for o in self.objects if o.role == "robot"]
 
     def parked(self, record: ObjectRecord) -> bool:
-        """Whether an object cannot move and no goal is written for it: the one that it has is only the default."""
+        """Whether an object cannot move and its goal is only the default, not written in the scenario."""
         return (record.kinematics is None or record.static) and not self.goal_written(record)
 
     def goal_written(self, record: ObjectRecord) -> bool:
-        """Whether the entry of an object gives it a goal; else the one that it has may be only the default."""
+        """Whether the entry of an object gives it a goal; otherwise its goal is at most the default."""
         entry: Any = self.document
         for key in record.path:
             if key not in _keys(entry):

@@ -19,34 +19,34 @@ _QUOTED_OR_COMMENT = re.compile(
 
 
 def comments(text: str) -> list[str]:
-    """Comments of a YAML text, in order, each from its ``#`` on; a ``#`` inside quotes is none."""
+    """Comments of a YAML text, in order, each from its ``#`` on; a ``#`` inside quotes does not start one."""
     found = (match["comment"] for match in _QUOTED_OR_COMMENT.finditer(text))
     return [comment.strip() for comment in found if comment is not None]
 
 
 def keeps_comments(before: str, after: str) -> bool:
-    """Whether every comment of a text is there in another, too."""
+    """Whether ``after`` still contains every comment of ``before``."""
     return not Counter(comments(before)) - Counter(comments(after))
 
 
 def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
-    """The comments of a text, in order, and what each may be about.
+    """The comments of a text, in order, each with the paths that it may be about.
 
-    That is all that stands on its line or, if it stands alone, on the line it goes with: the next line with something
-    on it or, for a comment that is indented more than that, the last one before that is not indented more than the
+    A comment behind a value is about everything on its line. A comment on a line of its own is about the next line with
+    content or, if it is indented more than that line, about the last line above that is not indented more than the
     comment.
 
     Args:
-        document: With its text.
+        document: The document, with its text.
 
     Returns:
-        Comments with paths, in which a single robot or obstacle is the first of a list.
+        Comments with paths; in a path, a robot or obstacle written without a list is element 0.
     """
     if document.text is None:
         return []
     there: dict[int, list[Path]] = defaultdict(list)
     for path, line in _nodes(document.tree(), ()):
-        there[line].append(_listed(path[len(document.prefix) :], document))
+        there[line].append(_list_path(path[len(document.prefix) :], document))
     occupied, lines = sorted(there), document.text.splitlines()
     found: list[tuple[str, list[Path]]] = []
     line, read, known = 1, 0, dict[tuple[int, int], int]()
@@ -65,14 +65,14 @@ def places_of_comments(document: Document) -> list[tuple[str, list[Path]]]:
 
 
 def _line_of(at: int, indent: int, occupied: list[int], lines: list[str]) -> int:
-    """The line that a comment is about which stands alone before the ``at``-th of those on which something starts."""
+    """The line that a comment on a line of its own is about; ``at`` is the index of the next line with content."""
     if at < len(occupied) and _indent(lines[occupied[at] - 1]) >= indent:
         return occupied[at]
     return next((k for k in reversed(occupied[:at]) if _indent(lines[k - 1], " -") <= indent), 0)
 
 
 def _nodes(node: Node | None, path: Path) -> Iterator[tuple[Path, int]]:
-    """Every path with the line on which it starts."""
+    """Every path, with the line on which its key or value starts."""
     if node is None:
         return
     for key, child in node.children.items():
@@ -81,7 +81,7 @@ def _nodes(node: Node | None, path: Path) -> Iterator[tuple[Path, int]]:
         yield from _nodes(child, below)
 
 
-def _listed(path: Path, document: Document) -> Path:
+def _list_path(path: Path, document: Document) -> Path:
     single = path[:1] in (("robot",), ("obstacle",)) and isinstance(document.data.get(path[0]), dict)
     return (path[0], 0, *path[1:]) if single else path
 

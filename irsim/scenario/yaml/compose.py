@@ -25,7 +25,7 @@ _COLLECTION_TAGS = (None, "!", "tag:yaml.org,2002:map", "tag:yaml.org,2002:seq")
 
 @dataclass(slots=True)
 class Composed:
-    """What a text holds: data (None after a fatal problem), problems, and positions if they were asked for."""
+    """Result of reading a text: data (None after a fatal problem), problems, and positions if requested."""
 
     data: Any
     problems: list[Diagnostic]
@@ -34,7 +34,7 @@ class Composed:
 
 
 class _Stop(Exception):
-    """A problem after which reading on makes no sense."""
+    """Raised after a problem that makes further reading pointless."""
 
 
 def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
@@ -42,8 +42,8 @@ def compose(text: str, limits: Limits, *, positions: bool = False) -> Composed:
 
     Args:
         text: The document.
-        limits: What to refuse.
-        positions: Also record where every key and value stands.
+        limits: Upper bounds; a larger text is refused.
+        positions: Also record the position of every key and value.
     """
     composer = _Composer(text, limits, positions)
     try:
@@ -72,14 +72,14 @@ class _Composer:
         next_event = _parser(self.text).get_event
         scalar, sequence, mapping = yaml.ScalarEvent, yaml.SequenceStartEvent, yaml.MappingStartEvent
         ends = (yaml.SequenceEndEvent, yaml.MappingEndEvent)
-        most = self.limits.events
+        limit = self.limits.events
         documents = 0
         while True:
             event = next_event()
             kind = event.__class__
             self.events += 1
-            if self.events > most:
-                self._stop("too-many-events", f"more than {most:,} YAML values and brackets", event)
+            if self.events > limit:
+                self._stop("too-many-events", f"more than {limit:,} YAML values and brackets", event)
             if kind is scalar:
                 self._scalar(event)
             elif kind is sequence or kind is mapping:
@@ -109,7 +109,7 @@ class _Composer:
                 "empty-document",
                 "error",
                 (),
-                "the file holds no scenario, only blanks or comments",
+                "the file contains no scenario, only blank lines or comments",
                 line=1,
                 column=1,
                 fix="start with 'world: {width: 10, height: 10}'",
@@ -167,10 +167,10 @@ class _Composer:
     def _alias(self, event: Any) -> None:
         name = event.anchor
         if name not in self.anchors:
-            self._stop("yaml-syntax", f"the alias '*{name}' refers to no anchor '&{name}' above it", event)
+            self._stop("yaml-syntax", f"there is no anchor '&{name}' above the alias '*{name}'", event)
         found = self.anchors[name]
         if found is None:
-            self._stop("recursive-alias", f"the alias '*{name}' stands inside the value it refers to", event)
+            self._stop("recursive-alias", f"the alias '*{name}' is inside the value that it refers to", event)
         assert found is not None
         self.aliases += 1
         if self.aliases > self.limits.aliases:
@@ -195,7 +195,7 @@ class _Composer:
     def _add(
         self, value: Any, size: int, height: int, node: Node | None, *, plain: bool = False, event: Any = None
     ) -> None:
-        """Put a finished value where it belongs."""
+        """Add a finished value to the collection that is being read."""
         if not self.stack:
             self.data, self.root = value, node
             return
@@ -224,12 +224,14 @@ class _Composer:
             frame.key = _MERGE
             return
         if isinstance(key, (list, dict)):
-            self._problem("bad-key", "a list or mapping is used as a key", event, fix="quote it if it is meant as text")
+            self._problem(
+                "bad-key", "a key must be text, got a list or mapping", event, fix="quote it if it is meant as text"
+            )
             key = str(key)[:40]
         elif key in frame.value:
             self._problem(
                 "duplicate-key",
-                f"the key '{key}' stands here a second time; the last one counts",
+                f"the key '{key}' is given a second time; the last value counts",
                 event,
                 key=key,
                 given=key,
@@ -243,17 +245,17 @@ class _Composer:
         sources = [(value, node)]
         if isinstance(value, list):
             children = node.children if node is not None else {}
-            # of several merged mappings the first one wins, so it comes last
+            # the first of several merged mappings takes precedence, so it comes last
             sources = [(item, children.get(i)) for i, item in enumerate(value)][::-1]
         if not all(isinstance(item, dict) for item, _ in sources):
-            self._problem("bad-key", "the merge key '<<' takes a mapping or a list of mappings", None)
+            self._problem("bad-key", "the value of the merge key '<<' must be a mapping or a list of mappings", None)
             return
         frame.merges = [*(frame.merges or []), *sources]
 
     # problems
 
     def path(self, key: Any = NO_KEY) -> Path:
-        """Where reading has got to."""
+        """Path of the value that is being read."""
         parts: list[str | int] = []
         for frame in self.stack:
             if not frame.mapping:

@@ -1,4 +1,4 @@
-"""From a file, a text or a mapping to a :class:`Document`: data, what was wrong with it, and where things stand."""
+"""Reads a file, a text or a mapping into a :class:`Document`: data, problems, and the positions of all values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from irsim.scenario.yaml.nodes import Mark, Node
 
 __all__ = ["Document", "Mark", "load_data", "load_path", "load_text"]
 
-_NO_TEXT = bytes(set(range(32)) - {9, 10, 12, 13, 27})
+_CONTROL_BYTES = bytes(set(range(32)) - {9, 10, 12, 13, 27})
+"""Bytes that no text file contains."""
 
 
 @dataclass
@@ -24,14 +25,14 @@ class Document:
 
     Attributes:
         data: The scenario (inside the ``irsim:`` wrapper where there is one); None if it could not be read.
-        problems: Findings of reading it as YAML.
+        problems: Findings made while reading it as YAML.
         fatal: Whether one of them makes the data unusable or wrong.
-        text: The text, None for a scenario given as data.
-        name: What to call it in messages.
-        path: Path of the file, None without one.
+        text: The text; None for a scenario given as data.
+        name: Name in messages.
+        path: Path of the file; None without a file.
         prefix: Keys that lead to the scenario in the text: ``("irsim",)`` in a file shared with another simulator.
-        limits: The limits it was read under.
-        maps: Files that stand in for maps, by their names: what a record has kept of them.
+        limits: The limits under which it was read.
+        maps: Files to read instead of the maps that the scenario names, by name: the copies kept in a recorded run.
     """
 
     data: Any
@@ -46,7 +47,7 @@ class Document:
     _root: Node | None = field(default=None, repr=False)
 
     def mark(self, path: Path, *, key: bool = False) -> Mark | None:
-        """Where the value at ``path`` stands (its key if ``key``), or the innermost part of the path that exists."""
+        """Position of the value at ``path``, of its key if ``key``; of the innermost existing part if it is missing."""
         node = self.tree()
         if node is None:
             return None
@@ -61,14 +62,14 @@ class Document:
         return mark
 
     def source_text(self, path: Path) -> str | None:
-        """The characters of the scalar at ``path``, as written; None if there is no such single-line scalar."""
+        """The characters of the scalar at ``path``, as written; None if it is not a scalar on a single line."""
         if self.text is None or (mark := self.mark(path)) is None:
             return None
         line = self.text.splitlines()[mark.line - 1]
         return line[mark.column - 1 : mark.column - 1 + mark.length]
 
     def tree(self) -> Node | None:
-        """Where everything stands, from the top of the text; None without a text, or one that is no YAML."""
+        """Positions of all values, from the root of the text; None without a text or if it is not valid YAML."""
         if self._root is None and self.text is not None:
             self._root = compose(self.text, self.limits, positions=True).root
         return self._root
@@ -82,7 +83,7 @@ def _raw_key(node: Node, part: str | int) -> Any:
 
 
 def load_path(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -> Document:
-    """Read a file. Whatever is wrong with it ends up in ``problems``, never in an exception."""
+    """Read a file. Everything wrong with it is listed in ``problems``; nothing raises an exception."""
     name = os.fspath(path)
     content, problem = _content(name, limits)
     if problem is not None:
@@ -92,7 +93,7 @@ def load_path(path: str | os.PathLike[str], limits: Limits = DEFAULT_LIMITS) -> 
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         return Document(None, [_not_text(name, content, error)], True, name=name, path=name, limits=limits)
-    if content.translate(None, _NO_TEXT) != content:
+    if content.translate(None, _CONTROL_BYTES) != content:
         return Document(None, [_not_text(name, content, None)], True, name=name, path=name, limits=limits)
     return load_text(text, name=name, path=name, limits=limits)
 
@@ -115,12 +116,12 @@ def load_text(
 
 
 def load_data(data: Any, name: str | None = None, limits: Limits = DEFAULT_LIMITS) -> Document:
-    """A scenario that is data already, as :func:`irsim.make` accepts it: no positions, no limits of the text."""
+    """Wrap a scenario that is data already, as :func:`irsim.make` accepts it; it has no text and no positions."""
     return _unwrapped(Document(data, name=name, limits=limits))
 
 
 def _unwrapped(document: Document) -> Document:
-    """Look inside ``irsim: {...}``, which stands for the whole document in files shared with another simulator."""
+    """The part under ``irsim:``, which is the scenario in files shared with another simulator, if there is one."""
     if isinstance(document.data, Mapping) and isinstance(document.data.get("irsim"), Mapping):
         document.data, document.prefix = document.data["irsim"], ("irsim",)
     return document
@@ -153,7 +154,7 @@ def _too_large(size: int, limits: Limits, name: str | None) -> Diagnostic:
         "file-too-large",
         "error",
         (),
-        f"{size:,} bytes; a scenario may have {limits.bytes:,}",
+        f"a scenario may have at most {limits.bytes:,} bytes, got {size:,}",
         given=size,
         allowed=f"at most {limits.bytes:,} bytes",
         fix="write groups of objects with 'number' and 'distribution'",
@@ -166,9 +167,9 @@ def _half_a_character(text: str, place: int, name: str | None) -> Diagnostic:
         "not-text",
         "error",
         (),
-        f"half of a surrogate pair (character {place + 1}), which is no text",
+        f"character {place + 1} is half of a surrogate pair, which is not valid text",
         line=text.count("\n", 0, place) + 1,
-        fix="remove it, or write the whole character",
+        fix="remove it, or write the complete character",
         file=name,
     )
 
@@ -176,7 +177,7 @@ def _half_a_character(text: str, place: int, name: str | None) -> Diagnostic:
 def _not_text(name: str, content: bytes, error: UnicodeDecodeError | None) -> Diagnostic:
     line = None
     message = f"'{name}' is not a text file"
-    if error is not None and content.translate(None, _NO_TEXT) == content:
+    if error is not None and content.translate(None, _CONTROL_BYTES) == content:
         line = content.count(b"\n", 0, error.start) + 1
         message = f"'{name}' is not UTF-8 text (byte {error.start})"
     return Diagnostic(

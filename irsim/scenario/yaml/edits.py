@@ -1,4 +1,4 @@
-"""Applying edits to the data of a scenario."""
+"""Applies edits to the data of a scenario."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path
 
-__all__ = ["applied", "removal"]
+__all__ = ["apply_edits", "removal_edit"]
 
 
-def applied(data: Any, edits: Iterable[Edit]) -> Any:
-    """A copy of ``data`` with the edits made; one whose place is gone by then is left out."""
+def apply_edits(data: Any, edits: Iterable[Edit]) -> Any:
+    """A copy of ``data`` with the edits applied; an edit whose path no longer exists is skipped."""
     result = copy.deepcopy(data)
     for edit in edits:
         if not edit.path:
@@ -26,10 +26,11 @@ def applied(data: Any, edits: Iterable[Edit]) -> Any:
     return result
 
 
-def removal(path: Path) -> Edit:
-    """The edit that gets rid of what is wrong at ``path`` without shifting its neighbours.
+def removal_edit(path: Path) -> Edit:
+    """The edit that removes the value at ``path`` without shifting its neighbours.
 
-    Elements of lists take the whole key with them, except entries of ``robot`` and ``obstacle``, which become empty.
+    For an element of a list it removes the whole key, but an entry of ``robot`` or ``obstacle`` it replaces by an empty
+    one.
     """
     if len(path) == 2 and path[0] in ("robot", "obstacle"):
         return Edit("replace", path, {}) if isinstance(path[1], int) else Edit("remove", path)

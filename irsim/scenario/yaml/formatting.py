@@ -1,4 +1,4 @@
-"""Values as one would write them in YAML, for messages."""
+"""Formats values as YAML text, for messages."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["flow", "number", "shown"]
+__all__ = ["flow", "number", "quote_value"]
 
-_LONGEST = 60
+_MAX_CHARACTERS = 60
+"""Length of a value in a message."""
 
 
 def flow(value: Any) -> str:
@@ -38,14 +39,14 @@ def number(value: float) -> str:
     return text if "e" not in text or "." in text else text.replace("e", ".0e")
 
 
-def shown(value: Any, longest: int = _LONGEST) -> str:
-    """A value as it may have been written, text in quotes, cut to a readable length."""
+def quote_value(value: Any, longest: int = _MAX_CHARACTERS) -> str:
+    """A value as in YAML, text in single quotes, cut to ``longest`` characters."""
     text = f"'{value[:longest]}'" if isinstance(value, str) else flow(_shortened(value))
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
 def _shortened(value: Any) -> Any:
-    """Enough of a large value to fill the line."""
+    """The first elements of a large value: more would not fit into a message."""
     if isinstance(value, Mapping):
-        return dict(list(value.items())[:_LONGEST])
-    return list(value[:_LONGEST]) if isinstance(value, (list, tuple)) else value
+        return dict(list(value.items())[:_MAX_CHARACTERS])
+    return list(value[:_MAX_CHARACTERS]) if isinstance(value, (list, tuple)) else value

@@ -28,7 +28,7 @@ def schema_reference(target: Path) -> str:
 
 
 def with_modeline(text: str, target: Path) -> str:
-    """The text with the editor line that is right for ``target`` on top; an earlier one is replaced."""
+    """The text with the editor line for ``target`` on top; an earlier editor line is replaced."""
     line = f"# yaml-language-server: $schema={schema_reference(target)}"
     if _MODELINE.match(text):
         return _MODELINE.sub(lambda _: line, text, count=1)
@@ -37,5 +37,5 @@ def with_modeline(text: str, target: Path) -> str:
 
 
 def without_modeline(text: str) -> str:
-    """The text without the editor line, for readers to whom the schema's place means nothing."""
+    """The text without the editor line, for readers who cannot use the path of the schema."""
     return _MODELINE.sub("", text, count=1).lstrip("\r\n")

@@ -1,4 +1,4 @@
-"""What is known while YAML is read: marks and nodes for positions, frames for what is still open."""
+"""Data structures of the YAML reader: marks and nodes hold positions, frames hold unfinished collections."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Mark:
 
 @dataclass(slots=True)
 class Node:
-    """Where a value stands, and where its parts stand."""
+    """Positions of a value, its keys and its parts."""
 
     mark: Mark
     keys: dict[Any, Mark] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class Node:
 
 @dataclass(slots=True)
 class Frame:
-    """A list or mapping that is being read."""
+    """A list or mapping that is still being read."""
 
     value: Any
     mapping: bool
@@ -46,7 +46,7 @@ class Frame:
 
 @dataclass(slots=True)
 class Anchored:
-    """A value with an anchor, and what it costs to write it out."""
+    """A value with an anchor, and its size and depth when an alias repeats it."""
 
     value: Any
     size: int
@@ -55,7 +55,7 @@ class Anchored:
 
 
 def merge(frame: Frame) -> None:
-    """Give a mapping the pairs of those it merges; its own pairs win."""
+    """Add the pairs of merged mappings to a mapping; its own pairs take precedence."""
     own, merged = dict(frame.value), frame.value
     merged.clear()
     for source, node in frame.merges or []:
@@ -69,12 +69,12 @@ def merge(frame: Frame) -> None:
 
 
 def start_mark(event: Any) -> Mark:
-    """Where a list or mapping begins."""
+    """Position where a list or mapping begins."""
     return Mark(event.start_mark.line + 1, event.start_mark.column + 1, 1)
 
 
 def scalar_mark(event: Any) -> Mark:
-    """Where a scalar stands."""
+    """Position and length of a scalar."""
     start, end = event.start_mark, event.end_mark
     length = end.column - start.column if end.line == start.line else 1
     return Mark(start.line + 1, start.column + 1, max(1, length))

@@ -1,4 +1,4 @@
-"""Applying an edit to the text of a scenario: the rest of the text, comments and layout included, stays as it is."""
+"""Applies an edit to the text of a scenario; the rest of the text, with comments and layout, stays as it is."""
 
 from __future__ import annotations
 
@@ -11,33 +11,33 @@ import yaml
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.yaml.compose import compose
-from irsim.scenario.yaml.edits import applied
+from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.formatting import flow
 
-__all__ = ["rewritten", "yaml_flow"]
+__all__ = ["rewrite", "yaml_flow"]
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def rewritten(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | None:
-    """The text with one edit made.
+def rewrite(text: str, edit: Edit, limits: Limits = DEFAULT_LIMITS) -> str | None:
+    """The text with one edit applied.
 
     Args:
         text: YAML of one document.
-        edit: What to do; its path leads from the top of the document.
-        limits: Of the loader.
+        edit: The edit; its path starts at the root of the document.
+        limits: Limits of the loader.
 
     Returns:
-        The new text; None where the edit can't be made without touching something else (values shared by an anchor, or
-        merged into a mapping): what the new text means is compared with what the edit means.
+        The new text; None if the edit would change something else too, such as a value shared by an anchor or merged
+        into a mapping. The data of the new text are compared with the edited data to find that out.
     """
     try:
         root = yaml.compose(text, Loader=_Loader)
-        changed = _changed(text, root, edit)
+        changed = _apply(text, root, edit)
     except (yaml.YAMLError, LookupError, _NotPossible):
         return None
     before, after = compose(text, limits), compose(changed, limits)
-    if after.fatal or not _equal(after.data, applied(_unshared(before.data), [edit])):
+    if after.fatal or not _equal(after.data, apply_edits(_without_aliases(before.data), [edit])):
         return None
     return changed
 
@@ -47,7 +47,7 @@ class _NotPossible(Exception):
 
 
 def yaml_flow(value: Any) -> str:
-    """A value on one line, as YAML reads it back."""
+    """A value on one line of YAML that reads back as the same value."""
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{yaml_flow(str(key))}: {yaml_flow(item)}" for key, item in value.items()) + "}"
     if isinstance(value, (list, tuple)):
@@ -55,11 +55,11 @@ def yaml_flow(value: Any) -> str:
     if isinstance(value, str):
         dumped: str = yaml.safe_dump([value], default_flow_style=True, width=10**9, allow_unicode=True)
         plain = dumped.strip()[1:-1]
-        return plain if value.isprintable() and "\n" not in plain else json.dumps(value)  # which YAML reads as well
+        return plain if value.isprintable() and "\n" not in plain else json.dumps(value)  # JSON text is valid YAML
     return flow(value)
 
 
-def _changed(text: str, root: yaml.Node | None, edit: Edit) -> str:
+def _apply(text: str, root: yaml.Node | None, edit: Edit) -> str:
     parent, last = _node_at(root, edit.path[:-1]), edit.path[-1]
     if isinstance(parent, yaml.SequenceNode):
         if edit.action != "replace" or not isinstance(last, int):
@@ -74,7 +74,7 @@ def _changed(text: str, root: yaml.Node | None, edit: Edit) -> str:
         raise _NotPossible
     key, value = parent.value[index]
     if value.start_mark.index < key.end_mark.index:
-        raise _NotPossible  # an alias: the node stands elsewhere
+        raise _NotPossible  # an alias: the node is elsewhere in the text
     if edit.action == "rename":
         if any(_is_key(other, str(edit.value)) for other, _ in parent.value):
             raise _NotPossible
@@ -102,7 +102,7 @@ def _node_at(node: yaml.Node | None, path: Path) -> yaml.Node:
 
 
 def _end(node: yaml.Node) -> int:
-    """Where the text of a node ends; the end that YAML gives for blocks includes the comments behind them."""
+    """Index where the text of a node ends; the end mark of a block would include the comments behind it."""
     if isinstance(node, yaml.MappingNode) and not node.flow_style and node.value:
         return max(_end(node.value[-1][1]), _end(node.value[-1][0]))
     if isinstance(node, yaml.SequenceNode) and not node.flow_style and node.value:
@@ -135,14 +135,14 @@ def _remove(text: str, parent: yaml.MappingNode, index: int) -> str:
             return text[:start] + text[pairs[index + 1][0].start_mark.index :]
         return text[: _end(pairs[index - 1][1])] + text[end:]
     line = text.rfind("\n", 0, start) + 1
-    if text[line:start].strip():  # behind the dash of a list: the next pair takes the place
+    if text[line:start].strip():  # behind the dash of a list: the next pair moves up
         if index + 1 >= len(pairs):
             raise _NotPossible
         return text[:start] + text[pairs[index + 1][0].start_mark.index :]
     stop = text.find("\n", max(start, end - 1))
     stop = len(text) if stop < 0 else stop + 1
     behind = text[end:stop]
-    comment = text[line:start] + behind.lstrip() if behind.lstrip().startswith("#") else ""  # it stays, on its own
+    comment = text[line:start] + behind.lstrip() if behind.lstrip().startswith("#") else ""  # it stays, alone
     return text[:line] + comment + text[stop:]
 
 
@@ -171,11 +171,11 @@ def _add(text: str, parent: yaml.MappingNode, key: str, value: Any) -> str:
     return f"{text[: stop + 1]}{indent}{pair}{newline}{text[stop + 1 :]}"
 
 
-def _unshared(value: Any) -> Any:
-    """A copy in which what an anchor shares is there once for each place."""
+def _without_aliases(value: Any) -> Any:
+    """A copy in which each alias has a value of its own."""
     if isinstance(value, Mapping):
-        return {key: _unshared(item) for key, item in value.items()}
-    return [_unshared(item) for item in value] if isinstance(value, (list, tuple)) else value
+        return {key: _without_aliases(item) for key, item in value.items()}
+    return [_without_aliases(item) for item in value] if isinstance(value, (list, tuple)) else value
 
 
 def _equal(a: Any, b: Any) -> bool:

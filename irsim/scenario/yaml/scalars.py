@@ -12,7 +12,7 @@ Surprise = Literal["sexagesimal", "octal"]
 
 
 class Scalar(NamedTuple):
-    """A resolved scalar and, if YAML 1.1 reads it in a way few people expect, which one."""
+    """A resolved scalar and, if YAML 1.1 reads it in a surprising way, which way."""
 
     value: Any
     surprise: Surprise | None = None
@@ -34,7 +34,8 @@ _SPECIAL = re.compile(r"(?:([-+]?)\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))\Z")
 _SEXAGESIMAL = re.compile(r"[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?\Z")
 _DATE = re.compile(r"(\d{4})-(\d\d)-(\d\d)\Z")
 _TIME = re.compile(r"\d{4}-\d\d?-\d\d?(?:[Tt]|[ \t]+)\d\d?:\d\d:\d\d(?:\.\d*)?(?:[ \t]*(?:Z|[-+]\d\d?(?::\d\d)?))?\Z")
-_LONGEST_NUMBER = 400  # digits; a double has no use for more
+_MAX_NUMBER_LENGTH = 400
+"""Characters of a number; a double needs fewer, so longer text stays text."""
 _NUMBER_START = frozenset("0123456789+-.")
 
 
@@ -42,7 +43,7 @@ def resolve(text: str) -> Scalar:
     """The value of an unquoted, untagged scalar."""
     if text in _WORDS:
         return Scalar(_WORDS[text])
-    if text[0] not in _NUMBER_START or len(text) > _LONGEST_NUMBER:
+    if text[0] not in _NUMBER_START or len(text) > _MAX_NUMBER_LENGTH:
         return Scalar(text)
     return _number(text)
 
@@ -94,7 +95,7 @@ def _base_sixty(text: str) -> int | float:
 
 
 def _timestamp(text: str) -> Any:
-    """Dates with a time are rare enough to leave to PyYAML; what it cannot read stays text."""
+    """The value of a date with a time, read by PyYAML because it is rare; what PyYAML cannot read stays text."""
     import yaml
 
     try:
@@ -124,7 +125,7 @@ def tagged(tag: str, text: str) -> Any:
         if not isinstance(value, bool):
             raise ValueError(f"{text!r} is not a boolean")
         return value
-    if isinstance(value, str) and kind == "float" and len(text) <= _LONGEST_NUMBER:
+    if isinstance(value, str) and kind == "float" and len(text) <= _MAX_NUMBER_LENGTH:
         value = float(text)
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         raise ValueError(f"{text!r} is not a number")

@@ -1,4 +1,4 @@
-"""What the YAML parser complains about, as a diagnostic."""
+"""Turns an exception of the YAML parser into a diagnostic."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ def syntax_problem(error: yaml.YAMLError, text: str, path: Path) -> Diagnostic:
     """The diagnostic for a parser's exception.
 
     Args:
-        error: What the parser raised.
-        text: What it was reading.
-        path: How far the document was understood.
+        error: The exception.
+        text: The text that was read.
+        path: Path of the value that was being read.
     """
     line = column = 1
     message = " ".join(str(error).split())

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import anyio
-import irsim_mcp.run_resources
 import pytest
-from irsim_mcp.replay_page import PAGE
 
+import irsim_mcp.run_resources
 from irsim.runs import open_run
+from irsim_mcp.replay_page import PAGE
 from tests.mcp.conftest import connected
 from tests.replay.browser.conftest import Watched, until
 from tests.replay.conftest import scene

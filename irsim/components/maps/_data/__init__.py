@@ -1,1 +1,1 @@
-"""The bundled maps, and how they were drawn: ``python -m irsim.components.maps._data`` writes them again."""
+"""The bundled maps; ``python -m irsim.components.maps._data`` draws them again."""

@@ -1,6 +1,6 @@
-"""Draw the bundled maps anew: black is occupied, white is free; one pixel is 0.1 m in a world of 50 m.
+"""Draws the bundled maps: black is occupied, white is free; one pixel is 0.1 m in a world of 50 m.
 
-Usage: ``python -m irsim.components.maps._data [folder]``; writing again gives the same files.
+Usage: ``python -m irsim.components.maps._data [folder]``; every run writes the same files.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _FREE, _WALL = 255, 0
 
 
 def neighbours(rock: Grid) -> NDArray[np.int_]:
-    """How many of the nine cells around each are rock; what is outside counts as rock."""
+    """Number of rock cells among the nine cells at and around each cell; the outside counts as rock."""
     padded = np.pad(rock, 1, constant_values=True).astype(np.int_)
     rows, columns = rock.shape
     return sum(
@@ -27,7 +27,7 @@ def neighbours(rock: Grid) -> NDArray[np.int_]:
 
 
 def reached(free: Grid, start: tuple[int, int]) -> Grid:
-    """The free cells that can be walked to from ``start``."""
+    """The free cells that can be reached from ``start``."""
     found = np.zeros_like(free)
     found[start] = True
     while True:
@@ -43,7 +43,7 @@ def reached(free: Grid, start: tuple[int, int]) -> Grid:
 
 
 def cave(seed: int = 2024) -> Image.Image:
-    """Rock by a cellular automaton, with chambers kept free where scripts put robots and goals.
+    """A cave made by a cellular automaton, with free chambers where scripts put robots and goals.
 
     Chambers lie at 10, 50 and 90 % of the world's extent along both axes, and are joined to each other.
     """
@@ -65,7 +65,7 @@ def cave(seed: int = 2024) -> Image.Image:
     rock[[0, -1]] = rock[:, [0, -1]] = True
     rock |= ~reached(~rock, (10, 10))
     fine = np.kron(rock, np.ones((_CAVE // size, _CAVE // size), dtype=bool))
-    for _ in range(4):  # round the steps off
+    for _ in range(4):  # smooth the steps
         fine = neighbours(fine) >= 5
     fine[:2] = fine[-2:] = fine[:, :2] = fine[:, -2:] = True
     return Image.fromarray(np.where(fine, _WALL, _FREE).astype(np.uint8))
@@ -144,7 +144,7 @@ def maze(seed: int = 7) -> Image.Image:
 
 
 def flat(number: int) -> Image.Image:
-    """A flat: rooms, doors and some furniture; the second is a mirror image with other furniture."""
+    """A flat with rooms, doors and furniture; flat 2 is a mirror image with other furniture."""
     size, t = _FLAT, 4
     walls = [
         *frame(size, t),

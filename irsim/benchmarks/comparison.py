@@ -1,0 +1,254 @@
+"""``irsim.benchmark``: scenarios x behaviors x seeds on all cores, with metrics and intervals.
+
+The comparison is fair: every behavior meets the same scenarios with the same seeds and horizons, and differences are
+taken episode by episode.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.log import Log, logged, with_episodes
+from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.seeds import seeds_from
+from irsim.common.arguments import as_given, whole
+from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+from irsim.results.findings import Finding
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.yaml.document import Document, load_path, load_text
+
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
+
+DEFAULT_SEEDS = 10
+_TOGETHER = 5
+"""Seeds that one behavior runs before the next one has its turn: what is stopped can be compared then, too."""
+_TAKEN = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
+
+
+def benchmark(
+    files: str | Path | Sequence[str | Path],
+    behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
+    seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
+    *,
+    steps: int | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    workers: int | None = None,
+    limits: Limits | None = None,
+    most_episodes: int | None = None,
+    progress: Progress | None = None,
+    log: str | Path | None = None,
+) -> BenchmarkResult:
+    """Run every scenario under every behavior with every seed, and compare.
+
+    Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+
+    Args:
+        files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result.
+        behaviors: For all robots: names (``orca``), mappings with options, in Python or as YAML text (``{name: orca,
+            timeHorizon: 5}``), or ``as-written`` for what the scenario says. Differences are to the first.
+        seeds: How many (0, 1, 2, …), or which: a list, or text such as ``5-9`` or ``1,4,7``.
+        steps: Horizon in steps, over ``world.time_limit``.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first, for behaviors they register.
+        workers: Processes at most; default: the cores of this machine.
+        limits: Limits of reading and of each run.
+        most_episodes: Refuse to run more.
+        progress: Told (episodes done, episodes).
+        log: File to write every episode to as soon as it is done; ``irsim.benchmarks.logged(log)`` is the result of
+            them, whatever stopped the benchmark.
+
+    Raises:
+        ScenarioError: A scenario can't be used, or not with that behavior; ScenarioNotFoundError: there is none.
+        OverLimitError: More is asked for than the limits allow.
+        BenchmarkError: A behavior or the seeds make no sense.
+        ArgumentError: Another argument does not.
+        RunError: The log cannot be written.
+    """
+    given = _sources(files)
+    names = _names(given)
+    wanted = _wanted(behaviors)
+    chosen = seeds_from(seeds)
+    if steps is not None:
+        steps = whole("steps", steps)
+    if workers is not None:
+        workers = whole("workers", workers, 1)
+    _check(names, wanted, chosen, most_episodes)
+    limits = limits or DEFAULT_LIMITS
+    import_modules(imports)
+    for number, behavior in enumerate(wanted):
+        with _about(number):
+            check_known(behavior)
+    warnings: dict[str, list[Finding]] = {}
+    jobs: list[tuple[str, str, Job, Sequence[int]]] = []
+    periods, chances = dict[str, float](), dict[str, list[str]]()
+    for name, source in zip(names, given, strict=True):
+        document = _document(source, limits)
+        scenario, warnings[name] = read_scenario(
+            None if document.path is None else name,
+            text=document.text if document.path is None else None,
+            strict=strict,
+            limits=limits,
+        )
+        periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
+        for number, behavior in enumerate(wanted):
+            job = Job(
+                text=str(document.text),
+                path=document.path,
+                behavior=behavior,
+                steps=steps,
+                strict=strict,
+                imports=tuple(imports),
+                limits=tuple(asdict(limits).items()),
+            )
+            with _about(number):
+                chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
+            jobs.append((name, behavior, job, chosen))
+    plan = [
+        (name, behavior, Task(job, seed))
+        for name, behavior, job, every in jobs
+        for seed in (every if chances[name] else every[:1])
+    ]
+
+    rank = {seed: position // _TOGETHER for position, seed in enumerate(chosen)}
+    turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
+    from irsim import __version__
+
+    head = BenchmarkResult(
+        scenarios=names,
+        behaviors=wanted,
+        seeds=chosen,
+        step_time=periods,
+        random=chances,
+        rows=[],
+        episodes=[],
+        notes=[],
+        warnings=warnings,
+        version=__version__,
+        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+    )
+
+    def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
+        name, behavior, task = plan[number]
+        metrics = {key: None if math.isnan(value) else value for key, value in result["metrics"].items()}
+        told = {key: result[key] for key in _TAKEN}
+        return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **told)
+
+    with nullcontext() if log is None else Log(log, head) as book:
+
+        def keep(number: int, result: Mapping[str, Any]) -> None:
+            if book is not None:
+                book.add(turns[number], row(turns[number], result))
+
+        tasks = [plan[number][2] for number in turns]
+        found = run_tasks(tasks, workers=workers or cores(), progress=progress, kept=keep)
+    results = dict(zip(turns, found, strict=True))
+    return with_episodes(head, [row(number, results[number]) for number in range(len(plan))])
+
+
+def _sources(files: Any) -> list[str]:
+    """Paths and texts as strings."""
+    one = isinstance(files, (str, Path))
+    if not one and (isinstance(files, (Mapping, bytes, bytearray)) or not isinstance(files, Iterable)):
+        raise ArgumentError(f"files is {as_given(files)}", "give a path, the text of a scenario, or a list of them")
+    listed = [files] if one else list(files)
+    for number, source in enumerate(listed):
+        if not isinstance(source, (str, Path)):
+            raise ArgumentError(f"files[{number}] is {as_given(source)}", "give a path or the text of a scenario")
+    return [str(source) for source in listed]
+
+
+def _wanted(behaviors: Any) -> list[str]:
+    """Behaviors as a command line has them."""
+    one = isinstance(behaviors, (str, Mapping)) or not isinstance(behaviors, Iterable)
+    found = []
+    for number, behavior in enumerate([behaviors] if one else behaviors):
+        with _about(number):
+            found.append(behavior if isinstance(behavior, str) else text_of(behavior))
+    return found
+
+
+def _names(given: list[str]) -> list[str]:
+    """What to call the scenarios."""
+    texts = [source for source in given if "\n" in source]
+    if len(texts) < 2:
+        return ["(text)" if "\n" in source else source for source in given]
+    number = itertools.count(1)
+    return [f"(text {next(number)})" if "\n" in source else source for source in given]
+
+
+def _document(source: str, limits: Limits) -> Document:
+    if "\n" in source:
+        return load_text(source, limits=limits)
+    found = source_of(source, None, limits)
+    return found if isinstance(found, Document) else load_path(found, limits)
+
+
+def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int | None) -> None:
+    for what, given in (("scenarios", names), ("behaviors", behaviors)):
+        if not given:
+            raise BenchmarkError(f"there are no {what}", f"give at least one of the {what}")
+    for what, listed in (("scenario", names), ("behavior", behaviors)):
+        twice = next((name for name in listed if listed.count(name) > 1), None)
+        if twice is not None:
+            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
+    for number, behavior in enumerate(behaviors):
+        with _about(number):
+            behavior_of(behavior)
+    total = len(names) * len(behaviors) * len(seeds)
+    if most is not None and total > most:
+        product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
+        raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
+
+
+@contextmanager
+def _about(number: int) -> Iterator[None]:
+    """What is wrong in here is so with one of the behaviors."""
+    try:
+        yield
+    except BenchmarkError as error:
+        error.where = f"behaviors[{number}]"
+        raise
+
+
+def _command(
+    names: list[str],
+    behaviors: list[str],
+    seeds: list[int],
+    steps: int | None,
+    strict: bool,
+    imports: Sequence[str],
+) -> str:
+    files = [
+        f"scenario{'' if name == '(text)' else name[6:-1]}.yaml" if name.startswith("(text") else name for name in names
+    ]
+    words: list[Any] = ["irsim", "benchmark", *files]
+    if behaviors != [AS_WRITTEN]:
+        words += ["--behaviors", ",".join(behaviors)]
+    words += ["--seeds", _listed(seeds)]
+    if steps is not None:
+        words += ["--steps", steps]
+    if strict:
+        words.append("--strict")
+    for name in imports:
+        words += ["--import", name]
+    return shlex.join(map(str, words))
+
+
+def _listed(seeds: list[int]) -> str:
+    """Seeds as the command takes them."""
+    if len(seeds) > 1 and seeds == list(range(seeds[0], seeds[0] + len(seeds))):
+        return str(len(seeds)) if seeds[0] == 0 else f"{seeds[0]}-{seeds[-1]}"
+    return ",".join(map(str, seeds)) if seeds != [0] else "1"
