@@ -85,7 +85,7 @@ def run_result(
     hits, counts = _collisions(env, events)
     told = _without_repeats(env.scenario, events)
     held = jammed(env.simulation, events)
-    parked = [record.name for record in env.scenario.robots() if env.scenario.parked(record)]
+    parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
     robots = _robots(env, events, counts, parked)
     left = _left(env)
     ends = [robot.outcome for robot in robots]
@@ -405,7 +405,7 @@ def _state_of(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[E
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:
-        if not env.scenario.goal_written(record):
+        if not env.scenario.has_written_goal(record):
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
     row = view.row
