@@ -190,12 +190,13 @@ class Explainer:
             limit = next((source[name] for source in sources if source.get(name) is not None), None)
             if limit is not None:
                 limits[name] = f"{sign} {number(limit)}"
+        allowed = " and ".join(limits.values()) + self._unit()
         return error(
             "out-of-range",
             self.path,
-            f"{quote_value(self.value)} is out of range",
+            f"{self._subject()} must be {allowed}, got {quote_value(self.value)}",
             given=self.value,
-            allowed=" and ".join(limits.values()) + self._unit(),
+            allowed=allowed,
             carry_on=self._carry_on(),
         )
 
@@ -216,13 +217,14 @@ class Explainer:
         numbers = count > 0 and all(isinstance(v, (int, float)) for v in self.value)
         wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
-            message = f"this list must have {wanted} elements, got {count}"
-            return error("wrong-length", self.path, message, allowed=f"{wanted} elements")
+            elements = f"{wanted} element{'s' if wanted[-2:] not in ('1', ' 1') else ''}"
+            message = f"{self._subject()} must have {elements}, got {count}"
+            return error("wrong-length", self.path, message, allowed=elements)
         fix, edit = self._shorter(most)
         return error(
             "wrong-length",
             self.path,
-            f"'{self._key()}' must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
+            f"{self._subject()} must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
             given=self.value,
             allowed=f"{wanted} numbers",
             fix=fix,
@@ -359,6 +361,11 @@ class Explainer:
 
     def _key(self) -> str:
         return next((part for part in reversed(self.path) if isinstance(part, str)), "value")
+
+    def _subject(self) -> str:
+        """The value at fault, as the beginning of a message."""
+        key = f"'{self._key()}'"
+        return f"each element of {key}" if self.path and isinstance(self.path[-1], int) else key
 
     def _unit(self) -> str:
         unit = unit_of(self.field) if self.field is not None else None

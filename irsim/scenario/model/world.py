@@ -42,7 +42,9 @@ def _viewpoint(value: Any) -> list[float] | str | None:
         return value
     if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
         return [float(v) for v in value]
-    raise problem("wrong-type", "this is not a valid viewpoint", allowed="[x, y] in metres, or the name of an object")
+    raise problem(
+        "wrong-type", "a viewpoint must be [x, y] or the name of an object", allowed="[x, y] in metres, or a name"
+    )
 
 
 class SavedFigure(Options):
