@@ -65,7 +65,7 @@ def run_result(
     hits, counts = _collisions(env, events)
     listed = _without_repeats(env.scenario, events)
     held = find_jammed(env.simulation, events)
-    parked = [record.name for record in env.scenario.robots() if env.scenario.parked(record)]
+    parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
     robots = _robots(env, events, counts, parked)
     left = _exits(env)
     ends = [robot.outcome for robot in robots]

@@ -84,7 +84,7 @@ def test_steps_are_whole_numbers(steps: Any, tmp_path: Path) -> None:
         lambda: api.snapshot(text=TEXT, steps=steps),
     ]
     for call in calls:
-        with pytest.raises(ArgumentError, match=r"steps is .*\. Fix: give a whole number, 0 or more\."):
+        with pytest.raises(ArgumentError, match=r"steps cannot be .*\. Fix: give a whole number, 0 or more\."):
             call()
     assert not (tmp_path / "a.png").exists()
 
@@ -97,7 +97,7 @@ def test_steps_of_numpy_and_none_at_all_are_taken() -> None:
 
 @pytest.mark.parametrize("workers", [0, -1, 1.5, "2", True])
 def test_workers_are_at_least_one(workers: Any) -> None:
-    with pytest.raises(ArgumentError, match=r"workers is .*\. Fix: give a whole number, 1 or more\."):
+    with pytest.raises(ArgumentError, match=r"workers cannot be .*\. Fix: give a whole number, 1 or more\."):
         irsim.benchmark(TEXT, "dash", 1, workers=workers)
 
 
