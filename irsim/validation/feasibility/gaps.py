@@ -236,4 +236,7 @@ def _shapes(a: Floats, b: Floats) -> Shapes:
     """Make a shapely segment of each feature, and a point of each disc."""
     import shapely
 
-    return np.where((a == b).all(axis=1), shapely.points(a), shapely.linestrings(np.stack([a, b], axis=1)))
+    shapes = np.asarray(shapely.linestrings(np.stack([a, b], axis=1)), dtype=object)
+    discs = (a == b).all(axis=1)
+    shapes[discs] = shapely.points(a[discs])
+    return shapes
