@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from irsim.common.angles import wrap
 from irsim.common.text import quoted, seconds
 from irsim.metrics.clearances import approaches
-from irsim.simulation.events import Event, collision_of, passable_names
+from irsim.simulation.events import Event, is_collision_of, passable_names
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
@@ -110,7 +110,7 @@ def find_jammed(simulation: Simulation, events: Sequence[Event]) -> dict[str, Ev
     for event in events:
         if event.kind == "collision":
             for name in (event.object, str(event.partner)):
-                if name in held and name not in first and collision_of(event, name, passable):
+                if name in held and name not in first and is_collision_of(event, name, passable):
                     first[name] = event
     return {name: event for name, event in first.items() if not robots & {event.object, event.partner}}
 

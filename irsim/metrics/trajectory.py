@@ -151,7 +151,7 @@ def tracks(
         top_speeds: Top speeds of the robots [m/s].
     """
     from irsim.metrics.clearances import static_distance
-    from irsim.simulation.events import collision_of, first_events, partner_of
+    from irsim.simulation.events import first_events, is_collision_of, partner_of
 
     scenario = simulation.scenario
     records = scenario.objects
@@ -169,7 +169,7 @@ def tracks(
         rows = slice(0, len(trace) if arrival is None else arrival - first + 1)
         hits = []
         for event in events:
-            if collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
+            if is_collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
                 other = partner_of(event, name)
                 hits.append((event, int(kinds[number[str(other)]])))
         them = humans[humans != robot]

@@ -64,7 +64,7 @@ def test_seeds_mean_what_the_command_line_means(seeds: Any, meant: list[int]) ->
     "seeds", ["x", "9-2", "1.5", "", 1.5, True, None, [1.5], ["3"], [True], {"a": 1}, b"12", [[1]]]
 )
 def test_what_is_no_seed_is_told(seeds: Any) -> None:
-    with pytest.raises(BenchmarkError, match=r"is no seed, nor several\. Fix: give how many, such as 20, or which"):
+    with pytest.raises(BenchmarkError, match=r"is not a valid seed or list of seeds\. Fix: give the number of seeds"):
         irsim.benchmark(TEXT, "dash", seeds)
 
 
@@ -121,7 +121,7 @@ def test_paths_are_paths(path: Any) -> None:
     for call in calls:
         with pytest.raises(ArgumentError, match=r"path must be the path of a file, got .* Fix: give the path"):
             call(path)
-    told = r"files\[0\] is .*" if isinstance(path, list) else "files is .*"
+    told = r"files\[0\] must be .*" if isinstance(path, list) else "files must be .*"
     with pytest.raises(ArgumentError, match=told + "Fix: give a path"):
         irsim.benchmark([3] if isinstance(path, list) else path)  # type: ignore[list-item]
 

@@ -221,7 +221,7 @@ async def test_a_job_whose_time_is_over_keeps_the_episodes_that_were_done(worksp
         ended = data_of(result)
         assert ended["status"] == "interrupted"
         assert 0 < ended["done"] < ended["total"]
-        assert ended["next"].startswith("12 s of computing were over. This is of the ")
+        assert ended["next"].startswith("12 s of computing time were used up. This is the result of the ")
         assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
 
 
@@ -347,7 +347,7 @@ async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> N
             ({"view": "closest"}, "(view). Fix: leave it out"),
             ({"robot": "rover"}, "(robot). Fix: leave it out"),
             ({"from_step": 3}, "(from_step). Fix: leave it out"),
-            ({"cursor": "1"}, "'1' is no cursor (cursor)"),
+            ({"cursor": "1"}, "'1' is not a valid cursor (cursor)"),
         ):
             assert told in error_of(await client.call_tool("inspect_run", {"run_id": job, **asked}))
         begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 0}))["job_id"]

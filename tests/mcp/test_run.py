@@ -147,7 +147,7 @@ async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -
 async def test_time_is_limited_and_the_error_says_what_fits(empty: Path) -> None:
     async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": LONG, "max_wall_s": 5})
-    assert error_of(result).startswith("out-of-time: 5 s of computing were over after ")
+    assert error_of(result).startswith("out-of-time: 5 s of computing time were used up after ")
     assert "fewer steps" in error_of(result)
 
 
