@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.validation.feasibility.scenes import Scene
 
 __all__ = ["Gaps", "Opening", "find_gaps"]
 
 Point = tuple[float, float]
-Floats = NDArray[np.float64]
 Shapes = NDArray[np.object_]
 """Shapely geometries."""
 _MAX_FEATURES = 40_000
