@@ -279,10 +279,10 @@ async def test_limits(workspace: Path) -> None:
             "{name: orca, timeHorizn: 5}",
             "'timeHorizn' is not a key of behavior orca {}. Fix: rename it to 'timeHorizon'.",
         ),
-        ("{name: orca, timeHorizon: -5}", "timeHorizon: -5 is out of range {}. Fix: allowed is > 0 [s]."),
+        ("{name: orca, timeHorizon: -5}", "'timeHorizon' must be > 0 [s], got -5 {}. Fix: allowed is > 0 [s]."),
         ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
         ("orcaa", "there is no behavior 'orcaa' {}. Fix: did you mean orca?"),
-        ("{orca", "'{{orca' is no behavior {}. Fix: give a name such as orca, or "),
+        ("{orca", "'{{orca' is not a valid behavior {}. Fix: give a name such as orca, or "),
     ],
 )
 async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(
