@@ -19,7 +19,9 @@ from irsim.episodes.episode import (
     read_scenario,
     seed_of,
 )
-from irsim.episodes.run_report import command, region_words, run_result
+from irsim.episodes.reproduce import region_options, reproduce_command
+from irsim.episodes.run_report import run_result
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
@@ -37,8 +39,6 @@ __all__ = [
     "snapshot",
     "validate",
 ]
-
-VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 
 
 def run(
@@ -197,7 +197,7 @@ def render(
             out=out,
         )
         return _write_sheet(sheet, target)
-    animated = target.suffix.lower() in VIDEO_SUFFIXES
+    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
         env._env_plot.set_region(region)
@@ -210,7 +210,7 @@ def render(
     else:
         advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
-    sized = [*([] if size is None else ["--size", str(size)]), *region_words(region)]
+    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,
@@ -219,7 +219,7 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
-        reproduce=command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result

@@ -10,7 +10,7 @@ from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, read_scenario, seed_of
-from irsim.episodes.run_report import command, overlay_words, region_words, strip_words
+from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
 from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
@@ -120,7 +120,7 @@ def snapshot_of(
             env.end(ending_time=0.0)
             env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR")
     count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
-    options = [*region_words(region), *strip_words(strip), *overlay_words(shown)]
+    options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, "-o", str(out)]
     result = snapshot_of_env(
         env,
@@ -131,7 +131,7 @@ def snapshot_of(
         moments=chosen,
         draw=draw,
         warnings=warnings,
-        reproduce=command("render", path, env, count, strict, imports, extra=extra),
+        reproduce=reproduce_command("render", path, env, count, strict, imports, extra=extra),
         progress=progress,
     )
     env.end(ending_time=0.0)

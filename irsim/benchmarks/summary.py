@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
@@ -97,22 +98,18 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
     fixed = [name for name, chance in random.items() if not chance]
     if fixed and len(seeds) > 1:
         notes.append(
-            f"{_names(fixed)}: nothing is random, so every seed gives the same run and only one was simulated; random "
-            "placement or motion noise would make seeds differ"
+            f"{listed(fixed, _MAX_NAMED)}: nothing is random, so every seed gives the same run and only one was "
+            "simulated; random placement or motion noise would make seeds differ"
         )
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:
         count = sum(bool(episode.unreachable) for episode in episodes)
-        notes.append(f"{_names(lost)}: in {count} episodes no path to a goal was found; spl is left out there")
+        missing = f"in {count} episodes no path to a goal was found; spl is left out there"
+        notes.append(f"{listed(lost, _MAX_NAMED)}: {missing}")
     cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
     if cut:
-        notes.append(f"{_names(cut)}: episodes ended early with robots that stopped without arriving")
+        notes.append(f"{listed(cut, _MAX_NAMED)}: episodes ended early with robots that stopped without arriving")
     return notes
-
-
-def _names(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _MAX_NAMED} more" if len(names) > _MAX_NAMED else ""
-    return ", ".join(names[:_MAX_NAMED]) + more
 
 
 def _row(

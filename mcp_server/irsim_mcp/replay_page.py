@@ -11,7 +11,7 @@ from mcp.server.mcpserver.resources import FunctionResource
 
 __all__ = ["PAGE", "replay_app"]
 
-PAGE = "ui://irsim/runs/replay"
+PAGE = "ui://irsim/replay"
 
 
 def replay_app() -> Apps:

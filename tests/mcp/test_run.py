@@ -164,7 +164,7 @@ async def test_a_longer_horizon_is_cut_and_said(empty: Path) -> None:
     async with connected(empty) as client:
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": slow}))
     assert (data["steps"], data["time_limit_from"]) == (5000, "limits")
-    assert "the most steps of one run here" in data["reason"]
+    assert "the maximum number of steps of one run here" in data["reason"]
 
 
 async def test_memory_is_limited(empty: Path) -> None:

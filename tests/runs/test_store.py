@@ -285,6 +285,7 @@ def endless(workspace: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen([sys.executable, "-c", code], cwd=workspace, stderr=subprocess.DEVNULL)
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_a_run_that_is_being_written_can_be_read(workspace: Path) -> None:
     process = endless(workspace)
     try:
