@@ -135,7 +135,7 @@ def _shortest_path(
     for radius in dict.fromkeys(radii):
         if clearance <= radius - _CLEARANCE_TOLERANCE_M:
             continue
-        path = geodesics.way(start, goal, radius, coarse=True)
+        path = geodesics.path(start, goal, radius, coarse=True)
         if path is not None:
             return np.concatenate([[start], path[1:-1], [goal]])  # its ends are only the centres of cells
     return None
