@@ -1,4 +1,4 @@
-"""Printing diagnostics, and the two things every verb does before it reads a scenario."""
+"""Printing of diagnostics, import of user modules, and the limits for reading a scenario."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class UserImportError(CodedError, ImportError):
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, stderr: bool = False) -> None:
-    """Print diagnostics with the lines they are about.
+    """Print diagnostics with the lines of the scenario that they refer to.
 
     Args:
-        diagnostics: What was found.
-        text: The scenario's text.
-        stderr: To standard error instead of standard output.
+        diagnostics: The diagnostics.
+        text: Text of the scenario.
+        stderr: Print to standard error instead of standard output.
     """
     if not diagnostics:
         return
@@ -42,10 +42,10 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
     """Print the findings of a result.
 
     Args:
-        findings: From a result.
-        file: The scenario they are about.
-        text: Its text; None reads the file again.
-        stderr: To standard error instead of standard output.
+        findings: Findings of a result.
+        file: File of the scenario.
+        text: Text of the scenario; None reads the file again.
+        stderr: Print to standard error instead of standard output.
     """
     if not findings:
         return
@@ -71,10 +71,10 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:
-    """Import user modules, for what they register.
+    """Import user modules, which register behaviors and other components.
 
     Raises:
-        UserImportError: Whatever went wrong in one of them.
+        UserImportError: A module raised an error.
     """
     if not names:
         return
@@ -88,7 +88,7 @@ def import_user_modules(names: Sequence[str] | None) -> None:
 
 
 def limits_for(max_objects: int | None) -> Limits | None:
-    """Limits of the loader with another number of objects; None for the defaults."""
+    """Return the limits for reading a scenario with another number of objects; None stands for the default limits."""
     if max_objects is None:
         return None
     from irsim.scenario.limits import Limits
@@ -97,7 +97,7 @@ def limits_for(max_objects: int | None) -> Limits | None:
 
 
 def not_found(file: str, message: str) -> ValidationReport:
-    """The report on a file that does not exist."""
+    """Return the report on a file that does not exist."""
     from irsim.results.findings import Finding
     from irsim.results.validation import ValidationReport
 

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from irsim.common.text import clean, seconds
+from irsim.common.arrays import Floats
+from irsim.common.text import quoted, seconds
 from irsim.results.run import Left
 
 if TYPE_CHECKING:
@@ -18,10 +18,6 @@ __all__ = ["MAX_LISTED_EXITS", "exits_message", "find_exits"]
 
 MAX_LISTED_EXITS = 10
 """Number of exits that a result lists one by one."""
-_MAX_NAME_LENGTH = 40
-"""Number of characters of a name that a message shows."""
-
-Floats = NDArray[np.float64]
 
 
 def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps: int) -> list[Left]:
@@ -56,4 +52,4 @@ def exits_message(scenario: ResolvedScenario, left: Sequence[Left]) -> str | Non
     more = f" and {others} more after it" if others else ""
     open_edge = scenario.world.boundary == "none"
     advice = f" ('world.boundary: walls' would keep {'them' if others else 'it'} in)" if open_edge else ""
-    return f"'{clean(first.name, _MAX_NAME_LENGTH)}' left the world at {seconds(first.time)}{more}{advice}"
+    return f"{quoted(first.name)} left the world at {seconds(first.time)}{more}{advice}"

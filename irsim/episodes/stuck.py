@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.text import clean, seconds
+from irsim.common.angles import wrap
+from irsim.common.text import quoted, seconds
 from irsim.metrics.clearances import approaches
-from irsim.metrics.trajectory import wrap_angles
-from irsim.simulation.events import Event, collision_of, passable_names
+from irsim.simulation.events import Event, is_collision_of, passable_names
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord
@@ -110,7 +110,7 @@ def find_jammed(simulation: Simulation, events: Sequence[Event]) -> dict[str, Ev
     for event in events:
         if event.kind == "collision":
             for name in (event.object, str(event.partner)):
-                if name in held and name not in first and collision_of(event, name, passable):
+                if name in held and name not in first and is_collision_of(event, name, passable):
                     first[name] = event
     return {name: event for name, event in first.items() if not robots & {event.object, event.partner}}
 
@@ -121,10 +121,10 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
         return None
     count = sum(is_moving_obstacle(record) for record in simulation.scenario.objects)
     first = min(held.values(), key=lambda event: event.step)
-    whom = f"'{clean(first.object, 40)}' hit '{clean(first.partner, 40)}' at {seconds(first.time)}"
+    hit = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
     return (
         f"{len(held)} of {count} moving obstacle{'s' * (count != 1)} {'was' if len(held) == 1 else 'were'} stopped by "
-        f"a collision ({'first ' * (len(held) > 2)}{whom}): collision_mode: unobstructed_obstacles lets them go on"
+        f"a collision ({'first ' * (len(held) > 2)}{hit}): collision_mode: unobstructed_obstacles lets them go on"
     )
 
 
@@ -165,7 +165,7 @@ def find_obstruction(
     if not close:
         return None
     near = next((near for near in close if near.partner in held), close[0])
-    where = f"'{clean(near.partner, 40)}' is {near.distance:.2f} m from it"
+    where = f"{quoted(near.partner)} is {near.distance:.2f} m from it"
     if near.partner in held:
         since = seconds(held[near.partner].time)
         return Obstruction(f"{where} and has been stopped since a collision at {since}", held=True)
@@ -197,7 +197,7 @@ def find_circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circ
     """
     if len(poses) < 3:
         return None
-    turned = np.abs(np.cumsum(wrap_angles(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
+    turned = np.abs(np.cumsum(wrap(np.diff(poses[:, 2]))[::-1]))  # from each row to the end, last row first
     full, more = (np.flatnonzero(turned >= turns * 2 * math.pi) for turns in (1.0, _MIN_TURNS))
     if not more.size:
         return None

@@ -7,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
 from irsim.metrics.geodesic import Geodesics
-from irsim.metrics.trajectory import Track, wrap_angles
+from irsim.metrics.trajectory import Track
 
 __all__ = ["UNREACHABLE", "progress_metrics"]
 
@@ -54,7 +55,7 @@ def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple
     goals = _goals(track)
     if not len(goals):
         return found | dict.fromkeys(("spl", "stl", "barn_score", "failure_to_progress"), nan), []
-    ways = [geodesics.way(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
+    ways = [geodesics.path(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
     if any(way is None for way in ways):
         return found | dict.fromkeys(("spl", "stl", "barn_score"), nan), [UNREACHABLE]
     if track.arrival is None:
@@ -104,4 +105,4 @@ def _turns(way: NDArray[np.float64], track: Track) -> float:
     legs = legs[np.linalg.norm(legs, axis=1) > 0]
     before = [] if track.holonomic else [track.pose[0, 2]]
     angles = np.concatenate([before, np.arctan2(legs[:, 1], legs[:, 0])])
-    return float(np.abs(wrap_angles(np.diff(angles))).sum())
+    return float(np.abs(wrap(np.diff(angles))).sum())

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
+from irsim.common.arrays import Floats
 from irsim.metrics.roles import HUMAN, kinds_of, social_groups
 
 if TYPE_CHECKING:
@@ -17,9 +19,8 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
     from irsim.simulation.trace import Trace
 
-__all__ = ["HOLONOMIC", "Track", "thin_path", "tracks", "wrap_angles"]
+__all__ = ["HOLONOMIC", "Track", "thin_path", "tracks"]
 
-Floats = NDArray[np.float64]
 HOLONOMIC = ("omni", "omni_angular")
 """Drives that need not turn to move in another direction."""
 _POINT_SPACING_M = 0.05
@@ -96,7 +97,7 @@ class Track:
     @property
     def turning(self) -> Floats:
         """(K - 1,) heading change during each step [rad], in [-pi, pi)."""
-        return wrap_angles(np.diff(self.pose[:, 2]))
+        return wrap(np.diff(self.pose[:, 2]))
 
     @property
     def bends(self) -> Floats:
@@ -108,7 +109,7 @@ class Track:
         if not self.holonomic:
             return self.turning
         legs = np.diff(thin_path(self.position), axis=0)
-        return wrap_angles(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
+        return wrap(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
 
     @property
     def path_length(self) -> float:
@@ -119,11 +120,6 @@ class Track:
     def success(self) -> bool:
         """Whether the robot arrived without a contact before."""
         return self.arrival is not None and not self.collisions
-
-
-def wrap_angles(angles: Floats) -> Floats:
-    """Angles [rad] in [-pi, pi)."""
-    return np.asarray((angles + np.pi) % (2 * np.pi) - np.pi)
 
 
 def thin_path(points: Floats) -> Floats:
@@ -155,7 +151,7 @@ def tracks(
         top_speeds: Top speeds of the robots [m/s].
     """
     from irsim.metrics.clearances import static_distance
-    from irsim.simulation.events import collision_of, first_events, partner_of
+    from irsim.simulation.events import first_events, is_collision_of, partner_of
 
     scenario = simulation.scenario
     records = scenario.objects
@@ -173,7 +169,7 @@ def tracks(
         rows = slice(0, len(trace) if arrival is None else arrival - first + 1)
         hits = []
         for event in events:
-            if collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
+            if is_collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
                 other = partner_of(event, name)
                 hits.append((event, int(kinds[number[str(other)]])))
         them = humans[humans != robot]

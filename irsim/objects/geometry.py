@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.functions.inequalities import polygon_inequality
 from irsim.objects.base import SimObject, column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
 
@@ -39,16 +40,8 @@ def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) ->
     if kinds != ["polygon"]:
         return None, None, None, None if len(kinds) == 1 else False
     points = state.vertices(row, 0, world_frame)
-    edges = np.roll(points, -1, axis=0) - points
-    ahead = np.roll(edges, -1, axis=0)
-    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
-    if not ((turns >= -_STRAIGHT).all() or (turns <= _STRAIGHT).all()):
-        return None, None, None, False
-    if turns.sum() < 0:
-        points = points[::-1]
-        edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
-    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
+    found = polygon_inequality(points, _STRAIGHT)
+    return (None, None, None, False) if found is None else (*found, "Rpositive", True)
 
 
 class ObjectBody(SimObject):

@@ -7,19 +7,14 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from irsim.common.angles import FULL_TURN
 from irsim.options.base import problem
 from irsim.options.units import Radians
 
-__all__ = ["FULL_TURN", "SpanAngle", "is_span", "wrap"]
+__all__ = ["SpanAngle", "is_span"]
 
-FULL_TURN = 2 * math.pi
 _ROUNDING = 0.02
 """Excess over a full turn that counts as rounding: 6.28, 6.2832 and 6.3 all mean a full turn [rad]."""
-
-
-def wrap(angle: float) -> float:
-    """The angle of the same direction in [-pi, pi)."""
-    return (angle + math.pi) % FULL_TURN - math.pi
 
 
 def is_span(angle: float) -> bool:
@@ -27,7 +22,7 @@ def is_span(angle: float) -> bool:
     return angle <= FULL_TURN + _ROUNDING
 
 
-def _clipped(angle: float) -> float:
+def _clip(angle: float) -> float:
     if not is_span(angle):
         radians = min(round(math.radians(angle), 9), FULL_TURN) if 10 <= angle <= 360 else None
         degrees = "" if radians is None else f"; {angle:g} degrees are {radians:.5g} rad"
@@ -45,7 +40,7 @@ def _clipped(angle: float) -> float:
 SpanAngle = Annotated[
     Radians,
     Field(ge=0),
-    AfterValidator(_clipped),
+    AfterValidator(_clip),
     Field(json_schema_extra={"maximum": round(FULL_TURN + _ROUNDING, 4)}),
 ]
 """An opening angle from 0 to a full turn."""

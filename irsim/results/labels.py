@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from irsim.common.text import listed
+
 __all__ = ["labels_of", "seeds_of"]
 
 MAX_LABEL = 24
@@ -36,6 +38,5 @@ def seeds_of(failed: dict[str, list[int]], most: int) -> str:
     """
     parts = []
     for outcome, seeds in failed.items():
-        more = f" and {len(seeds) - most} more" if len(seeds) > most else ""
-        parts.append(f"{outcome}: seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds[:most]))}{more}")
+        parts.append(f"{outcome}: seed{'s' * (len(seeds) > 1)} {listed([str(seed) for seed in seeds], most)}")
     return "; ".join(parts)

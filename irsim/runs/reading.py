@@ -20,7 +20,7 @@ from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
-from irsim.simulation.trace import Trace, joined
+from irsim.simulation.trace import Trace, join_traces
 
 __all__ = ["Run", "list_runs", "open_run"]
 
@@ -146,7 +146,7 @@ class Run:
         pieces = [self._piece(name) for name in self._pieces("trace")]
         if not pieces:
             raise unreadable(f"run {self.id} was interrupted before its first step was recorded")
-        trace = joined(pieces)
+        trace = join_traces(pieces)
         if (np.diff(trace.step) != 1).any():
             raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
         return trace

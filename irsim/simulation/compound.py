@@ -1,4 +1,4 @@
-"""The area that the parts of a compound cover together, as contacts need it."""
+"""Centroid and radius of gyration of a compound, which contacts need."""
 
 from __future__ import annotations
 
@@ -11,23 +11,24 @@ import irsim._core as core
 
 __all__ = ["compound_body"]
 
-_QUADRANT_SEGMENTS = 16
-"""Segments in a quarter of a circle."""
+_SEGMENTS_PER_QUARTER = 16
+"""Number of segments that stand for a quarter circle."""
 
 
 def compound_body(parts: Sequence[Any]) -> list[float]:
-    """What contacts need to know of the area that parts of a compound cover together.
+    """Return centroid and squared radius of gyration of the area that the parts of a compound cover together.
 
     Returns:
-        Its centre, x, y [m, body frame], and the square of its radius of gyration [m^2] if it is in one piece (holes
-        count as filled); empty where a part is drawn per scene.
+        x, y of the centroid [m, body frame]; if the area is in one piece, also the square of its radius of gyration
+        [m^2], where holes count as filled. An empty list if a part is random, because its shape changes with each
+        scene.
     """
     import shapely
 
     shapes: list[Any] = []
     for part in parts:
         if isinstance(part, core.Circle):
-            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_QUADRANT_SEGMENTS))
+            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_SEGMENTS_PER_QUARTER))
         elif isinstance(part, core.Polygon):
             shapes.append(shapely.Polygon(part.vertices))
         elif isinstance(part, core.Linestring):
@@ -40,7 +41,7 @@ def compound_body(parts: Sequence[Any]) -> list[float]:
 
 
 def _gyration2(ring: Any, centre: Sequence[float]) -> float:
-    """Second moment of the area in a closed ring about ``centre``, per area [m^2]."""
+    """Return the second moment of the area inside a closed ring about ``centre``, divided by the area [m^2]."""
     a = np.asarray(ring, dtype=np.float64)[:-1] - centre
     b = np.roll(a, -1, axis=0)
     cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from irsim.common.text import seconds
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
+from irsim.episodes.explanation import has_one_end, others_arrived_message
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
-from irsim.episodes.run_report import has_one_end, others_arrived
 from irsim.episodes.stuck import (
     find_circling,
     find_jammed,
@@ -28,10 +28,10 @@ from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
-from irsim.simulation.events import Event, collision_of, partner_of, passable_names
+from irsim.simulation.events import Event, is_collision_of, partner_of, passable_names
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
-from irsim.simulation.trace import Trace, joined, next_rows, present_row
+from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 
 __all__ = ["BUDGET", "SECONDS", "dry_run"]
 
@@ -108,7 +108,7 @@ def _simulate(simulation: Simulation, steps: int, seconds: float) -> tuple[Trace
         if end == math.inf:
             end = now + seconds
         size = max(1, min(2 * size, int(size * _CLOCK_PERIOD_S / max(now - begin, 1e-9))))
-    return joined(parts), late
+    return join_traces(parts), late
 
 
 def _summarise(
@@ -128,9 +128,9 @@ def _summarise(
     events, passable = env.events, passable_names(env.simulation)
     robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
     names = {scenario.objects[index].name for index in robots}
-    hits = [e for e in events if any(collision_of(e, name, passable) for name in names)]
+    hits = [e for e in events if any(is_collision_of(e, name, passable) for name in names)]
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
-    parked = [record.name for record in scenario.robots() if scenario.parked(record)]
+    parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
     held = find_jammed(env.simulation, events)
     stuck, count = _find_stuck(
         env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held
@@ -154,7 +154,7 @@ def _summarise(
                 *filter(
                     None,
                     (
-                        others_arrived(scenario, events),
+                        others_arrived_message(scenario, events),
                         jam_message(env.simulation, held),
                         exits_message(scenario, left),
                     ),

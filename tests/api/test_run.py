@@ -99,7 +99,7 @@ def test_failures_say_why(scenario: str, reason: str) -> None:
 def test_a_horizon_beyond_the_limit_is_cut_and_said() -> None:
     result = irsim.run(text=text(19, world=", time_limit: 100"), limits=Limits(steps=20))
     assert (result.steps, result.time_limit_from) == (20, "limits")
-    assert "the most steps of one run here" in str(result.reason)
+    assert "the maximum number of steps of one run here" in str(result.reason)
     assert "--steps 20" in result.reproduce
 
 

@@ -164,7 +164,7 @@ async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
     async with connected(empty, check_seconds=1) as client:
         told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": scenario}))
-    assert told.startswith("out-of-time: 1 s of computing were over")
+    assert told.startswith("out-of-time: 1 s of computing time were used up")
 
 
 @pytest.mark.usefixtures("ordinary_processes")

@@ -147,7 +147,7 @@ async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -
 async def test_time_is_limited_and_the_error_says_what_fits(empty: Path) -> None:
     async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": LONG, "max_wall_s": 5})
-    assert error_of(result).startswith("out-of-time: 5 s of computing were over after ")
+    assert error_of(result).startswith("out-of-time: 5 s of computing time were used up after ")
     assert "fewer steps" in error_of(result)
 
 
@@ -164,7 +164,7 @@ async def test_a_longer_horizon_is_cut_and_said(empty: Path) -> None:
     async with connected(empty) as client:
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": slow}))
     assert (data["steps"], data["time_limit_from"]) == (5000, "limits")
-    assert "the most steps of one run here" in data["reason"]
+    assert "the maximum number of steps of one run here" in data["reason"]
 
 
 async def test_memory_is_limited(empty: Path) -> None:

@@ -259,7 +259,7 @@ def test_limits_of_the_system_are_set() -> None:
     if sys.platform == "linux":
         assert 0 < memory <= limits.memory
     assert (seconds, written, core) == (7, limits.written, 0)
-    assert 0 < files <= job._FILES
+    assert 0 < files <= job._MAX_FILES
     assert resource.getrlimit(resource.RLIMIT_CPU)[0] != 7
 
 

@@ -173,5 +173,5 @@ def test_starts_and_goals_of_any_form() -> None:
     ]
     assert paths[0] is not None
     assert np.array_equal(paths[0], paths[1])
-    with pytest.raises(ValueError, match="two numbers"):
+    with pytest.raises(ValueError, match="two finite numbers"):
         AStarPlanner(env_map).planning([1], [4, 4])

@@ -14,7 +14,7 @@ import irsim._core as core
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
-from irsim.validation.feasibility.gaps import barriers_of
+from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.scenes import FAR, Scene
 
 ROBOT = {"kinematics": {"name": "diff"}, "behavior": {"name": "follow"}, "state": [5, 5, 0]}
@@ -169,7 +169,7 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
         n = 500
         clearance = core.Clearance(core.Terrain(FAR, things), ((0.0, 0.0), (10 / n, 10 / n), n, n))
         half = math.sqrt(0.5) * 10 / n
-        barriers = barriers_of(scene, most=20.0, open_edge=open_edge)
+        barriers = find_gaps(scene, most=20.0, open_edge=open_edge)
         assert barriers is not None
         distance = clearance.distance
         ways = []

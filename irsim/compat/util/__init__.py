@@ -1,4 +1,4 @@
-"""Helpers of scripts: angles, frames, polygons, lists, random numbers."""
+"""Helpers for scripts, with the names of IR-SIM 2.12: angles, frames, polygons, lists, random numbers."""
 
 from irsim.compat.util import random, shapes, util, values
 from irsim.compat.util.random import random_uniform, rng, set_seed

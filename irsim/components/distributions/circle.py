@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from irsim.common.angles import wrap
 from irsim.components.distributions._options import DistributionOptions, WorldExtent
-from irsim.options.angles import wrap
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.options.units import Meters
 from irsim.options.vectors import Pose

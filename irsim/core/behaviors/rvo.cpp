@@ -23,7 +23,7 @@ Vec2 apex_of(Avoidance mode, const Ego& ego, const Disc& disc, const Cone& cone,
   return on_the_right ? middle - cone.right * shift : disc.velocity + cone.right * shift;
 }
 
-void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, VelocityObstacles& obstacles) {
+void add_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, VelocityObstacles& obstacles) {
   const Vec2 way = disc.centre - ego.position;
   const double radius = ego.radius + disc.radius + kPadding, distance = norm(way);
   const double sine = radius / std::max(distance, radius), cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
@@ -36,7 +36,7 @@ void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, Vel
 }
 
 /// Add the cone between the ends of a segment, widened by the radius of the ego at both.
-void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
+void add_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
   a = a - ego.position, b = b - ego.position;
   const double length = norm(b - a);
   if (length < kMinLength) return;
@@ -63,7 +63,7 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
-      avoid_disc(options, ego, disc, obstacles);
+      add_disc(options, ego, disc, obstacles);
     } else if (!decision.world.unobstructed[disc.object]) {
       bar(disc.centre, disc.centre, room + disc.radius);
     }
@@ -71,13 +71,13 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
   const double fastest = norm({options.vxmax, options.vymax});
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
   if (ego.route == nullptr) {
-    for_static_lines(decision, ego, kInfinity, [&](const Wall& line) { avoid_line(ego, line.a, line.b, obstacles); });
+    for_static_lines(decision, ego, kInfinity, [&](const Wall& line) { add_line(ego, line.a, line.b, obstacles); });
   } else {
     for_static_lines(decision, ego, reach, [&](const Wall& line) {
       if (!decision.world.unobstructed[line.object]) bar(line.a, line.b, room);
     });
   }
-  for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { avoid_line(ego, a, b, obstacles); });
+  for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });
   for_facing_walls(decision, ego, reach, [&](const Wall& wall) { bar(wall.a, wall.b, room); });
 }
 

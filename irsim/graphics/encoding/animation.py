@@ -17,13 +17,14 @@ from PIL import Image
 
 from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import GifWriter
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, VIDEO_SUFFIXES
 from irsim.graphics.encoding.pixels import Pixels, fit, from_image
 from irsim.graphics.encoding.png import ApngWriter
-from irsim.graphics.encoding.video import VIDEO_SUFFIXES, VideoWriter
+from irsim.graphics.encoding.video import VideoWriter
 
 __all__ = ["ANIMATION_SUFFIXES", "AnimationOptions", "FrameBuffer", "FrameWriter", "write_frames"]
 
-ANIMATION_SUFFIXES = (".gif", ".apng", ".png", *VIDEO_SUFFIXES)
+ANIMATION_SUFFIXES = (".png", *MOVING_SUFFIXES)
 """File suffixes of animations."""
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-__all__ = ["PICTURE_FORMATS", "picture_path"]
+__all__ = ["MOVING_SUFFIXES", "PICTURE_FORMATS", "VIDEO_SUFFIXES", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
 """File formats of figures."""
+VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
+"""Suffixes of files that a video encoder writes."""
+MOVING_SUFFIXES = (".gif", ".apng", *VIDEO_SUFFIXES)
+"""Suffixes that always mean an animation."""
 
 
 def picture_path(

@@ -11,9 +11,8 @@ from typing import BinaryIO, cast
 
 from irsim.graphics.encoding.pixels import Pixels, even
 
-__all__ = ["VIDEO_OPTIONS", "VIDEO_SUFFIXES", "VideoWriter"]
+__all__ = ["VIDEO_OPTIONS", "VideoWriter"]
 
-VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 VIDEO_OPTIONS = ("codec", "quality", "bitrate", "pixelformat", "input_params", "output_params")
 """Options of the encoder besides ``fps``."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from irsim.common.text import listed
 from irsim.diagnostics.errors import PlacementError
 from irsim.results.diff import KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.read import Reading
@@ -57,13 +58,11 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
     if not written:
         text = "no key differs but for the order" if moved else "no key differs"
     else:
-        named = ", ".join(place(change.change, change.path) for change in written[:_MAX_NAMED])
-        more = f" and {len(written) - _MAX_NAMED} more" if len(written) > _MAX_NAMED else ""
-        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}{more}"
+        named = listed([place(change.change, change.path) for change in written], _MAX_NAMED)
+        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}"
     if moved:
-        places = ", ".join(f"{change.before} is now {change.after}" for change in moved[:_MAX_NAMED])
+        places = listed([f"{change.before} is now {change.after}" for change in moved], _MAX_NAMED)
         text += f"{'; the order differs' * bool(written)}: {places}"
-        text += f" and {len(moved) - _MAX_NAMED} more" if len(moved) > _MAX_NAMED else ""
         if any(change.path.startswith(("robot[", "obstacle[")) and change.path.count("[") == 1 for change in moved):
             text += ", which changes ids and labels"
         if any(change.path.startswith("robot[") and change.path.count("[") == 1 for change in moved):
@@ -72,9 +71,7 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
         text += f"; the worlds are not compared: {why}"
     else:
         further = list(dict.fromkeys(change.object or "the world" for change in world if not change.direct))
-        named = ", ".join(further[:_MAX_NAMED]) + (
-            f" and {len(further) - _MAX_NAMED} more" if len(further) > _MAX_NAMED else ""
-        )
+        named = listed(further, _MAX_NAMED)
         if further:
             text += f"; which also changes {named}" if keys else f"; in the world: {named}"
         elif not world:

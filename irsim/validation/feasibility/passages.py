@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import irsim._core as core
 from irsim.scenario.checks import Context
 from irsim.validation.feasibility.clearance_grid import Gap, Point
-from irsim.validation.feasibility.gaps import Barriers, barriers_of
+from irsim.validation.feasibility.gaps import Gaps, find_gaps
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.scenes import Scene
 
@@ -32,7 +32,7 @@ class Passages:
             whether that gap is too narrow for the body. Paths that were not examined are missing.
     """
 
-    barriers: Barriers
+    barriers: Gaps
     found: dict[tuple[int, int], tuple[Gap | None, bool]]
 
 
@@ -55,8 +55,8 @@ def passages_of(
     key = f"barriers {max(m.radius for m in movers)}"
     if key not in scene.owner.kept:
         most = 2 * ease * max(m.radius for m in movers)
-        scene.owner.kept[key] = barriers_of(scene.owner, most=most, open_edge=open_edge)
-    barriers: Barriers | None = scene.owner.kept[key]
+        scene.owner.kept[key] = find_gaps(scene.owner, most=most, open_edge=open_edge)
+    barriers: Gaps | None = scene.owner.kept[key]
     if barriers is None:
         return None
     ways: list[tuple[Point, Point]] = []
@@ -68,7 +68,7 @@ def passages_of(
         start = mover.centre(scene.pose[mover.record.id])
         for index, goal in enumerate(scene.goals[mover.record.id]):
             places, radius = _arrival_places(scene, mover, (goal[0], goal[1]))
-            if (mover.record.id, index) in blocked_goals or len(ways) + len(places) > barriers.most_ways:
+            if (mover.record.id, index) in blocked_goals or len(ways) + len(places) > barriers.max_paths:
                 break
             if not places:  # the arrival region is too large to sample
                 found[mover.record.id, index] = None, False

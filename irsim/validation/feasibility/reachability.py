@@ -18,7 +18,7 @@ from irsim.validation.feasibility.clearance_grid import (
     reachable_place,
     with_gaps_closed,
 )
-from irsim.validation.feasibility.gaps import barriers_of
+from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.passages import Passages, passages_of
 from irsim.validation.feasibility.planner_check import missed_way
@@ -229,7 +229,7 @@ def _check_passages(
     if closed:
         outside = False
         if context.scenario.world.boundary == "none":
-            inner = barriers_of(scene.owner, most=2 * mover.radius, open_edge=False)
+            inner = find_gaps(scene.owner, most=2 * mover.radius, open_edge=False)
             outside = inner is not None and inner.openings([(start, to)])[0].width >= 2 * mover.radius
         _add_unreachable(context, scene, mover, index, found, None, outside, tally)
         return False

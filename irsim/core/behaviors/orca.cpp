@@ -1,4 +1,4 @@
-// The behavior `orca`: for each member the half-planes of what it avoids, and the best velocity within them.
+// Half-planes of everything that an object avoids, and the best velocity within them.
 #include "behaviors/orca.hpp"
 
 #include <algorithm>
@@ -111,7 +111,7 @@ bool back_off(const AckerOptions& car, const World& world, const State& state, i
 }
 
 /// Whether the behavior of `viewer` targets the role of an object of another group.
-bool is_shown(const World& world, int viewer, int other) {
+bool targets_role(const World& world, int viewer, int other) {
   const int wanted = world.target_roles[viewer];
   return wanted == 0 || (wanted == 1) == (world.is_robot[other] != 0);
 }
@@ -129,11 +129,11 @@ void avoid_obstacles(double horizon, const World& world, const Obstacles& obstac
     if (k >= edges) {
       const StaticDisc& disc = obstacles.discs[k - edges];
       const double gap = norm(disc.centre - agent.position) - disc.radius;
-      if (gap < reach && is_shown(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
+      if (gap < reach && targets_role(world, object, disc.object)) all.neighbors.push_back({gap, k - edges});
       return;
     }
     const Edge& edge = obstacles.edges[k];
-    if (!edge.faces(agent.position) || (edge.object >= 0 && !is_shown(world, object, edge.object))) return;
+    if (!edge.faces(agent.position) || (edge.object >= 0 && !targets_role(world, object, edge.object))) return;
     const Vec2 nearest = nearest_on_segment(edge.left.point, edge.right.point, agent.position);
     const double distance2 = squared(nearest - agent.position);
     if (distance2 < reach * reach) all.edges.push_back({distance2, k});
@@ -165,13 +165,13 @@ void avoid_movers(const OrcaOptions& options, const World& world, int self, Orca
   if (most <= 0) return;
   if (static_cast<int>(all.neighbors.size()) < most) all.neighbors.resize(most);
   const auto seen = [&](int m) {
-    return m != self && (all.member_of[m] == group || is_shown(world, object, world.moving[m]));
+    return m != self && (all.member_of[m] == group || targets_role(world, object, world.moving[m]));
   };
   const int count = all.nearest.find(agent.position, options.neighborDist, most, seen, all.neighbors.data());
   for (int k = 0; k < count; ++k) {
     const int m = all.neighbors[k].index;
     // An object with a given command, a stopped one, or one that does not see this object does not give way.
-    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || is_shown(world, world.moving[m], object));
+    const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
     all.planes.push_back(
         avoid_agent(agent, all.movers[m], mutual ? 0.5 : 1.0, options.timeHorizon, world.step_time, self < m));
   }
