@@ -38,7 +38,7 @@ RULES = {
     "workspace: outputs only below .irsim, each file all or nothing, through no link": (
         "mcp/test_security.py::test_tools_write_nothing_but_records",
         "mcp/test_runs.py::test_links_out_of_the_workspace_are_not_followed",
-        "mcp/test_benchmark.py::test_links_are_not_followed",
+        "mcp/test_jobs.py::test_links_are_not_followed",
         "runs/test_store.py::test_nothing_is_written_or_read_through_links",
         "runs/test_store.py::test_what_a_killed_process_leaves_is_whole",
         "mcp/test_write.py::test_paths",
@@ -77,8 +77,8 @@ RULES = {
         "mcp/test_lifetime.py::test_end_of_input_ends_server_and_worker",
         "mcp/test_lifetime.py::test_a_server_that_is_killed_takes_its_workers_along",
         "mcp/test_lifetime.py::test_cancelling_a_call_ends_its_worker",
-        "mcp/test_benchmark.py::test_a_job_that_is_cancelled_leaves_no_process",
-        "mcp/test_benchmark.py::test_a_server_that_ends_leaves_no_process_and_all_that_was_done",
+        "mcp/test_jobs.py::test_a_job_that_is_cancelled_leaves_no_process",
+        "mcp/test_jobs.py::test_a_server_that_ends_leaves_no_process_and_all_that_was_done",
         "mcp/test_http.py::test_it_ends_soon_with_a_run_under_way_and_leaves_nobody",
     ),
     "process: the server itself loads no engine": (
@@ -87,7 +87,7 @@ RULES = {
     ),
     "quotas: workers and jobs, the next one is told to come back": (
         "mcp/test_lifetime.py::test_more_calls_than_workers_are_told_to_come_back",
-        "mcp/test_benchmark.py::test_two_jobs_at_a_time",
+        "mcp/test_jobs.py::test_two_jobs_at_a_time",
     ),
     "quotas: robots, objects, steps times objects, raised by options": (
         "mcp/test_attacks.py::test_scenarios",

@@ -1,0 +1,261 @@
+"""Jobs of ``benchmark``: they go on, are cancelled, fail, end with the server, and leave no process."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import anyio
+import pytest
+from mcp import Client
+
+import irsim
+from tests.mcp.conftest import CRASH, LONG, ROOM, as_process, connected, data_of, error_of, text_of
+from tests.mcp.test_benchmark import MANY, RANDOM
+from tests.warm import SERVERS
+
+pytestmark = pytest.mark.anyio
+
+
+async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [RANDOM], "seeds": 60, "wait_s": 0}))
+        assert begun["status"] == "running"
+        assert begun["next"] == f"get_job job_id={begun['job_id']}"
+        found = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "wait_s": 50}))
+        assert (found["status"], found["done"]) == ("finished", 60)
+        again = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"]}))
+        assert again == found
+
+
+@pytest.mark.usefixtures("ordinary_processes")
+async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 2}))
+        assert begun["status"] == "running"
+        assert descendants(os.getpid())
+        ended = data_of(await client.call_tool("get_job", {"job_id": begun["job_id"], "cancel": True}))
+        assert ended["status"] == "cancelled"
+        assert "call benchmark again" in ended["next"]
+        await gone(os.getpid())
+
+
+async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 0}
+        job = data_of(await client.call_tool("benchmark", asked))["job_id"]
+        with anyio.fail_after(30):
+            while not kept_of(workspace, job):
+                await anyio.sleep(0.1)
+        result = await client.call_tool("get_job", {"job_id": job, "cancel": True})
+        ended = data_of(result)
+        assert ended["status"] == "cancelled"
+        assert 0 < ended["done"] < ended["total"] == 6
+        assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+        assert ended["rows"][0]["success"][0] == 1
+        assert f"the {ended['done']} episodes that were done; call benchmark again for all" in ended["next"]
+        assert text_of(result).startswith(f"cancelled: {ended['done']} episodes, ")
+        table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
+        assert (table["status"], table["total"]) == ("cancelled", ended["done"])
+        assert (workspace / ended["artifact"]).is_file()
+
+
+async def test_cancelling_throws_no_episode_away(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
+        told = [await done_of(client, job, 30)]
+        ended = data_of(await client.call_tool("get_job", {"job_id": job, "cancel": True}))
+        told.append(ended["done"])
+        told.append(await done_of(client, job))
+    assert ended["status"] == "cancelled"
+    assert told == sorted(told)
+    assert told[1] == told[2]
+    assert sum(row["episodes"] for row in ended["rows"]) == ended["done"] < ended["total"] == 1800
+    kept = json.loads((workspace / ended["artifact"]).read_text())["episodes"]
+    whole = irsim.benchmark(MANY["scenarios"][0], "dash", 3)
+    assert [one["metrics"] for one in kept[:3]] == [one.metrics for one in whole.episodes]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+@pytest.mark.usefixtures("ordinary_processes")
+async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
+        told = await done_of(client, job, 30)
+        for pid in descendants(os.getpid()):
+            os.kill(pid, signal.SIGKILL)
+        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
+        assert ended["status"] == "interrupted"
+        assert told <= ended["done"] < 1800
+        assert ended["next"].startswith("the process that did the work ended without a result. This is of the ")
+        table = data_of(await client.call_tool("inspect_run", {"run_id": job, "limit": 5}))
+        assert table["total"] == ended["done"]
+        await gone(os.getpid())
+
+
+async def test_a_job_that_fails_half_way_says_why_and_keeps_the_episodes_before(workspace: Path) -> None:
+    crowd = RANDOM.replace("number: 3", "number: 9").replace("radius: 0.2", "radius: 0.37")
+    crowd = crowd.replace("[1, 1, -3]", "[0.5, 0.5, -3]").replace("[7, 7, 3]", "[3.5, 3.5, 3]")
+    async with connected(workspace) as client:
+        ended = data_of(await client.call_tool("benchmark", {"scenarios": [crowd], "seeds": 60}))
+    assert ended["status"] == "interrupted"
+    assert 0 < ended["done"] == ended["rows"][0]["episodes"] < 60
+    assert ended["next"].startswith("no room for 'robot_8' with seed ")
+    assert "fewer seeds" not in ended["next"]
+
+
+@pytest.mark.slow
+async def test_a_job_whose_time_is_over_keeps_the_episodes_that_were_done(workspace: Path) -> None:
+    async with connected(workspace, job_seconds=12) as client:
+        asked = {"scenarios": [ROOM, LONG], "behaviors": ["as-written", "dash"], "seeds": 2, "wait_s": 50}
+        result = await client.call_tool("benchmark", asked)
+        ended = data_of(result)
+        assert ended["status"] == "interrupted"
+        assert 0 < ended["done"] < ended["total"]
+        assert ended["next"].startswith("12 s of computing time were used up. This is the result of the ")
+        assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+
+
+async def test_two_jobs_at_a_time(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        jobs = [
+            data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 2, "wait_s": 0}))["job_id"]
+            for _ in range(2)
+        ]
+        told = error_of(await client.call_tool("benchmark", {"scenarios": [LONG], "wait_s": 0}))
+        assert told.startswith("busy: 2 jobs are running")
+        assert all(job in told for job in jobs)
+        for job in jobs:
+            await client.call_tool("get_job", {"job_id": job, "cancel": True})
+        begun = data_of(await client.call_tool("benchmark", {"scenarios": [ROOM], "wait_s": 50}))
+        assert begun["status"] == "finished"
+
+
+async def test_jobs_that_are_not_there(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        assert error_of(await client.call_tool("get_job", {"job_id": "benchmark-123456"})).startswith("unknown-job")
+        done = data_of(await client.call_tool("benchmark", {"scenarios": [CRASH]}))
+        told = error_of(await client.call_tool("get_job", {"job_id": "../../etc"}))
+        assert f"recent ones are {done['job_id']}" in told
+
+
+@pytest.mark.parametrize("link", [".irsim", ".irsim/jobs"])
+async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (workspace / link).parent.mkdir(exist_ok=True)
+    (workspace / link).symlink_to(tmp_path / "elsewhere")
+    async with connected(workspace) as client:
+        told = error_of(await client.call_tool("benchmark", {"scenarios": [ROOM]}))
+    assert told.startswith("path-outside-workspace")
+    assert not list((tmp_path / "elsewhere").iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.usefixtures("ordinary_processes")
+@pytest.mark.parametrize("how", ["end of input", "kill -9"])
+@pytest.mark.parametrize("world", ["long", "short"])
+async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
+    workspace: Path, how: str, world: str
+) -> None:
+    command = as_process(workspace)
+    server = subprocess.Popen([command.command, *command.args], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    try:
+        asked = {"scenarios": [LONG], "seeds": 4, "wait_s": 0} if world == "long" else MANY
+        call = {"name": "benchmark", "arguments": asked}
+        hello = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "t", "version": "0"}}
+        for message in (
+            {"id": 1, "method": "initialize", "params": hello},
+            {"method": "notifications/initialized"},
+            {"id": 2, "method": "tools/call", "params": call},
+        ):
+            server.stdin.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+        server.stdin.flush()
+        answers = [json.loads(server.stdout.readline()) for _ in range(2)]
+        job = answers[1]["result"]["structuredContent"]["job_id"]
+        until = time.monotonic() + 10
+        while not descendants(server.pid) and time.monotonic() < until:
+            await anyio.sleep(0.1)
+        if world == "long":
+            await anyio.sleep(2.0)
+        else:
+            with anyio.fail_after(30):
+                while not kept_of(workspace, job):
+                    await anyio.sleep(0.05)
+        children = descendants(server.pid)
+        assert children
+        told = kept_of(workspace, job)
+        if how == "kill -9":
+            server.send_signal(signal.SIGKILL)
+        else:
+            server.stdin.close()
+        server.wait(10)
+        until = time.monotonic() + 5
+        while any(alive(child) for child in children) and time.monotonic() < until:
+            await anyio.sleep(0.1)
+        assert not [child for child in children if alive(child)]
+    finally:
+        server.kill()
+        server.wait()
+        server.stdout.close()
+        if not server.stdin.closed:
+            server.stdin.close()
+    async with Client(as_process(workspace)) as client:
+        ended = data_of(await client.call_tool("get_job", {"job_id": job}))
+    assert ended["status"] == "interrupted"
+    assert (world == "short") == (told > 0)
+    assert told <= ended["done"] < ended["total"]
+    assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
+
+
+def kept_of(workspace: Path, job: str) -> int:
+    """Episodes that a job has done so far, as its files say it."""
+    return int(json.loads((workspace / ".irsim" / "jobs" / job / "run.json").read_text())["done"])
+
+
+async def done_of(client: Client, job: str, least: int = 0) -> int:
+    """Episodes that a job has done, as the server says it, once there are some."""
+    with anyio.fail_after(30):
+        while True:
+            done = int(data_of(await client.call_tool("get_job", {"job_id": job, "wait_s": 0}))["done"])
+            if done >= least:
+                return done
+            await anyio.sleep(0.05)
+
+
+def descendants(pid: int) -> list[int]:
+    """Processes below one that are at work."""
+    if not sys.platform.startswith("linux"):
+        pytest.skip("needs /proc")
+    parents = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                fields = (entry / "stat").read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if fields[0] != "Z":
+                parents[int(entry.name)] = int(fields[1])
+    found, level = [], [pid]
+    while level:
+        level = [child for child, parent in parents.items() if parent in level and child not in SERVERS]
+        found += level
+    return found
+
+
+def alive(pid: int) -> bool:
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+async def gone(pid: int) -> None:
+    until = time.monotonic() + 5
+    while descendants(pid) and time.monotonic() < until:
+        await anyio.sleep(0.1)
+    assert not descendants(pid)

@@ -1,0 +1,185 @@
+"""What the survey finds about ways: too little time, dead ends, walls, and how long it takes to find it."""
+
+from __future__ import annotations
+
+import re
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from irsim.env import Env
+from irsim.scenario.read import read
+from irsim.validation.feasibility.check import feasibility_findings
+from tests.survey.test_survey import DISC, ROBOT, ROOT, codes, door, found, one, scenario
+
+
+def test_too_little_time() -> None:
+    item = one(scenario(ROBOT, time_limit=5), "time-too-short")
+    assert item.path == ("world", "time_limit")
+    assert item.severity == "warning"
+    assert one(scenario(ROBOT, time_limit=8.2), "time-too-short").severity == "hint"
+    assert codes(scenario(ROBOT, time_limit=12)) == []
+    loop = {**ROBOT, "behavior": {"name": "rvo", "loop": True}}
+    assert codes(scenario(loop, time_limit=5)) == []
+
+
+@pytest.mark.parametrize("behavior", ["dash", "rvo", "orca", "sfm"])
+def test_nobody_hurries_backwards(behavior: str) -> None:
+    """The limit backwards stays at 1 m/s by default, and helps none of the behaviors forwards."""
+    robot = {**ROBOT, "behavior": {"name": behavior}, "vel_max": [0.1, 1]}
+    item = one(scenario(robot, time_limit=20), "time-too-short")
+    assert item.severity == "warning"
+    assert "at 0.1 m/s" in item.message
+    assert "time-too-short" not in codes(scenario(robot, time_limit=200))
+    env = Env(read(scenario(robot, time_limit=20)).scenario, headless=True, seed=0)
+    env.rollout(200)
+    assert not env.robot.arrive
+    assert 1.5 < env.robot.position[0, 0] - 2 <= 2.01
+    env.end(ending_time=0.0)
+
+
+def test_the_way_round_takes_longer_than_the_line() -> None:
+    wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 8.6}, "state": [6, 4.3, 0]}
+    follow = {**ROBOT, "behavior": {"name": "follow"}}
+    assert codes(scenario(follow, wall, time_limit=9)) == ["time-too-short"]
+    assert "time-too-short" not in codes(scenario(follow, wall, time_limit=14))
+    assert codes(scenario(follow, time_limit=9)) == []
+
+
+def test_dashing_into_an_obstacle() -> None:
+    post = {"shape": {"name": "circle", "radius": 0.5}, "state": [6, 5, 0]}
+    dash = {**ROBOT, "behavior": {"name": "dash"}}
+    assert codes(scenario(dash, post)) == ["dash-into-obstacle"]
+    assert codes(scenario(dash, {**post, "state": [6, 7, 0]})) == []
+    assert codes(scenario(ROBOT, post)) == []
+
+
+def test_a_dead_end_for_behaviors_that_plan_nothing() -> None:
+    outline = [[3, 1.2], [8, 1.2], [8, 8.8], [3, 8.8]]
+    trap = {"shape": {"name": "linestring", "vertices": outline}, "state": [0, 0, 0]}
+    assert codes(scenario({**ROBOT, "state": [5, 5, 0]}, trap)) == ["needs-planning"]
+    assert codes(scenario({**ROBOT, "state": [5, 5, 0], "behavior": {"name": "follow"}}, trap)) == []
+
+
+def test_wanderers_whose_goals_lie_in_walls() -> None:
+    block = {"shape": {"name": "rectangle", "length": 6, "width": 6}, "state": [8, 5, 0]}
+    wander = {**DISC, "state": [2, 5, 0], "behavior": {"name": "rvo", "wander": True}}
+    item = one(scenario(wander, block), "wander-blocked")
+    share = int(re.findall(r"about (\d+)%", item.message)[0])
+    assert share == pytest.approx(100 * 6.4 * 6.4 / 120, abs=8)
+    inside = {**wander, "behavior": {"name": "rvo", "wander": True, "range_low": [1, 1], "range_high": [4, 9]}}
+    assert codes(scenario(inside, block)) == []
+
+
+def test_one_finding_for_many_robots() -> None:
+    data = door(0.5, boundary="walls")
+    states = [[1 + 0.9 * (k % 4), 1 + 0.9 * (k // 4), 0] for k in range(20)]
+    data["robot"] = [{**DISC, "number": 20, "state": states, "goal": [[11 - s[0] + 1, s[1]] for s in states]}]
+    assert "likewise 19 more" in one(data, "goal-unreachable").message
+
+
+def test_the_same_findings_every_time() -> None:
+    path = ROOT / "templates/random-polygons/scenario.yaml"
+    assert found(path) == found(path)
+
+
+PLACES = np.random.default_rng(5)
+
+
+def places(number: int, size: float) -> list[list[float]]:
+    return [[float(x), float(y), 0.0] for x, y in PLACES.uniform(1, size - 1, (number, 2))]
+
+
+def serpentine() -> Any:
+    cells = np.zeros((4000, 4000), dtype=np.uint8)
+    for k in range(60):
+        cells[k * 66 : k * 66 + 4, (200 if k % 2 else 0) : (4000 if k % 2 else 3800)] = 100
+    return cells
+
+
+LARGE = {
+    "5000 obstacles, 100 robots": lambda: {
+        "world": {"width": 200, "height": 200},
+        "robot": [{**DISC, "number": 100, "state": places(100, 200), "goal": [p[:2] for p in places(100, 200)]}],
+        "obstacle": [{"number": 5000, "state": places(5000, 200), "shape": {"name": "circle"}}],
+    },
+    "5000 robots at random": lambda: {
+        "world": {"width": 400, "height": 400},
+        "robot": [{**DISC, "number": 5000, "distribution": {"name": "random"}}],
+    },
+    "1000 robots in a crowd": lambda: {
+        "world": {"width": 50, "height": 50},
+        "robot": [{**DISC, "number": 1000, "distribution": {"name": "random", "min_distance": 1.11}}],
+    },
+    "16 million cells": lambda: {
+        "world": {"width": 200, "height": 200, "obstacle_map": serpentine()},
+        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
+    },
+    "16 million random cells": lambda: {
+        "world": {"width": 200, "height": 200,
+                  "obstacle_map": np.random.default_rng(1).integers(0, 53, (4000, 4000), dtype=np.uint8)},
+        "robot": [{**DISC, "state": [1, 199, 0], "goal": [199, 100]}],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LARGE)
+def test_it_stays_quick(name: str) -> None:
+    """0.3 s more than reading alone; ten times that here, for slow machines with other work."""
+    data = LARGE[name]()
+    before = time.process_time()
+    read(data, strict=True)
+    middle = time.process_time()
+    read(data, strict=True, survey=feasibility_findings)
+    assert time.process_time() - middle < (middle - before) + 3.0
+
+
+@pytest.mark.parametrize("behavior", ["rvo", "sfm", "orca"])
+def test_a_flat_wall_stops_who_plans_no_way(behavior: str) -> None:
+    """Where the goal lies straight behind the wall: the engine says the same."""
+    robot = {**ROBOT, "behavior": {"name": behavior}}
+    for middle, stuck in ((5.0, True), (7.2, False)):
+        wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 4}, "state": [6, middle, 0]}
+        data = scenario(robot, wall)
+        told = [d for d in found(data) if d.code == "needs-planning"]
+        assert bool(told) is stuck
+        assert not told or "(5.90, 5.00)" in told[0].message
+        env = Env(read(data).scenario, headless=True, seed=0)
+        for _ in range(400):
+            env.step()
+        assert env.robot.arrive != stuck or behavior == "rvo"
+        env.end()
+
+
+def test_before_a_wall_dash_is_told_to_follow() -> None:
+    dash = {**ROBOT, "behavior": {"name": "dash"}}
+    wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 4}, "state": [6, 5, 0]}
+    post = {"shape": {"name": "circle", "radius": 0.3}, "state": [6, 5, 0]}
+    assert "stop before a flat wall" in str(one(scenario(dash, wall), "dash-into-obstacle").fix)
+    assert "get around single round obstacles" in str(one(scenario(dash, post), "dash-into-obstacle").fix)
+
+
+def test_speeding_up_takes_time() -> None:
+    robot = {**ROBOT, "behavior": {"name": "dash"}, "acce": [0.05, 1]}
+    item = one(scenario(robot, time_limit=12), "time-too-short")
+    assert "needs at least 17.8 s" in item.message
+    assert "larger acce" in str(item.fix)
+    assert codes(scenario(robot, time_limit=60)) == []
+
+
+def test_walkers_behind_a_wall_are_a_hint() -> None:
+    walker = {"kinematics": {"name": "omni"}, "shape": {"name": "circle", "radius": 0.3}, "behavior": {"name": "sfm"}}
+    wall = {"shape": {"name": "rectangle", "length": 12, "width": 0.2}, "state": [6, 3, 0]}
+    data = scenario(ROBOT, {**walker, "state": [3, 8, 0], "goal": [3, 1]}, wall, boundary="walls")
+    item = one(data, "goal-unreachable")
+    assert (item.severity, item.path) == ("hint", ("obstacle", 0, "goal"))
+
+
+def test_in_random_scenes_no_single_place_is_named() -> None:
+    boxes = {"number": 30, "shape": {"name": "circle", "radius": 0.4}, "distribution": {"name": "random"}}
+    item = one(scenario(ROBOT, boxes), "goal-blocked")
+    assert "'range_low' and 'range_high'" in str(item.fix)
+    assert "is free" not in str(item.fix)
