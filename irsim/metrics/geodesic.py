@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Geodesics", "inscribed_radius"]
 
-Floats = NDArray[np.float64]
 _MAX_CELL_M = 0.05
 """Largest cell [m]; cells are half the radius of the disc where that is less."""
 _MAX_CELLS = 250_000

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.palette import Color
-from irsim.graphics.scene.scene import Floats, Label, Line, Mark, Scene, Stroke
+from irsim.graphics.scene.scene import Label, Line, Mark, Scene, Stroke
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.objects.views import views
 from irsim.rendering.clearance_map import FreeSpace

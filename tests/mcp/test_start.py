@@ -91,7 +91,7 @@ def test_version_and_help() -> None:
     ("arguments", "said"),
     [
         (("--workspace", "/no/such/folder"), "there is no folder /no/such/folder"),
-        (("--max-robots", "0"), "0 is not positive"),
+        (("--max-robots", "0"), "must be positive, got 0"),
         (("--max-work", "many"), "invalid"),
         (("--port", "80"), "unrecognized arguments"),
         (("--http", "x"), "x is not [HOST:]PORT"),
