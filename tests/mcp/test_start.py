@@ -135,4 +135,4 @@ def test_limits_can_be_raised_and_lowered(workspace: Path) -> None:
     answers = [json.loads(process.stdout.readline()) for _ in range(2)]
     process.communicate()
     issues = answers[1]["result"]["structuredContent"]["issues"]
-    assert "at most 2 are read" in issues[0]["message"]
+    assert "the limit is 2 robots" in issues[0]["message"]
