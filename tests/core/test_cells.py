@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core.test_intersects import ORIGIN, POSE, placed, shape
 from tests.core.worlds import circle, command, lidar, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 CELLS = st.integers(1, 12)
 
@@ -39,7 +40,7 @@ def meets(grid: core.OccupancyGrid, parts, pose) -> bool:
     return found
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(grid=grids(), body=st.lists(shape(), min_size=1, max_size=3), pose=POSE)
 def test_any_body_meets_the_cells_it_overlaps(grid, body, pose) -> None:
     cells = shapely.union_all(boxes(grid))
@@ -52,7 +53,7 @@ def test_any_body_meets_the_cells_it_overlaps(grid, body, pose) -> None:
     assert meets(grid, [p for p, *_ in body], pose) == expected
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(grid=grids(aligned=True), body=shape())
 def test_touching_counts(grid, body) -> None:
     part, geometry, radius = body
@@ -90,7 +91,7 @@ def nearest_of(grid: core.OccupancyGrid, origin, direction, limit: float) -> flo
     return float(np.hypot(*(points - origin).T).min())
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(
     grid=grids(),
     x=st.floats(-8, 12),
@@ -113,7 +114,7 @@ def test_beams_stop_at_the_outline(grid, x, y, angle) -> None:
     assert point.distance(corners) < 1e-7
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(grid=grids(aligned=True), line=CELLS, start=st.integers(-2, 13), heading=st.sampled_from(range(4)))
 def test_beams_along_a_grid_line_meet_the_cells_on_both_sides(grid, line, start, heading) -> None:
     direction = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))[heading]
@@ -151,7 +152,7 @@ def test_from_inside_the_way_out_is_seen() -> None:
     assert grid.cast((math.nan, 0.5), (1.0, 0.0), 10.0) == math.inf
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(grid=grids())
 def test_outline_is_the_boundary_of_the_union(grid) -> None:
     rings = grid.outline()

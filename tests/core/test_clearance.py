@@ -14,6 +14,7 @@ import irsim._core as core
 from tests.core.test_cells import boxes, grids
 from tests.core.test_intersects import ORIGIN, POSE, placed, shape
 from tests.core.worlds import circle, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 ROBOT, HUMAN, STATIC, IGNORED = range(4)
 
@@ -28,7 +29,7 @@ def between(a, pose_a, b, pose_b) -> float:
     return float(distance[0, 0, 0])
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
 def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
     gap = placed(a[1], pose_a).distance(placed(b[1], pose_b)) - a[2] - b[2]
@@ -54,7 +55,7 @@ def test_a_compound_is_as_near_as_its_nearest_part(a, b, way, turn) -> None:
     assert between([p for p, *_ in a], ORIGIN, [p for p, *_ in b], pose) == pytest.approx(gap, abs=1e-9)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(grid=grids(), body=shape(), pose=POSE)
 def test_as_far_from_a_map_as_from_its_nearest_cell(grid, body, pose) -> None:
     part, geometry, radius = body

@@ -12,6 +12,7 @@ from shapely import affinity
 
 import irsim._core as core
 from tests.core.worlds import circle, line, polygon, rectangle
+from tests.effort import examples
 
 ORIGIN = (0.0, 0.0, 0.0)
 GRID = st.integers(-4, 4).map(float)  # a coarse grid, so that things touch exactly
@@ -38,7 +39,7 @@ def placed(geometry, pose):
     return affinity.translate(affinity.rotate(geometry, pose[2], origin=(0, 0), use_radians=True), pose[0], pose[1])
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(a=st.lists(shape(), min_size=1, max_size=3), b=st.lists(shape(), min_size=1, max_size=2))
 def test_exact_where_they_stand(a, b) -> None:
     gaps = [ga.distance(gb) - ra - rb for _, ga, ra in a for _, gb, rb in b]
@@ -52,7 +53,7 @@ def test_exact_where_they_stand(a, b) -> None:
 POSE = st.tuples(FINE, FINE, st.floats(-math.pi, math.pi))
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(a=shape(), b=shape(), pose_a=POSE, pose_b=POSE)
 def test_in_any_pose(a, b, pose_a, pose_b) -> None:
     shape_a, shape_b = placed(a[1], pose_a), placed(b[1], pose_b)

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import PI, circle, lidar, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 SHAPES = [
     circle(0.5),
@@ -25,7 +26,7 @@ SHAPES = [
 ]
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(st.data())
 def test_scans_are_those_of_every_beam_against_every_edge(data: st.DataObject) -> None:
     coarse = data.draw(st.booleans())  # poses on a grid: beams meet corners and run along edges

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.worlds import PI, circle, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 SHAPES = [
     [circle(0.5)],
@@ -48,7 +49,7 @@ def sector_of(pose, angle: float, reach: float) -> shapely.Geometry:
     return shapely.Polygon([(x, y), *rim])
 
 
-@settings(max_examples=120)
+@settings(max_examples=examples(120))
 @given(st.data())
 def test_seen_is_what_meets_the_sector(data: st.DataObject) -> None:
     rng = np.random.default_rng(data.draw(st.integers(0, 100_000)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 from typing import Any
 
@@ -65,6 +66,12 @@ def test_distances_are_those_of_shapely(seed: int) -> None:
     assert np.mean(np.abs(off) > 2e-3) < 0.01
 
 
+def joined_at(distance: np.ndarray, level: float, a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether cells with at least this distance join the cells (a[0], b[0]) and (a[1], b[1])."""
+    label = components(distance >= level)
+    return bool(label[a[0], b[0]] == label[a[1], b[1]] >= 0)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_widest_ways_are_those_of_flooding(seed: int) -> None:
     clearance = core.Clearance(scene(seed)[0], CELLS)
@@ -77,14 +84,15 @@ def test_widest_ways_are_those_of_flooding(seed: int) -> None:
         if min(distance[a[0], b[0]], distance[a[1], b[1]]) <= 0:
             continue
         levels = np.unique(distance[distance > 0])
-        joined = [level for level in levels[:: max(1, len(levels) // 60)]
-                  if (label := components(distance >= level))[a[0], b[0]] == label[a[1], b[1]] >= 0]  # fmt: skip
+        levels = levels[:: max(1, len(levels) // 60)]
+        # What is joined at a level is joined at every lower one.
+        apart = bisect.bisect_left(range(len(levels)), True, key=lambda i: not joined_at(distance, levels[i], a, b))
         if math.isinf(room):
-            assert not joined
+            assert apart == 0
             continue
         label = components(distance >= room)
         assert label[a[0], b[0]] == label[a[1], b[1]] >= 0
-        assert not joined or max(joined) <= room
+        assert apart == 0 or levels[apart - 1] <= room
         assert distance[int(x / H), int(y / H)] == pytest.approx(room)
 
 

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.effort import examples
 from tests.mcp.conftest import CRASH, ROOM, connected, error_of, text_of
 from tests.mcp.golden.write import FILE
 
@@ -108,6 +109,6 @@ def test_some_arguments(workspace_of_all: Path, name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", TOOLS)
 def test_many_arguments(workspace_of_all: Path, name: str) -> None:
-    settings(max_examples=100, **OPTIONS)(
+    settings(max_examples=examples(100), **OPTIONS)(
         given(calls(TOOLS[name]))(lambda found: check(workspace_of_all, name, found))
     )()

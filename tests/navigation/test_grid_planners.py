@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import Map, cells_of, footprint_of, terrain_of
+from tests.effort import examples
 
 Path = NDArray[np.float64]
 DISC = shapely.Point(0, 0).buffer(0.3)
@@ -56,7 +57,7 @@ grids = st.tuples(st.integers(3, 14), st.integers(3, 14), st.integers(0, 2**31),
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(grids, st.data())
 def test_shortest_on_a_grid(grid: NDArray[np.float64], data: st.DataObject) -> None:
     nx, ny = grid.shape

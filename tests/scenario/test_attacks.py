@@ -120,6 +120,7 @@ def test_a_sparse_terabyte(tmp_path: Path) -> None:
         assert [item.code for item in read(path).errors] == ["file-too-large"]
 
 
+@pytest.mark.slow(6)
 def test_a_million_keys() -> None:
     text = "\n".join(f"k{i}: 1" for i in range(1_000_000)) + "\n"
     with within(4 * SLOW_MACHINE):
@@ -128,6 +129,7 @@ def test_a_million_keys() -> None:
     assert len(reading.diagnostics) <= 101
 
 
+@pytest.mark.slow(4)
 def test_a_hundred_thousand_unknown_keys() -> None:
     text = "world:\n" + "\n".join(f"  k{i}: 1" for i in range(100_000)) + "\n"
     with within(4 * SLOW_MACHINE):

@@ -17,6 +17,7 @@ from irsim.scenario.yaml import compose as compose_module
 from irsim.scenario.yaml.compose import compose
 from irsim.scenario.yaml.document import load_data, load_path, load_text
 from irsim.scenario.yaml.nodes import Mark
+from tests.effort import examples
 
 SCALARS = [
     "1", "-1", "+3", "0", "1_000", "0x1F", "0b101", "1.5", "-.5", "1.", "1.0e+3", "1.5e-3", "1e3", "1.0e3", ".inf",
@@ -50,7 +51,7 @@ def test_nan_and_dates() -> None:
     ),
     st.booleans(),
 )
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_data_is_that_of_the_safe_loader(data: Any, block: bool) -> None:
     text = yaml.safe_dump({"custom": data}, default_flow_style=not block, allow_unicode=True)
     composed = compose(text, DEFAULT_LIMITS)

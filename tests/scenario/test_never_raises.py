@@ -12,6 +12,7 @@ from irsim.diagnostics.report import format_diagnostics
 from irsim.scenario.model.plot import ObjectPlot
 from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
 from irsim.scenario.read import Reading, read
+from tests.effort import examples
 
 KEYS = sorted(
     {*Scenario.model_fields, *Entry.model_fields, *WorldModel.model_fields, *list(ObjectPlot.model_fields)[:8]}
@@ -63,26 +64,26 @@ def sound(reading: Reading) -> None:
     st.fixed_dictionaries({}, optional={"world": entries, "robot": entries | st.lists(entries, max_size=3)}),
     st.booleans(),
 )
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_any_data(data: dict[str, Any], strict: bool) -> None:
     sound(read(data, strict=strict))
 
 
 @given(trees)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_document(data: Any) -> None:
     if not isinstance(data, str):
         sound(read(data))
 
 
 @given(st.text() | st.text(alphabet="abc:-[]{}&*!|>'\"#,?\n\t 0123456789.%@`~"))
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_any_text(text: str) -> None:
     sound(read(text + "\n"))
 
 
 @given(st.binary(max_size=200))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_any_bytes(content: bytes) -> None:
     import tempfile
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from irsim.diagnostics.diagnostic import Edit
 from irsim.scenario.yaml.edits import apply_edits
 from irsim.scenario.yaml.rewrite import rewrite, yaml_flow
+from tests.effort import examples
 
 TEXT = """\
 # a scene
@@ -111,7 +112,7 @@ def paths(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return [path, *(deeper for key, item in items for deeper in paths(item, (*path, key)))]
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(
     st.dictionaries(st.text("xyz", min_size=1, max_size=3), trees, min_size=1, max_size=4),
     trees,
@@ -129,7 +130,7 @@ def test_the_text_means_what_the_edit_means(data: dict[str, Any], value: Any, dr
         assert _near(yaml.safe_load(changed), apply_edits(data, [edit]))
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(trees)
 def test_a_value_on_one_line_is_read_back(value: Any) -> None:
     line = yaml_flow(value)

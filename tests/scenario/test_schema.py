@@ -20,6 +20,7 @@ from irsim.scenario.model import json_schema as schema_module
 from irsim.scenario.model.json_schema import INEXPRESSIBLE, check, json_schema, schema_text
 from irsim.scenario.read import read
 from irsim.scenario.yaml.compose import compose
+from tests.effort import examples
 
 ROOT = Path(__file__).parent.parent.parent
 VALID = sorted(ROOT.glob("templates/*/scenario.yaml")) + sorted(ROOT.glob("tests/parity/scenarios/*.yaml"))
@@ -166,7 +167,7 @@ REMOVE = "(remove)"
         max_size=2,
     )
 )
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_agrees_with_the_models_on_damaged_files(changes: list[tuple[tuple[Any, ...], Any]]) -> None:
     data = copy.deepcopy(FULL)
     for path, value in changes:

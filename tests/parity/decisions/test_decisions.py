@@ -18,6 +18,7 @@ EXCEPTIONS: dict[tuple[str, int], str] = {}
 """(family, scene) whose decisions are not reproduced, and why."""
 
 
+@pytest.mark.slow(6)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_decisions_equal_the_recorded_ones(family: str, tmp_path: Path) -> None:
     with np.load(HERE / f"{family}.npz") as file:
