@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.api.take_snapshot import snapshot, snapshot_of
-from irsim.common.arguments import whole
+from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
 from irsim.env import Env
 from irsim.episodes.episode import (
@@ -125,10 +125,10 @@ def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
     """A behavior for all robots as text, as the command line takes it; None for their own."""
     if behavior is None:
         return None
-    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, text_of
+    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text
 
     try:
-        text = text_of(behavior)
+        text = behavior_text(behavior)
     except BenchmarkError as error:
         error.where = "behavior"
         raise
@@ -173,7 +173,7 @@ def render(
         ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
     """
     target = Path(out)
-    steps = None if steps is None else whole("steps", steps)
+    steps = None if steps is None else check_whole_number("steps", steps)
     import_modules(imports)
     as_snapshot = strip is not None or overlays is not None
     if as_snapshot:

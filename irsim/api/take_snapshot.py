@@ -204,7 +204,7 @@ def _poses(env: Env) -> list[RobotPose]:
     status: dict[str, Literal["under way", "arrived", "collided"]] = {"success": "arrived", "collision": "collided"}
     robots = []
     for view in env.robot_list:
-        goal = None if env.scenario.parked(view.record) else view.goal
+        goal = None if env.scenario.is_parked(view.record) else view.goal
         robots.append(
             RobotPose(
                 name=view.name,

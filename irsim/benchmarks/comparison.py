@@ -19,12 +19,19 @@ from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
-from irsim.common.arguments import as_given, whole
+from irsim.common.arguments import as_given, check_whole_number
+from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
-from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_of, check_known, text_of
+from irsim.scenario.behavior_override import (
+    AS_WRITTEN,
+    BenchmarkError,
+    behavior_text,
+    check_behavior_name,
+    parse_behavior,
+)
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.yaml.document import Document, load_path, load_text
@@ -86,15 +93,15 @@ def benchmark(
     wanted = _behavior_texts(behaviors)
     chosen = seeds_from(seeds)
     if steps is not None:
-        steps = whole("steps", steps)
+        steps = check_whole_number("steps", steps)
     if workers is not None:
-        workers = whole("workers", workers, 1)
+        workers = check_whole_number("workers", workers, 1)
     _check(names, wanted, chosen, most_episodes)
     limits = limits or DEFAULT_LIMITS
     import_modules(imports)
     for number, behavior in enumerate(wanted):
         with _naming_behavior(number):
-            check_known(behavior)
+            check_behavior_name(behavior)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances = dict[str, float](), dict[str, list[str]]()
@@ -128,8 +135,6 @@ def benchmark(
 
     rank = {seed: position // _SEEDS_PER_TURN for position, seed in enumerate(chosen)}
     turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
-    from irsim import __version__
-
     head = BenchmarkResult(
         scenarios=names,
         behaviors=wanted,
@@ -140,7 +145,7 @@ def benchmark(
         episodes=[],
         notes=[],
         warnings=warnings,
-        version=__version__,
+        version=version(),
         reproduce=_command(names, wanted, chosen, steps, strict, imports),
     )
 
@@ -184,7 +189,7 @@ def _behavior_texts(behaviors: Any) -> list[str]:
     found = []
     for number, behavior in enumerate([behaviors] if one else behaviors):
         with _naming_behavior(number):
-            found.append(behavior if isinstance(behavior, str) else text_of(behavior))
+            found.append(behavior if isinstance(behavior, str) else behavior_text(behavior))
     return found
 
 
@@ -216,7 +221,7 @@ def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int |
             raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
     for number, behavior in enumerate(behaviors):
         with _naming_behavior(number):
-            behavior_of(behavior)
+            parse_behavior(behavior)
     total = len(names) * len(behaviors) * len(seeds)
     if most is not None and total > most:
         product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"

@@ -14,7 +14,7 @@ from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
-from irsim.scenario.behavior_override import behavior_of, with_behavior
+from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
@@ -37,7 +37,7 @@ class Job:
     Attributes:
         text: Text of the scenario.
         path: Its file, relative to which it names other files; None for a text.
-        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.behavior_of`.
+        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`.
         steps: Horizon in steps; None: that of the scenario.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
@@ -82,7 +82,7 @@ def scenario_of(job: Job) -> ResolvedScenario:
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
-    return with_behavior(document, behavior_of(job.behavior), strict=job.strict)
+    return with_behavior(document, parse_behavior(job.behavior), strict=job.strict)
 
 
 def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:

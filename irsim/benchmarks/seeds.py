@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from irsim.common.arguments import as_given, is_whole
+from irsim.common.arguments import as_given, is_whole_number
 from irsim.scenario.behavior_override import BenchmarkError
 
 __all__ = ["seeds_from"]
@@ -29,14 +29,14 @@ def seeds_from(given: Any) -> list[int]:
     found: Iterable[Any]
     if isinstance(given, str):
         found = _read(given.replace(" ", ""))
-    elif is_whole(given):
+    elif is_whole_number(given):
         found = range(_checked_number(int(given)))
     elif isinstance(given, Iterable) and not isinstance(given, (Mapping, bytes, bytearray)):
         found = list(given)
     else:
         raise _wrong(given)
     for seed in found:
-        if not is_whole(seed):
+        if not is_whole_number(seed):
             raise _wrong(seed)
     seeds = list(dict.fromkeys(int(seed) for seed in found))
     if not seeds:

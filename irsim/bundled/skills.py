@@ -1,4 +1,4 @@
-"""The agent skills of this package, and putting them where an agent's host looks for them."""
+"""Finds the agent skills of this package and installs them where an agent's host looks for them."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ PLACES: Mapping[str, str] = {
     "cursor": ".cursor/skills",
     "codex": ".agents/skills",
 }
-"""Where each host looks, below a project or the home directory."""
+"""Host -> folder in which it looks for skills, below a project or the home directory."""
 
 _RECORD = ".irsim.json"
-"""What was installed into a folder: the version, and the digest of each file as written."""
+"""File that records what was installed into a folder: the version, and the digest of each file."""
 
 Action = Literal["installed", "updated", "unchanged", "kept"]
 
 
 class SkillError(CodedError, ValueError):
-    """The package has no such skill."""
+    """The name of a skill is unknown."""
 
 
 class PlaceError(CodedError, OSError):
@@ -46,10 +46,10 @@ class Skill:
     """One folder with a ``SKILL.md``.
 
     Attributes:
-        name: Of the skill and its folder.
-        description: What it does and when to use it.
-        version: Of the package it came with.
-        folder: Where it is.
+        name: Name of the skill and its folder.
+        description: What the skill does and when to use it.
+        version: Version of the package that contains it.
+        folder: Path of the folder.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Skill:
     folder: Path
 
     def files(self) -> dict[str, bytes]:
-        """Contents of its files by path below its folder, with ``/``."""
+        """Path below the folder, with ``/`` -> content of the file."""
         paths = sorted(path for path in self.folder.rglob("*") if path.is_file())
         names = {path.relative_to(self.folder).as_posix(): path for path in paths}
         return {name: path.read_bytes() for name, path in names.items() if "__pycache__" not in name}
@@ -66,15 +66,16 @@ class Skill:
 
 @dataclass(frozen=True, slots=True)
 class Installed:
-    """What became of one skill.
+    """Result of installing one skill.
 
     Attributes:
-        name: The skill.
-        action: ``kept``: the folder holds changes of the user, or is a link, and was left alone.
-        folder: Where it is.
+        name: Name of the skill.
+        action: What was done; ``kept`` means that the folder is a link or contains changes by the user, and was not
+            touched.
+        folder: Path of the folder.
         version: Version of the skill in this package.
         written: Files that were (or would be) written or removed.
-        changed: Files that somebody changed since they were installed.
+        changed: Files that were changed after they had been installed.
     """
 
     name: str
@@ -89,10 +90,10 @@ def find_skills(names: Iterable[str] = ()) -> list[Skill]:
     """The skills of this package, by name.
 
     Args:
-        names: Only these; default: all.
+        names: Names of the skills to return; all if empty.
 
     Raises:
-        SkillError: There is none of that name.
+        SkillError: No skill has that name.
     """
     known = {path.parent.name: path for path in sorted(resources.skills_directory().glob("*/SKILL.md"))}
     wanted = list(dict.fromkeys(names)) or list(known)
@@ -109,33 +110,33 @@ def place_of(target: str, *, user: bool = False, project: Path | None = None) ->
 
     Args:
         target: One of :data:`PLACES`.
-        user: In the home directory instead of a project.
-        project: Root of the project; default: the current directory.
+        user: Whether to use the home directory instead of a project.
+        project: Root of the project; by default the current directory.
     """
     return (Path.home() if user else project or Path.cwd()) / PLACES[target]
 
 
 def install(place: Path, skills: Iterable[Skill], *, force: bool = False, dry_run: bool = False) -> list[Installed]:
-    """Put skills into a folder. Each is replaced as a whole or not at all.
+    """Install skills into a folder. Each skill is replaced as a whole or not at all.
 
-    A file that was changed since it was installed is a reason to leave its skill alone. Files that were added are
-    kept in any case.
+    A skill with a file that was changed after its installation is not touched. Files that the user has added are always
+    kept.
 
     Args:
-        place: Folder that holds, or will hold, one folder per skill.
-        skills: Which.
+        place: Folder that contains, or will contain, one folder per skill.
+        skills: The skills to install.
         force: Overwrite changed files and replace links.
-        dry_run: Only say what would be done.
+        dry_run: Only report what would be done.
 
     Raises:
-        PlaceError: The folder cannot be there: a file or a link to nothing is in its place.
+        PlaceError: The folder cannot be created, because a file or a broken link is in its place.
     """
-    _check(place)
+    _check_place(place)
     return [_install(place / skill.name, skill, force=force, dry_run=dry_run) for skill in skills]
 
 
-def _check(place: Path) -> None:
-    """Whether the folder is there or can be made."""
+def _check_place(place: Path) -> None:
+    """Raise unless the folder exists or can be created."""
     for path in (place, *place.parents):
         if not os.path.lexists(path):
             continue
@@ -144,7 +145,7 @@ def _check(place: Path) -> None:
         if path.is_symlink():
             target = os.readlink(path)
             what = f"'{path}' is a link to '{target}', which is not a folder"
-            raise PlaceError("file-access", what, f"make that folder, or remove the link: rm '{path}'")
+            raise PlaceError("file-access", what, f"create that folder, or remove the link: rm '{path}'")
         raise PlaceError("file-access", f"'{path}' is a file where a folder must be", "move it away")
 
 
@@ -155,10 +156,10 @@ def _read(page: Path) -> Skill:
 
 def _install(folder: Path, skill: Skill, *, force: bool, dry_run: bool) -> Installed:
     new, old = skill.files(), _contents(folder)
-    digests = _recorded(folder)
+    digests = _read_record(folder)
     written = sorted(
         [name for name, content in new.items() if old.get(name) != content]
-        + [name for name in digests if name in old and name not in new]  # of an earlier version
+        + [name for name in digests if name in old and name not in new]  # files of an earlier version
     )
     if not written and folder.is_dir():
         return Installed(skill.name, "unchanged", folder, skill.version)
@@ -192,8 +193,8 @@ def _record(skill: Skill, files: Mapping[str, bytes]) -> bytes:
     return (json.dumps({"skill": skill.name, "version": skill.version, "files": digests}, indent=1) + "\n").encode()
 
 
-def _recorded(folder: Path) -> dict[str, str]:
-    """Digests by file as they were written; nothing where there is no record, or none of ours."""
+def _read_record(folder: Path) -> dict[str, str]:
+    """File -> digest, as recorded at the installation; empty without a valid record."""
     try:
         found = json.loads((folder / _RECORD).read_text(encoding="utf-8"))["files"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -202,7 +203,7 @@ def _recorded(folder: Path) -> dict[str, str]:
 
 
 def _replace(folder: Path, files: Mapping[str, bytes], obsolete: Iterable[str]) -> None:
-    """Write a folder beside its place, with what else was in it, and move it there; what was there goes last."""
+    """Replace a folder: write the new one beside it, with the user's own files, and swap the two."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     there = os.path.lexists(folder)
     with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as scratch:
@@ -214,7 +215,7 @@ def _replace(folder: Path, files: Mapping[str, bytes], obsolete: Iterable[str]) 
         for name, content in files.items():
             path = fresh / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.unlink(missing_ok=True)  # not through a link of somebody's
+            path.unlink(missing_ok=True)  # so that a link is replaced, not followed
             path.write_bytes(content)
         if there:
             os.rename(folder, before)

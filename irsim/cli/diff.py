@@ -85,7 +85,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     from rich.text import Text
 
     from irsim.cli.output import console
-    from irsim.common.text import clean, kinds, pair
+    from irsim.common.text import clean, names_if_different, shorten_pair
     from irsim.scenario.yaml.rewrite import yaml_flow
     from irsim.validation.diff.keys import place
 
@@ -95,7 +95,7 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
         sign, color = _SIGNS[kind]
         was, now = yaml_flow(before), yaml_flow(after)
         if kind == "changed":
-            was, now = pair(was, now, MAX_VALUE_LENGTH)
+            was, now = shorten_pair(was, now, MAX_VALUE_LENGTH)
         was, now = clean(was, MAX_VALUE_LENGTH), clean(now, MAX_VALUE_LENGTH)
         moved = f"{was} -> {now}"
         change = {"added": now, "removed": was, "changed": moved, "moved": moved}[kind]
@@ -109,7 +109,11 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
     if facts:
         out.print("in the world", style="bold")
     for fact in facts:
-        line(fact.change, " ".join(filter(None, (fact.object or "world", fact.key))), *kinds(fact.before, fact.after))
+        line(
+            fact.change,
+            " ".join(filter(None, (fact.object or "world", fact.key))),
+            *names_if_different(fact.before, fact.after),
+        )
     for comment in found.comments_lost:
         out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, MAX_VALUE_LENGTH)}"), soft_wrap=True)
     for edited in found.comments_changed:

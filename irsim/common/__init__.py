@@ -1,1 +1,1 @@
-"""Helpers that know nothing of robots: logging, files, text, arguments, lazy names."""
+"""Helpers without any knowledge of robots: logging, files, text, arguments, lazy names."""

@@ -1,4 +1,4 @@
-"""What functions are given, checked before it is used."""
+"""Checks arguments before they are used."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 from irsim.common.text import clean
 from irsim.diagnostics.errors import ArgumentError
 
-__all__ = ["as_given", "is_whole", "whole"]
+__all__ = ["as_given", "check_whole_number", "is_whole_number"]
 
 
-def is_whole(value: Any) -> bool:
-    """Whether a value is an integer, of Python or of NumPy; True and False are none."""
+def is_whole_number(value: Any) -> bool:
+    """Whether a value is an integer, of Python or of NumPy; True and False do not count."""
     try:
         index(value)
     except TypeError:
@@ -20,22 +20,22 @@ def is_whole(value: Any) -> bool:
     return not isinstance(value, bool)
 
 
-def whole(name: str, value: Any, least: int = 0) -> int:
-    """An argument that is a whole number.
+def check_whole_number(name: str, value: Any, least: int = 0) -> int:
+    """The value of an argument that must be a whole number.
 
     Args:
-        name: Of the argument, for the message.
-        value: What was given.
-        least: Smallest that makes sense.
+        name: Name of the argument, for the message.
+        value: The argument.
+        least: Smallest valid value.
 
     Raises:
-        ArgumentError: It is something else, or less.
+        ArgumentError: The value is not a whole number, or less than ``least``.
     """
-    if not is_whole(value) or value < least:
-        raise ArgumentError(f"{name} is {as_given(value)}", f"give a whole number, {least} or more")
+    if not is_whole_number(value) or value < least:
+        raise ArgumentError(f"{name} cannot be {as_given(value)}", f"give a whole number, {least} or more")
     return int(value)
 
 
 def as_given(value: Any) -> str:
-    """A value in a message: as in Python, the beginning if it is long."""
+    """A value for a message, as in Python, cut if it is long."""
     return clean(repr(value), 60)

@@ -1,6 +1,6 @@
-"""The check for PyPI's ``ir-sim``, whose files and ours cannot live in one environment.
+"""Refuses to run beside PyPI's ``ir-sim``, which cannot be in one environment with this package.
 
-Both distributions provide the import package ``irsim``: pip lets them overwrite each other's files without a word.
+Both distributions provide the import package ``irsim``: pip lets them overwrite each other's files without a warning.
 """
 
 from __future__ import annotations
@@ -40,11 +40,11 @@ def find_conflicts(path: Iterable[str]) -> list[str]:
 
 
 def refuse_conflicts() -> None:
-    """Raise unless ours is the only ``irsim`` of this interpreter.
+    """Raise if ``ir-sim`` is installed for this interpreter.
 
     Raises:
         ConflictError: ``ir-sim`` is installed; the message says where, and what to uninstall.
-        SystemExit: The same, when one of our commands was called.
+        SystemExit: ``ir-sim`` is installed, and a command of this package was called.
     """
     found = find_conflicts(sys.path)
     if not found:

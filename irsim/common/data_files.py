@@ -1,4 +1,4 @@
-"""Where the data files are: templates, schema and skills, in a checkout or inside an installed package."""
+"""Finds the data files: templates, schema and skills, in a checkout or inside an installed package."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 def checkout() -> Path | None:
     """Root of the repository the package runs from, or None for an installed package.
 
-    A checkout is looked at first, so that an editable install never serves stale copies.
+    A checkout takes precedence, so that an editable install never serves stale copies.
     """
     root = _PACKAGE.parent
     marks = (root / "pyproject.toml", root / "templates", root / "irsim" / "common" / "data_files.py")
@@ -31,13 +31,13 @@ def schema_file() -> Path:
 
 
 def skills_directory() -> Path:
-    """Directory with one folder per agent skill (inside the package: where agents look)."""
+    """Directory with one folder per agent skill (in an installed package, where agents look for them)."""
     root = checkout()
     return root / "skills" if root else _PACKAGE / ".agents" / "skills"
 
 
 def read_yaml(text: str) -> Any:
-    """What a text of ours says, read by libyaml where PyYAML has it: ten times as fast."""
-    import yaml  # a server only needs it once it is asked for something
+    """The data of a trusted YAML text; libyaml, if PyYAML has it, is ten times as fast."""
+    import yaml  # imported late: a server needs it only once it is asked for something
 
     return yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))

@@ -16,9 +16,9 @@ def lazy_names(
     """The ``__getattr__`` and ``__dir__`` of a package that imports its names when they are first used.
 
     Args:
-        package: Its name.
-        homes: Name -> the module that has it; ``module:name`` where it is called otherwise there.
-        modules: Modules of the package that are attributes of it, whether somebody has imported them or not.
+        package: Name of the package.
+        homes: Name -> module that defines it, or ``module:name`` if it has another name there.
+        modules: Modules of the package that are its attributes, even if they have not been imported yet.
     """
     own_modules = frozenset(modules)
 

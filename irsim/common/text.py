@@ -1,22 +1,22 @@
-"""Text from scenario files, fit to be shown."""
+"""Makes text from scenario files fit to be shown."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-__all__ = ["clean", "kinds", "listed", "pair", "quoted", "seconds"]
+__all__ = ["clean", "listed", "names_if_different", "quoted", "seconds", "shorten_pair"]
 
 MAX_NAME = 40
 """Number of characters of a name that a message shows."""
 
 
-def pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
-    """Two values on a line each, long ones cut so that what differs is seen.
+def shorten_pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
+    """Two values as one line each; long ones are cut so that their first difference stays visible.
 
     Args:
-        before: One.
-        after: The other.
-        longest: Characters to keep of each.
+        before: First value.
+        after: Second value.
+        longest: Number of characters to keep of each.
     """
     first, second = (clean(value, 10**6) for value in (before, after))
     if max(len(first), len(second)) <= longest:
@@ -30,12 +30,12 @@ def pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
     return clean(first, longest), clean(second, longest)
 
 
-def kinds(before: object, after: object) -> tuple[object, object]:
-    """Of options of two kinds, or of some and none, what they are: their names. Other values stay as they are.
+def names_if_different(before: object, after: object) -> tuple[object, object]:
+    """The names of two options with different names, one of which may be None; other values as they are.
 
     Args:
-        before: One value.
-        after: The other.
+        before: First value.
+        after: Second value.
     """
     names = [value.get("name") if isinstance(value, Mapping) else value for value in (before, after)]
     options = [value for value in (before, after) if value is not None]
@@ -45,20 +45,20 @@ def kinds(before: object, after: object) -> tuple[object, object]:
 
 
 def seconds(time: float) -> str:
-    """A time in words, the same one everywhere: ``14.95 s``.
+    """A time as text, in the one format that all messages use: ``14.95 s``.
 
     Args:
-        time: It [s].
+        time: Time to format [s].
     """
     return f"{round(time, 2):.10g} s"
 
 
 def clean(text: object, longest: int = 80) -> str:
-    """One line without control characters, which could play tricks on a terminal or a reader, and not endless.
+    """A text as one line of limited length, without control characters, which could mislead a terminal or a reader.
 
     Args:
         text: A name or a message.
-        longest: Characters to keep.
+        longest: Number of characters to keep.
     """
     shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
     return shown if len(shown) <= longest else shown[: longest - 3] + "..."

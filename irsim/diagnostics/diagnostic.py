@@ -9,19 +9,20 @@ from typing import Any, Literal
 
 from irsim.diagnostics.codes import CODES
 
-__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "nearest", "surely"]
+__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "is_slip_of", "nearest"]
 
 Severity = Literal["error", "warning", "hint"]
 Path = tuple[str | int, ...]
 _ORDER = {"error": 0, "warning": 1, "hint": 2}
-_SLIP = 0.75
+_SLIP_SIMILARITY = 0.75
+"""Similarity from which a word is a slip of another, 1 for equal words."""
 
 
 @dataclass(frozen=True)
 class Edit:
     """A machine-applicable repair: what to do with the node at ``path``.
 
-    ``safe``: it does what was surely meant; otherwise it is one way out, and nobody but the author can choose it.
+    ``safe`` means that the author surely meant this. Otherwise it is one of several repairs, and the author chooses.
     """
 
     action: Literal["remove", "replace", "rename", "add"]
@@ -42,11 +43,11 @@ class Diagnostic:
         line, column: Position of the node in the text, counted from 1; None when the source has no text.
         length: Characters to underline.
         given: The offending value, as written.
-        allowed: What would be accepted: names, a range, a type.
-        fix: What to write instead, in words a person or agent can act on.
-        edit: The best repair as a machine-applicable edit, where that is safe.
-        tolerated: True for errors that IR-SIM 2.12 carries on with: ``irsim.make`` and ``irsim run`` do what it does
-            (which may be to ignore the key that ``edit`` would rename) and show a warning unless asked to be strict.
+        allowed: What is accepted: names, a range, a type.
+        fix: What to write instead, in words that a person or agent can act on.
+        edit: The best repair as a machine-applicable edit, if there is one.
+        tolerated: Whether IR-SIM 2.12 continues in spite of this error. ``irsim.make`` and ``irsim run`` then do what
+            it does (such as ignoring the key that ``edit`` would rename) and show a warning, unless asked to be strict.
         file: Name of the document.
     """
 
@@ -86,15 +87,15 @@ def format_path(path: Path) -> str:
 
 
 def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The choice most like ``word``, or None when nothing is close."""
+    """The choice most similar to ``word``; None if none is similar enough."""
     lowered = {str(choice).lower(): str(choice) for choice in choices}
     found = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
     return lowered[found[0]] if found else None
 
 
-def surely(word: object, meant: str) -> bool:
-    """Whether ``word`` can hardly mean anything but ``meant``: a slip of a letter or two."""
-    return nearest(word, [meant], _SLIP) is not None
+def is_slip_of(word: object, meant: str) -> bool:
+    """Whether ``word`` is ``meant`` with a letter or two wrong, so that it can hardly mean anything else."""
+    return nearest(word, [meant], _SLIP_SIMILARITY) is not None
 
 
 def by_severity(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

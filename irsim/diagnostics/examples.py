@@ -1,6 +1,6 @@
-"""A small example for each code that a scenario can have: what gives the finding, and what to write instead.
+"""A small example for each code that a scenario can have: a scenario with the finding, and one without it.
 
-``robot:`` and ``obstacle:`` entries are shown without what does not matter; tests complete them and check both sides.
+The ``robot:`` and ``obstacle:`` entries show only the keys that matter; tests add the others and check both sides.
 """
 
 # ruff: noqa: E501
@@ -114,4 +114,4 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "needs-planning": ("robot: {state: [5, 5, 0], goal: [9, 5], behavior: {name: rvo}}\nobstacle: {shape: {name: linestring, vertices: [[3, 1.5], [7, 1.5], [7, 8.5], [3, 8.5]]}, state: [0, 0, 0]}", "robot: {state: [5, 5, 0], goal: [9, 5], behavior: {name: follow, local: rvo}}\nobstacle: {shape: {name: linestring, vertices: [[3, 1.5], [7, 1.5], [7, 8.5], [3, 8.5]]}, state: [0, 0, 0]}"),
     "time-too-short": ("world: {time_limit: 8}", "world: {time_limit: 30}"),
 }  # fmt: skip
-"""Code → (what gives the finding, what to write instead), YAML."""
+"""Code → (YAML with the finding, YAML to write instead)."""

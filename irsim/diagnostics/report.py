@@ -1,4 +1,4 @@
-"""Diagnostics as text: where, what, the offending line with carets, what is allowed and how to mend it."""
+"""Formats diagnostics as text: place, message, the line with carets, allowed values and fix."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ __all__ = ["format_diagnostic", "format_diagnostics"]
 
 _COLORS = {"error": "\033[1;31m", "warning": "\033[1;33m", "hint": "\033[1;36m"}
 _BOLD, _DIM, _RESET = "\033[1m", "\033[2m", "\033[0m"
-_WIDEST_LINE = 160
-_MOST_ALLOWED = 24
+_MAX_LINE_WIDTH = 160
+"""Characters of a quoted line."""
+_MAX_ALLOWED = 24
+"""Allowed values that are listed."""
 
 
 def format_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None = None, color: bool = False) -> str:
     """All findings, errors first, with a closing count.
 
     Args:
-        diagnostics: What was found.
+        diagnostics: The findings.
         text: The scenario's text, to quote lines from.
         color: Use ANSI colors.
     """
@@ -43,12 +45,12 @@ def format_diagnostic(item: Diagnostic, lines: Sequence[str] = (), color: bool =
     head = f"{paint(item.severity, _COLORS[item.severity])} {item.code}  {_printable(format_path(item.path))}"
     out = [f"{paint(place, _BOLD)}  {head}" if place else head]
     if item.line is not None and 1 <= item.line <= len(lines):
-        out += _quoted(item, lines[item.line - 1], paint)
+        out += _quote_line(item, lines[item.line - 1], paint)
     else:
         out.append(f"  {_printable(item.message)}")
     advice = []
     if item.allowed:
-        advice.append("allowed: " + _allowed(item.allowed) + _suggestion(item))
+        advice.append("allowed: " + _allowed_text(item.allowed) + _suggestion(item))
     if item.fix:
         advice.append("fix: " + item.fix)
     if advice:
@@ -56,12 +58,12 @@ def format_diagnostic(item: Diagnostic, lines: Sequence[str] = (), color: bool =
     return "\n".join(out)
 
 
-def _quoted(item: Diagnostic, line: str, paint: Any) -> list[str]:
-    """The line of the text, and carets under the part that is meant."""
+def _quote_line(item: Diagnostic, line: str, paint: Any) -> list[str]:
+    """The line of the text, and carets under the part that the finding is about."""
     number = str(item.line)
     column = max(item.column or 1, 1)
-    start = max(0, min(column - 1 - _WIDEST_LINE // 2, len(line) - _WIDEST_LINE)) if len(line) > _WIDEST_LINE else 0
-    shown = _printable(line[start : start + _WIDEST_LINE])
+    start = max(0, min(column - 1 - _MAX_LINE_WIDTH // 2, len(line) - _MAX_LINE_WIDTH))
+    shown = _printable(line[start : start + _MAX_LINE_WIDTH])
     offset = column - 1 - start
     length = max(1, min(item.length, len(shown) - offset)) if offset < len(shown) else 1
     gutter = " " * (len(number) + 3)
@@ -73,7 +75,7 @@ def _quoted(item: Diagnostic, line: str, paint: Any) -> list[str]:
 
 
 def _suggestion(item: Diagnostic) -> str:
-    """The word that was probably meant."""
+    """A question with the word that was probably meant; empty if no word is likely."""
     edit = item.edit
     if edit is None or not isinstance(edit.value, str) or isinstance(item.allowed, str):
         return ""
@@ -85,12 +87,12 @@ def _painter(color: bool) -> Any:
 
 
 def _printable(text: str) -> str:
-    """Without control characters, which could play tricks on a terminal."""
+    """The text without control characters, which could mislead a terminal."""
     return "".join(character if character.isprintable() else " " for character in text)
 
 
-def _allowed(allowed: Sequence[str] | str) -> str:
+def _allowed_text(allowed: Sequence[str] | str) -> str:
     if isinstance(allowed, str):
         return allowed
-    shown = ", ".join(str(item) for item in allowed[:_MOST_ALLOWED])
-    return shown + (f", and {len(allowed) - _MOST_ALLOWED} more" if len(allowed) > _MOST_ALLOWED else "")
+    shown = ", ".join(str(item) for item in allowed[:_MAX_ALLOWED])
+    return shown + (f", and {len(allowed) - _MAX_ALLOWED} more" if len(allowed) > _MAX_ALLOWED else "")

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irsim.common.arguments import as_given, whole
+from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
@@ -90,7 +90,7 @@ def read_scenario(
         text: Text of the scenario, instead of ``path``.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader.
-        behavior: Replaces every robot's own behavior; see :func:`irsim.scenario.behavior_override.behavior_of`.
+        behavior: Replaces every robot's own behavior; see :func:`irsim.scenario.behavior_override.parse_behavior`.
 
     Returns:
         The scenario, ready to build, and the warnings and hints about it.
@@ -102,12 +102,17 @@ def read_scenario(
     """
     source = source_of(path, text, limits)
     if behavior is not None:
-        from irsim.scenario.behavior_override import BenchmarkError, behavior_of, check_known, read_with_behavior
+        from irsim.scenario.behavior_override import (
+            BenchmarkError,
+            check_behavior_name,
+            parse_behavior,
+            read_with_behavior,
+        )
 
         document = source if isinstance(source, Document) else load_path(source, limits or DEFAULT_LIMITS)
         try:
-            check_known(behavior)
-            scenario, diagnostics = read_with_behavior(document, behavior_of(behavior), strict=strict)
+            check_behavior_name(behavior)
+            scenario, diagnostics = read_with_behavior(document, parse_behavior(behavior), strict=strict)
         except BenchmarkError as error:
             error.where = "behavior"
             raise
@@ -124,7 +129,7 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
 
 
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
-    """max(30 s, 4 x the longest way from start over its goals / that robot's top speed) [s]."""
+    """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s."""
     longest = 0.0
     for view in env.robot_list:
         points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
@@ -204,7 +209,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
     """
     most, what = _most_steps(len(scenario.objects), limits)
     if steps is not None:
-        steps = whole("steps", steps)
+        steps = check_whole_number("steps", steps)
         if most is not None and steps > most:
             raise OverLimitError(f"{steps:,} steps are too many: at most {what}", f"ask for at most {most:,} steps")
         return steps, "argument"

@@ -186,7 +186,7 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
     if record.kinematics is None:
         return f"has no kinematics, so it stands still {place}"
     if record.behavior is None and record.group_behavior is None:
-        if not env.scenario.goal_written(record):
+        if not env.scenario.has_written_goal(record):
             return "has no behavior, so it stands still; no goal is written for it"
         return f"has no behavior, so it stands still {place}"
     row = view.row

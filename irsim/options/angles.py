@@ -22,7 +22,7 @@ def is_span(angle: float) -> bool:
     return angle <= FULL_TURN + _ROUNDING
 
 
-def _clipped(angle: float) -> float:
+def _clip(angle: float) -> float:
     if not is_span(angle):
         radians = min(round(math.radians(angle), 9), FULL_TURN) if 10 <= angle <= 360 else None
         degrees = "" if radians is None else f"; {angle:g} degrees are {radians:.5g} rad"
@@ -40,7 +40,7 @@ def _clipped(angle: float) -> float:
 SpanAngle = Annotated[
     Radians,
     Field(ge=0),
-    AfterValidator(_clipped),
+    AfterValidator(_clip),
     Field(json_schema_extra={"maximum": round(FULL_TURN + _ROUNDING, 4)}),
 ]
 """An opening angle from 0 to a full turn."""

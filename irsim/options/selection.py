@@ -10,7 +10,7 @@ from pydantic import BaseModel, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, ValidationError, core_schema
 
-from irsim.diagnostics.diagnostic import nearest, surely
+from irsim.diagnostics.diagnostic import is_slip_of, nearest
 from irsim.options.base import SCHEMA_PARTS, open_options, problem, shared_schema
 from irsim.options.registry import CustomBehaviors, Registry
 
@@ -184,7 +184,7 @@ class Select:
         if near is None and self.fallback is None:
             return problem("not-a-mapping", message, allowed=names, fix=f"write {{name: <{kind}>}}")
         meant = near or word
-        sure = known or near is None or surely(word, meant)
+        sure = known or near is None or is_slip_of(word, meant)
         return problem(
             "not-a-mapping", message, fix=f"write {{name: {meant}}}", replace={"name": meant} if sure else None
         )

@@ -62,7 +62,7 @@ def make_legible(scene: Scene, simulation: Simulation, world: int) -> None:
         world: Index of the world.
     """
     objects = {view.id: view for view in views(simulation, world)}
-    parked = {view.id for view in objects.values() if simulation.scenario.parked(view.record)}
+    parked = {view.id for view in objects.values() if simulation.scenario.is_parked(view.record)}
     scene.marks = [mark for mark in scene.marks if mark.part != "goal" or mark.object not in parked]
     scene.labels = [label for label in scene.labels if label.part != "goal" or label.object not in parked]
     scene.marks = [_make_mark_legible(mark, objects[mark.object]) for mark in scene.marks if _is_shown(mark, objects)]

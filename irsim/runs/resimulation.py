@@ -43,9 +43,9 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     document.maps = _maps(run)
     strict, behavior = bool(options.get("strict")) and not has_modules(run), options.get("behavior")
     if isinstance(behavior, str):
-        from irsim.scenario.behavior_override import behavior_of, with_behavior
+        from irsim.scenario.behavior_override import parse_behavior, with_behavior
 
-        return with_behavior(document, behavior_of(behavior), strict=strict)
+        return with_behavior(document, parse_behavior(behavior), strict=strict)
     return or_raise(read(document, strict=strict, limits=limits))[0]
 
 

@@ -21,10 +21,10 @@ from irsim.scenario.yaml.rewrite import yaml_flow
 __all__ = [
     "AS_WRITTEN",
     "BenchmarkError",
-    "behavior_of",
-    "check_known",
+    "behavior_text",
+    "check_behavior_name",
+    "parse_behavior",
     "read_with_behavior",
-    "text_of",
     "with_behavior",
 ]
 
@@ -44,7 +44,7 @@ class BenchmarkError(CodedError, ValueError):
         super().__init__(self.code, message, fix, where=where)
 
 
-def behavior_of(text: str) -> dict[str, Any] | None:
+def parse_behavior(text: str) -> dict[str, Any] | None:
     """The mapping that a behavior given as text means.
 
     Args:
@@ -71,7 +71,7 @@ def behavior_of(text: str) -> dict[str, Any] | None:
     return dict(document.data)
 
 
-def text_of(behavior: str | Mapping[str, Any]) -> str:
+def behavior_text(behavior: str | Mapping[str, Any]) -> str:
     """A behavior as text, as it is written on a command line.
 
     Raises:
@@ -84,14 +84,14 @@ def text_of(behavior: str | Mapping[str, Any]) -> str:
     raise BenchmarkError(f"a behavior must be a name or a mapping, got {as_given(behavior)}", _FIX)
 
 
-def check_known(behavior: str) -> None:
+def check_behavior_name(behavior: str) -> None:
     """Refuse the name of an unknown behavior.
 
     Raises:
         BenchmarkError: No behavior has that name.
     """
     known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
-    name = (behavior_of(behavior) or {"name": AS_WRITTEN})["name"]
+    name = (parse_behavior(behavior) or {"name": AS_WRITTEN})["name"]
     if name not in known:
         near = nearest(name, known)
         fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"

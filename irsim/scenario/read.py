@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, by_severity
 from irsim.scenario.checks import KEY_CODES, Context, run_checks
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.messages.findings import Finding, error, place
+from irsim.scenario.messages.findings import Finding, error, key_path
 from irsim.scenario.messages.translate import translate
 from irsim.scenario.model.scenario import Scenario, WorldModel
 from irsim.scenario.resolve.expand import resolve
@@ -72,7 +72,7 @@ def read(
     if document.data is None and document.fatal:
         return Reading(None, _diagnostics(findings, document, strict), document)
     reader = _Reader(document, limits, findings, survey)
-    resolved = reader.resolved()
+    resolved = reader.read()
     blocked = document.fatal or any(f.blocking or (strict and f.diagnostic.severity == "error") for f in findings)
     return Reading(None if blocked else resolved, _diagnostics(findings, document, strict, reader.renamed), document)
 
@@ -99,7 +99,7 @@ class _Reader:
         self.renamed: dict[Path, Path] = {}
         self._map: tuple[Any, LoadedMap] | None = None
 
-    def resolved(self) -> ResolvedScenario | None:
+    def read(self) -> ResolvedScenario | None:
         """The scenario, its tolerated problems handled as in IR-SIM 2.12; meaningless if a finding is blocking."""
         if not isinstance(self.data, Mapping):
             self._add([_not_a_mapping(self.data)])
@@ -108,7 +108,7 @@ class _Reader:
         if too_many is not None:
             self._add([too_many])
             return None
-        scenario = self._validated()
+        scenario = self._validate()
         if scenario is None:
             return None
         resolved = self._resolve(scenario)
@@ -123,11 +123,11 @@ class _Reader:
         edits = [f.carry_on for f in found if f.carry_on is not None]
         if edits:
             self.data = apply_edits(self.data, edits)
-            scenario = self._validated()
+            scenario = self._validate()
             return self._resolve(scenario) if scenario is not None else None
         return resolved
 
-    def _validated(self) -> Scenario | None:
+    def _validate(self) -> Scenario | None:
         for _ in range(_MAX_ROUNDS):
             try:
                 return Scenario.model_validate(self.data)
@@ -154,7 +154,7 @@ class _Reader:
             return finding.carry_on
         if item.edit is not None and item.edit.action in ("replace", "rename"):
             return item.edit
-        if (stand_in := _STAND_INS.get(place(item.path))) is not None:
+        if (stand_in := _STAND_INS.get(key_path(item.path))) is not None:
             return Edit("replace", item.path, stand_in)
         if item.code == "missing-key" or item.path[-1:] == ("name",):
             return removal_edit(item.path[:-1])
@@ -164,7 +164,7 @@ class _Reader:
         document = self.document
         stem = os.path.basename(document.path or document.name or "world").split(".")[0] or "world"
         data = dict(document.data) if isinstance(document.data, Mapping) else {}
-        loaded = self._loaded_map(scenario.world)
+        loaded = self._load_map(scenario.world)
         if loaded.world is not scenario.world:
             scenario = scenario.model_copy(update={"world": loaded.world})
         resolved = resolve(
@@ -173,7 +173,7 @@ class _Reader:
         resolved.map_files = loaded.files
         return resolved
 
-    def _loaded_map(self, world: WorldModel) -> LoadedMap:
+    def _load_map(self, world: WorldModel) -> LoadedMap:
         """The map; it is loaded again only if its options or the extent of the world changed."""
         key = (world.obstacle_map, world.mdownsample, world.width, world.height, tuple(world.offset))
         if self._map is None or not _is_same_map(self._map[0], key):

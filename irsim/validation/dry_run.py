@@ -130,7 +130,7 @@ def _summarise(
     names = {scenario.objects[index].name for index in robots}
     hits = [e for e in events if any(is_collision_of(e, name, passable) for name in names)]
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
-    parked = [record.name for record in scenario.robots() if scenario.parked(record)]
+    parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
     held = find_jammed(env.simulation, events)
     stuck, count = _find_stuck(
         env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 import irsim
 from irsim.bundled import templates
 from irsim.cli.app import app
-from irsim.common.text import kinds, pair
+from irsim.common.text import names_if_different, shorten_pair
 
 BASE = """\
 world: {width: 10, height: 8, seed: 3}   # the hall
@@ -232,10 +232,10 @@ def test_an_entry_that_is_gone_is_named_as_in_the_file_before() -> None:
 
 
 def test_long_values_are_cut_where_they_differ() -> None:
-    before, after = pair("a" * 200 + "1" + "b" * 200, "a" * 200 + "2" + "b" * 200, 60)
+    before, after = shorten_pair("a" * 200 + "1" + "b" * 200, "a" * 200 + "2" + "b" * 200, 60)
     assert max(len(before), len(after)) == 60
     assert before.replace("1", "2") == after != before
-    assert pair("short", "shorter") == ("short", "shorter")
+    assert shorten_pair("short", "shorter") == ("short", "shorter")
 
 
 def test_validation_can_say_what_changed(tmp_path: Path) -> None:
@@ -321,11 +321,11 @@ def test_people_are_told_of_options_by_their_name(tmp_path: Path) -> None:
     after.write_text(LED.replace("[9, 6], group: 0", "[9, 6], group: 1"), encoding="utf-8")
     shown = CliRunner().invoke(app, ["diff", str(before), str(after)])
     assert "~ robot_2 group_behavior  orca -> null" in shown.stdout.splitlines()
-    assert kinds({"name": "orca", "a": 1}, {"name": "orca", "a": 2}) == (
+    assert names_if_different({"name": "orca", "a": 1}, {"name": "orca", "a": 2}) == (
         {"name": "orca", "a": 1},
         {"name": "orca", "a": 2},
     )
-    assert kinds([1], None) == ([1], None)
+    assert names_if_different([1], None) == ([1], None)
 
 
 def test_of_many_entries_that_all_changed_each_is_recognised() -> None:

@@ -19,7 +19,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import OverLimitError, PlacementError, ScenarioNotFoundError
 from irsim.metrics import wilson
 from irsim.results.labels import labels_of, seeds_of
-from irsim.scenario.behavior_override import behavior_of
+from irsim.scenario.behavior_override import parse_behavior
 
 CROWD = """
 world: {width: 8, height: 8, time_limit: 12}
@@ -267,7 +267,7 @@ def test_robots_keep_what_they_are_to_do() -> None:
 @pytest.mark.parametrize("wrong", ["", "a b", "{name: 3}", "{timeHorizon: 5}", "{name: [", "name: orca"])
 def test_what_is_no_behavior(wrong) -> None:
     with pytest.raises(BenchmarkError, match="bad-argument"):
-        behavior_of(wrong)
+        parse_behavior(wrong)
 
 
 def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path) -> None:

@@ -252,12 +252,12 @@ async def test_limits(workspace: Path) -> None:
             assert told.startswith("over-limit: ")
             assert product in told
         for arguments, start in (
-            ({"scenarios": []}, "bad-argument: there are no scenarios"),
+            ({"scenarios": []}, "bad-argument: there must be at least one scenario"),
             ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: 0 seeds"),
             (
                 {"scenarios": [ROOM], "first_seed": 2**53 - 9},
                 (
-                    f"bad-argument: the seeds {2**53 - 9} to {2**53} go beyond {2**53 - 1}, the largest that "
+                    f"bad-argument: the seeds {2**53 - 9} to {2**53} exceed {2**53 - 1}, the largest that "
                     f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
                 ),
             ),
@@ -279,10 +279,10 @@ async def test_limits(workspace: Path) -> None:
             "{name: orca, timeHorizn: 5}",
             "'timeHorizn' is not a key of behavior orca {}. Fix: rename it to 'timeHorizon'.",
         ),
-        ("{name: orca, timeHorizon: -5}", "timeHorizon: -5 is out of range {}. Fix: allowed is > 0 [s]."),
+        ("{name: orca, timeHorizon: -5}", "'timeHorizon' must be > 0 [s], got -5 {}. Fix: allowed is > 0 [s]."),
         ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
         ("orcaa", "there is no behavior 'orcaa' {}. Fix: did you mean orca?"),
-        ("{orca", "'{{orca' is no behavior {}. Fix: give a name such as orca, or "),
+        ("{orca", "'{{orca' is not a valid behavior {}. Fix: give a name such as orca, or "),
     ],
 )
 async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(

@@ -451,4 +451,4 @@ def test_fixes_name_numbers() -> None:
     thinned = {"obstacle_map": "cave.png", "mdownsample": 500}
     assert "mdownsample" in str(fix({"world": thinned}))
     follows = read(robot(behavior={"name": "follow", "local": "follow"}), strict=True).errors[0]
-    assert follows.message == "'follow' is a behavior, but not one that can stand here"
+    assert follows.message == "'follow' is a behavior, but it cannot be used here"

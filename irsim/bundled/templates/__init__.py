@@ -1,8 +1,8 @@
 """Scenario templates: ready-made files with named parameters.
 
-A template is a folder with two files. ``scenario.yaml`` is a complete scenario, usable as it is; ``template.yaml`` says
-what it is for, which parameters it has, and which values of the scenario follow from them (see :mod:`.metadata`).
-Filling a template replaces those values in the text and nothing else, so comments and layout survive.
+A template is a folder with two files. ``scenario.yaml`` is a complete scenario, usable as it is; ``template.yaml``
+gives its purpose, its parameters, and the values of the scenario that follow from them (see :mod:`.metadata`). Filling
+a template replaces only those values in the text, so comments and layout stay.
 """
 
 from irsim.bundled.templates.fill import fill, parse_settings

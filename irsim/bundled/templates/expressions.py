@@ -1,6 +1,6 @@
-"""Small safe expressions over template parameters: arithmetic, comparisons, lists and their items, mappings, functions.
+"""Evaluates small expressions over template parameters: arithmetic, comparisons, lists, mappings, some functions.
 
-Never ``eval``.
+The syntax tree is walked node by node; ``eval`` is never used.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
         values: Parameter values by name; ``pi`` is known as well.
 
     Raises:
-        ValueError: It uses a name or a construct that is not allowed.
+        ValueError: The expression uses a name or a construct that is not allowed.
     """
     names = {"pi": math.pi, **values}
 
@@ -74,13 +74,13 @@ def evaluate(expression: str, values: Mapping[str, Any]) -> Any:
                 return value(body) if value(test) else value(orelse)
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
                 return _FUNCTIONS[name](*(value(argument) for argument in arguments))
-        raise ValueError(f"not allowed in a template expression: {ast.unparse(node)}")
+        raise ValueError(f"a template expression cannot contain {ast.unparse(node)}")
 
     return value(ast.parse(expression, mode="eval").body)
 
 
 def names_in(expression: str) -> set[str]:
-    """Parameters an expression reads."""
+    """The parameters that an expression reads."""
     known = {"pi", *_FUNCTIONS}
     tree = ast.parse(expression, mode="eval")
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - known
@@ -89,10 +89,10 @@ def names_in(expression: str) -> set[str]:
 def _index(value: Any) -> int:
     if isinstance(value, int) and value >= 0:
         return value
-    raise ValueError(f"not a place in a list in a template expression: {value!r}")
+    raise ValueError(f"an index in a template expression must be a whole number from 0 on, got {value!r}")
 
 
 def _number(value: Any) -> float:
     if isinstance(value, (int, float)):
         return value
-    raise ValueError(f"not a number in a template expression: {value!r}")
+    raise ValueError(f"a template expression can calculate only with numbers, got {value!r}")

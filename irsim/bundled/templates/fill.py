@@ -1,4 +1,4 @@
-"""Put parameter values into the text of a template, leaving every other character as it is."""
+"""Puts parameter values into the text of a template and keeps every other character."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def fill(template: Template, given: Mapping[str, Any] | None = None) -> str:
 
     Args:
         template: From :func:`irsim.bundled.templates.load`.
-        given: Some or all parameters; text values are converted.
+        given: Values of some or all parameters; text is converted.
 
     Raises:
         TemplateError: A parameter is unknown or out of range.
@@ -31,10 +31,10 @@ def fill(template: Template, given: Mapping[str, Any] | None = None) -> str:
 
 
 def replace_values(text: str, changes: Mapping[Path, Any]) -> str:
-    """Replace the values at some paths of a YAML text; values that already equal the new ones keep their spelling.
+    """Replace the values at some paths of a YAML text; a value that equals the new one keeps its spelling.
 
     Raises:
-        KeyError: A path leads nowhere.
+        KeyError: A path does not exist.
     """
     root = yaml.compose(text, Loader=yaml.SafeLoader)
     pieces: list[tuple[int, int, str]] = []
@@ -51,7 +51,7 @@ def parse_settings(settings: Iterable[str]) -> dict[str, str]:
     """``["width=1.6"]`` as ``{"width": "1.6"}``.
 
     Raises:
-        TemplateError: One of them is not of the form ``KEY=VALUE``.
+        TemplateError: A setting does not have the form ``KEY=VALUE``.
     """
     given = {}
     for setting in settings:
@@ -82,7 +82,7 @@ def format_value(value: Any) -> str:
 
 
 def _splice(text: str, start: int, end: int, new: str) -> str:
-    """Replace a span and keep a comment behind it in its column where there is room."""
+    """Replace a span of text; a comment behind it stays in its column if there is enough space."""
     grown = len(new) - (end - start)
     tail = re.match(r"([^\n#]*?)( +)(?=#)", text[end:])
     if tail and (grown < 0 or len(tail[2]) > grown + 1):

@@ -1,4 +1,4 @@
-"""What ``template.yaml`` may say.
+"""The content of ``template.yaml``.
 
 ::
 
@@ -55,7 +55,7 @@ class Parameter(_Metadata):
         return self
 
     def allowed(self) -> str:
-        """What is accepted, in words: ``0.5 to 3 m``."""
+        """The accepted values, in words: ``a number from 0.5 to 3 m``."""
         if self.type == "choice":
             return ", ".join(self.choices)
         if self.type == "boolean":
@@ -74,7 +74,7 @@ class Parameter(_Metadata):
         """The value in the parameter's own type; text is read as YAML would read it.
 
         Raises:
-            TemplateError: It is of another type or out of range.
+            TemplateError: The value has another type or is out of range.
         """
         found = self._convert(value)
         if found is None:

@@ -1,4 +1,4 @@
-"""Find and read the bundled templates."""
+"""Finds and reads the bundled templates."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def load(name: str) -> Template:
     """One template.
 
     Raises:
-        TemplateError: There is none of that name.
+        TemplateError: No template has that name.
     """
     known = names()
     if name not in known:
         near = nearest(name, known)
         raise TemplateError(
             "unknown-template",
-            f"there is no template {name!r}; there are {', '.join(known)}.",
+            f"there is no template {name!r}; choose one of {', '.join(known)}.",
             f"did you mean {near}?" if near else None,
         )
     file = scenario_file(name)
@@ -43,17 +43,17 @@ def load_all() -> list[Template]:
 
 
 def find(words: Iterable[str], *, every: bool = False) -> list[Template]:
-    """The templates that are about some words: those whose name, title, purpose or tags hold the most of them.
+    """The templates whose name, title, purpose and tags contain the most of some words.
 
     Args:
-        words: What to look for; without words all templates are found.
-        every: Only templates that hold every word.
+        words: Words to look for; without words all templates are found.
+        every: Find only templates that contain every word.
     """
     wanted = [word.lower() for phrase in words for word in phrase.split()]
     templates = load_all()
     if not wanted:
         return templates
-    scores = {template.name: sum(word in _searched(template) for word in wanted) for template in templates}
+    scores = {template.name: sum(word in _search_text(template) for word in wanted) for template in templates}
     best = len(wanted) if every else max(scores.values(), default=0)
     return [template for template in templates if best and scores[template.name] == best]
 
@@ -63,5 +63,5 @@ def scenario_file(name: str) -> Path:
     return resources.templates_directory() / name / "scenario.yaml"
 
 
-def _searched(template: Template) -> str:
+def _search_text(template: Template) -> str:
     return " ".join((template.name, template.title, template.purpose, *template.tags)).lower()

@@ -25,7 +25,7 @@ class BehaviorOptions(Options):
     wander: Bool = False
     """Drive to random goals between `range_low` and `range_high`; each arrival draws the next."""
     loop: Bool = False
-    """Start again with the first goal after the last; with one goal, shuttle between it and the start. `wander` takes
+    """After the last goal, start again with the first; with one goal, shuttle between it and the start. `wander` takes
     precedence."""
     range_low: Pose | None = None
     """Lower corner of random goals; null is the world's own. Two numbers leave the heading free."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["bundled_map", "bundled_names", "stand_in"]
+__all__ = ["bundled_map", "bundled_names", "replacement_map"]
 
 _FOLDER = Path(__file__).parent / "_data"
 _STAND_INS = {f"hm3d_{number}.png": f"flat_{1 + (number - 1) % 2}.png" for number in range(1, 10)}
@@ -16,7 +16,7 @@ def bundled_names() -> list[str]:
     return sorted(path.name for path in _FOLDER.glob("*.png"))
 
 
-def stand_in(name: str) -> str | None:
+def replacement_map(name: str) -> str | None:
     """The bundled map that replaces a map that is not included; None for any other name."""
     return _STAND_INS.get(name)
 

@@ -14,12 +14,12 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.components.maps._picture import open_picture, upright
 from irsim.components.maps._site import MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
-Floats = NDArray[np.float64]
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1.0
 _MAX_YAML_BYTES = 64 * 1024
@@ -195,7 +195,7 @@ def ros_raster(path: Path, name: str, site: MapSite, unknown: float) -> Raster:
     width_fits = abs(wanted[0] - width) <= _EXTENT_TOLERANCE * width
     height_fits = abs(wanted[1] - height) <= _EXTENT_TOLERANCE * height
     if not (aligned and width_fits and height_fits):
-        values = _resampled(values, meta, size, wanted, unknown)
+        values = _resample(values, meta, size, wanted, unknown)
     values = np.where(values < 0, unknown, values)
     return Raster(values, None, wanted[0], wanted[1], wanted[2])
 
@@ -212,7 +212,7 @@ def _extent(shape: tuple[int, ...], meta: RosMeta) -> tuple[float, float, tuple[
     return float(cells[0] * r), float(cells[1] * r), (x + float(low[0]), y + float(low[1]))
 
 
-def _resampled(
+def _resample(
     values: Floats,
     meta: RosMeta,
     size: tuple[int, int],

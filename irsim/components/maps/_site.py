@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from irsim.common.arrays import Floats
 
 __all__ = ["MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
 
@@ -135,7 +135,7 @@ class MapSite:
             MapProblem: The file does not exist, is not allowed, or is too large.
         """
         if name in self.kept:
-            return self._checked(Path(self.kept[name]), name)
+            return self._check_size(Path(self.kept[name]), name)
         folders = [*([beside] if beside is not None else []), *self.folders]
         wrong = self.refuse(name, folders)
         if wrong is not None:
@@ -146,7 +146,7 @@ class MapSite:
             try:
                 if path.is_file():
                     self.found[name] = os.path.abspath(path)
-                    return self._checked(path, name)
+                    return self._check_size(path, name)
             except (OSError, ValueError):
                 continue
         bundled = self.bundled(name)
@@ -176,7 +176,7 @@ class MapSite:
                 fix="use a smaller picture, or a coarser resolution",
             )
 
-    def _checked(self, path: Path, name: str) -> Path:
+    def _check_size(self, path: Path, name: str) -> Path:
         size = path.stat().st_size
         if size > self.max_bytes:
             raise MapProblem(

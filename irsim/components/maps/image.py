@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.maps._bundled import stand_in
+from irsim.components.maps._bundled import replacement_map
 from irsim.components.maps._options import MapOptions
 from irsim.components.maps._site import MapSite, Raster
 from irsim.options.registry import MAPS
@@ -32,7 +32,7 @@ def image(options: ImageMap, site: MapSite) -> Raster:
     from irsim.components.maps._picture import image_raster, open_picture
 
     path = site.find(options.path)
-    own = stand_in(options.path)
+    own = replacement_map(options.path)
     if own is not None and path.name == own:
         site.notes.append(("map-stand-in", f"'{options.path}' is not included: '{own}' is used instead"))
     return image_raster(*open_picture(path, options.path, site))

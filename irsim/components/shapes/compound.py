@@ -67,7 +67,7 @@ class Compound(ShapeOptions):
     frame."""
 
 
-def _placed(points: list[list[float]], pose: list[float]) -> list[list[float]]:
+def _transform(points: list[list[float]], pose: list[float]) -> list[list[float]]:
     c, s = math.cos(pose[2]), math.sin(pose[2])
     return [[pose[0] + c * x - s * y, pose[1] + s * x + c * y] for x, y in points]
 
@@ -75,15 +75,15 @@ def _placed(points: list[list[float]], pose: list[float]) -> list[list[float]]:
 def _part(part: CirclePart | RectanglePart | PolygonPart) -> core.Part:
     if isinstance(part, CirclePart):
         offset = [part.center[0] + (part.wheelbase or 0.0) / 2, part.center[1]]
-        center = _placed([offset], part.pose)[0]
+        center = _transform([offset], part.pose)[0]
         if part.random_shape:
             return core.RandomCircle(radius_range=part.radius_range, center=center)
         return core.Circle(radius=part.radius, center=center)
     if isinstance(part, RectanglePart):
-        return core.Polygon(vertices=_placed(corners(part), part.pose))
+        return core.Polygon(vertices=_transform(corners(part), part.pose))
     if part.random_shape:  # the checks refuse a pose here: the core draws it in the body frame
         return random_polygon(part, part.is_convex, closed=True)
-    return core.Polygon(vertices=_placed(part.vertices or SQUARE, part.pose))
+    return core.Polygon(vertices=_transform(part.vertices or SQUARE, part.pose))
 
 
 @SHAPES.register(Compound)

@@ -46,7 +46,7 @@ class Context:
                 first += entry.number
 
     @property
-    def written(self) -> list[ObjectRecord]:
+    def entry_objects(self) -> list[ObjectRecord]:
         """The objects made by entries, without the map and the walls round the world."""
         return [record for record in self.resolved.objects if record.path[0] != "world"]
 
@@ -54,7 +54,7 @@ class Context:
     def driven_groups(self) -> frozenset[int]:
         """Groups whose first member has a group behavior, which decides for all members."""
         leaders: dict[int, ObjectRecord] = {}
-        for record in self.written:
+        for record in self.entry_objects:
             leaders.setdefault(record.group, record)
         return frozenset(group for group, leader in leaders.items() if leader.group_behavior is not None)
 
@@ -81,7 +81,7 @@ class Context:
         written = at(self.data, path)
         return isinstance(written, (list, tuple)) and not is_vector(written)
 
-    def given(self, record: ObjectRecord, key: str) -> bool:
+    def is_given(self, record: ObjectRecord, key: str) -> bool:
         """Whether the entry of an object writes ``key`` (null does not count)."""
         value: Any = self.data
         for part in record.path:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from irsim.components.behaviors._options import BehaviorOptions, CustomOptions
-from irsim.diagnostics.diagnostic import Edit, nearest, surely
+from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
@@ -25,7 +25,7 @@ _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    yield from distinct(finding for record in context.written for finding in _of_object(context, record))
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
@@ -34,12 +34,12 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         if options is None:
             continue
         if isinstance(options, CustomOptions):
-            yield from _custom(context, record, key, table)
-        yield from _common(context, record, key, options)
+            yield from _unknown_name(context, record, key, table)
+        yield from _goal_options(context, record, key, options)
         if options.name == "rvo":
-            yield from _rvo(context, record, key, options)
-        yield from _capped(context, record, key, options)
-        yield from _local(context, record, key, options)
+            yield from _rvo_acce(context, record, key, options)
+        yield from _speed_above_limits(context, record, key, options)
+        yield from _misplaced_keys(context, record, key, options)
     if record.kinematics is None and (record.behavior or record.group_behavior) is not None:
         key = "behavior" if record.behavior is not None else "group_behavior"
         yield warning(
@@ -51,7 +51,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if record.behavior is not None or record.group_behavior is not None:
         return
     driven = record.group in context.driven_groups
-    goal = next((key for key in ("goal", "waypoints") if context.given(record, key)), None)
+    goal = next((key for key in ("goal", "waypoints") if context.is_given(record, key)), None)
     if record.kinematics is None and record.role == "robot" and goal and not context.entry(record.path).static:
         yield warning(
             "behavior-without-kinematics",
@@ -79,7 +79,7 @@ def _drive_fix(context: Context, record: ObjectRecord) -> str:
     return f"write 'kinematics: {{name: diff}}' {drives} instead of {flow(written)}"
 
 
-def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehaviors) -> Iterator[Finding]:
+def _unknown_name(context: Context, record: ObjectRecord, key: str, table: CustomBehaviors) -> Iterator[Finding]:
     options: Any = getattr(record, key)
     drive = getattr(record.kinematics, "name", "static")
     if table.has(drive, options.name) or record.kinematics is None:
@@ -100,7 +100,7 @@ def _custom(context: Context, record: ObjectRecord, key: str, table: CustomBehav
         return
     near = nearest(options.name, known)
     fix = f"name: {near}" if near else _OWN
-    edit = Edit("replace", path, near, safe=surely(options.name, near)) if near else None
+    edit = Edit("replace", path, near, safe=is_slip_of(options.name, near)) if near else None
     if options.name in ("wander", "loop"):
         plain = "dash" if key == "behavior" else "orca"
         fix = f"write {{name: {plain}, {options.name}: true}}: '{options.name}' is a key of every behavior"
@@ -124,7 +124,7 @@ def _built_in(key: str) -> list[str]:
     return [feature.name for feature in BEHAVIORS.features() if getattr(feature.options, "in_group", False)]
 
 
-def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+def _goal_options(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
     path = context.entry_path(record, key)
     if options.wander and options.loop:
         yield warning(
@@ -158,7 +158,7 @@ def _common(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         )
 
 
-def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+def _misplaced_keys(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
     """Keys written inside the ``local`` behavior of ``follow`` although ``follow`` itself reads them."""
     local: Any = getattr(options, "local", None)
     path = context.entry_path(record, key)
@@ -189,7 +189,7 @@ def _local(context: Context, record: ObjectRecord, key: str, options: Any) -> It
         )
 
 
-def _capped(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+def _speed_above_limits(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
     """Speed options of a behavior that are above the limits of the drive."""
     drive = getattr(record.kinematics, "name", "")
     limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
@@ -211,7 +211,7 @@ def _capped(context: Context, record: ObjectRecord, key: str, options: Any) -> I
         return
 
 
-def _rvo(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
+def _rvo_acce(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
     if "acce" in options.model_fields_set and options.acce >= max(options.vxmax, options.vymax):
         rate = options.acce / context.scenario.world.step_time
         yield hint(

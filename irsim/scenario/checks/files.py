@@ -71,6 +71,6 @@ def named_files(context: Context) -> Iterator[tuple[Path, str]]:
     if isinstance(name, str):
         written = context.data["world"]["obstacle_map"]
         yield ("world", "obstacle_map") if isinstance(written, str) else ("world", "obstacle_map", "path"), name
-    for record in context.written:
-        if record.description is not None and context.given(record, "description"):
+    for record in context.entry_objects:
+        if record.description is not None and context.is_given(record, "description"):
             yield context.entry_path(record, "description"), record.description

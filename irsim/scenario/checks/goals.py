@@ -30,7 +30,7 @@ _MAX_THRESHOLD_RATIO = 0.5
 def check(context: Context) -> Iterator[Finding]:
     """Check each entry."""
     for path, entry, records in context.entries():
-        yield from _levels(path, entry)
+        yield from _goal_nesting(path, entry)
         if entry.goal is not None and entry.waypoints is not None:
             yield error(
                 "conflicting-keys",
@@ -39,23 +39,23 @@ def check(context: Context) -> Iterator[Finding]:
                 fix="keep one of them",
             )
         if entry.distribution is not None and entry.distribution.name != "manual":
-            yield from _ignored(path, entry)
+            yield from _ignored_keys(path, entry)
         elif records:
             yield from _state(context, path, entry, records)
         if records and entry.distribution is not None and entry.distribution.name != "manual":
             yield from _placed_outside(context, path, entry, records)
         elif records:
-            yield from _surplus(path, entry)
-            yield from _outside(context, records)
+            yield from _surplus_states(path, entry)
+            yield from _outside_world(context, records)
             yield from _surplus_values(context, path, entry)
             yield from _default_goal(path, entry, records)
-            yield from _degrees(context, records)
-        yield from _reached(context, records)
-        yield from _reached_anywhere(context, path, entry, records)
-        yield from _heading(context, path, records)
+            yield from _headings_in_degrees(context, records)
+        yield from _goals_reached_at_start(context, records)
+        yield from _threshold_too_large(context, path, entry, records)
+        yield from _heading_not_reached(context, path, records)
 
 
-def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _heading_not_reached(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
     """Arrival that requires a heading that the drive never turns to."""
     for record in records:
         drive = getattr(record.kinematics, "name", None)
@@ -74,7 +74,7 @@ def _heading(context: Context, path: Path, records: list[ObjectRecord]) -> Itera
             return
 
 
-def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _goals_reached_at_start(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
     """Goals that count as reached at the start, and waypoints that count as reached together."""
     for record in records:
         if record.static or record.wander or record.loop or not record.goals or record.kinematics is None:
@@ -83,8 +83,8 @@ def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
         for index, (a, b) in enumerate(itertools.pairwise(points)):
             if not _arrives(record, a, b):
                 continue
-            key = "waypoints" if context.given(record, "waypoints") else "goal"
-            where = _goal_path(context, record, key, index) if context.given(record, key) else record.path
+            key = "waypoints" if context.is_given(record, "waypoints") else "goal"
+            where = _goal_path(context, record, key, index) if context.is_given(record, key) else record.path
             gap = f"{math.dist(a[:2], b[:2]):.3g} m"
             if index == 0:
                 what = "goal" if len(record.goals) == 1 else "first goal"
@@ -102,7 +102,7 @@ def _reached(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
             break
 
 
-def _reached_anywhere(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _threshold_too_large(context: Context, path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
     """A goal threshold as large as the area in which goals are drawn."""
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     for record in records:
@@ -141,7 +141,7 @@ def _arrives(record: ObjectRecord, a: list[float], b: list[float]) -> bool:
     return math.hypot(a[0] - b[0], a[1] - b[1], turn) < record.goal_threshold
 
 
-def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
+def _goal_nesting(path: Path, entry: Entry) -> Iterator[Finding]:
     goal: Any = entry.goal
     if goal is None or is_vector(goal) or len(goal) <= max(entry.number, 1):
         return
@@ -172,7 +172,7 @@ def _levels(path: Path, entry: Entry) -> Iterator[Finding]:
     )
 
 
-def _ignored(path: Path, entry: Entry) -> Iterator[Finding]:
+def _ignored_keys(path: Path, entry: Entry) -> Iterator[Finding]:
     name = entry.distribution.name
     keys = ["state"] if name == "circle" else ["state", "goal", "waypoints"]
     for key in keys:
@@ -232,11 +232,11 @@ def _default_goal(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iter
         )
 
 
-def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _headings_in_degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
     """Headings above a full turn that are whole numbers, so they may be degrees."""
     for key in ("state", "goal", "waypoints"):
         for record in records:
-            if not context.given(record, key):
+            if not context.is_given(record, key):
                 break
             poses = [record.state] if key == "state" else record.goals
             turned = (i for i, pose in enumerate(poses) if len(pose) > 2 and abs(pose[2]) > _MAX_HEADING)
@@ -253,7 +253,7 @@ def _degrees(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
                 break
 
 
-def _surplus(path: Path, entry: Entry) -> Iterator[Finding]:
+def _surplus_states(path: Path, entry: Entry) -> Iterator[Finding]:
     """States for more objects than the entry makes."""
     state: Any = entry.state
     count = len(state) if isinstance(state, list) and not is_vector(state) else 0
@@ -329,7 +329,7 @@ def _placed_outside(context: Context, path: Path, entry: Entry, records: list[Ob
     )
 
 
-def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _outside_world(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]:
     x0, y0, x1, y1 = context.scenario.world.bounds
     what = [("state", "starts")] if records[0].role == "robot" else []
     if any(not record.static for record in records) and records[0].role == "robot":
@@ -338,15 +338,15 @@ def _outside(context: Context, records: list[ObjectRecord]) -> Iterator[Finding]
         for record in records:
             points = [record.state] if key == "state" else [] if record.wander else record.goals
             lost = [(i, p) for i, p in enumerate(points) if not (x0 <= p[0] <= x1 and y0 <= p[1] <= y1)]
-            if lost and (context.given(record, key) or key == "state" or record.behavior is not None):
-                written = "waypoints" if key == "goal" and context.given(record, "waypoints") else key
+            if lost and (context.is_given(record, key) or key == "state" or record.behavior is not None):
+                written = "waypoints" if key == "goal" and context.is_given(record, "waypoints") else key
                 index, (x, y) = lost[0][0], lost[0][1][:2]
                 yield hint(
                     "outside-world",
                     _goal_path(context, record, written, index) if key == "goal" else context.entry_path(record, key),
                     f"'{record.name}' {words} at ({x:g}, {y:g}), outside the world "
                     f"[{x0:g}, {x1:g}] × [{y0:g}, {y1:g}]"
-                    + ("" if context.given(record, written) else f" (the default {key})"),
+                    + ("" if context.is_given(record, written) else f" (the default {key})"),
                     fix=f"use x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, or a larger world",
                 )
                 break

@@ -18,20 +18,20 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 def check(context: Context) -> Iterator[Finding]:
     """Check each group."""
     groups: dict[int, list[ObjectRecord]] = defaultdict(list)
-    for record in context.written:
+    for record in context.entry_objects:
         groups[record.group].append(record)
     for group, members in groups.items():
-        yield from _not_for_groups(context, members)
+        yield from _not_a_group_behavior(context, members)
         leader = members[0]
         if isinstance(leader.group_behavior, Sfm):
             yield from _social_groups(context, leader, leader.group_behavior, len(members))
         if leader.group_behavior is None:
-            yield from _unused(context, group, members)
+            yield from _unused_behavior(context, group, members)
         elif leader.role == "robot":
             yield from _driven_obstacles(group, members)
 
 
-def _not_for_groups(context: Context, members: list[ObjectRecord]) -> Iterator[Finding]:
+def _not_a_group_behavior(context: Context, members: list[ObjectRecord]) -> Iterator[Finding]:
     seen = set()
     for record in members:
         options: Any = record.group_behavior
@@ -80,7 +80,7 @@ def _social_groups(context: Context, leader: ObjectRecord, options: Sfm, size: i
             )
 
 
-def _unused(context: Context, group: int, members: list[ObjectRecord]) -> Iterator[Finding]:
+def _unused_behavior(context: Context, group: int, members: list[ObjectRecord]) -> Iterator[Finding]:
     later = next((m for m in members if m.group_behavior is not None), None)
     if later is not None:
         yield hint(

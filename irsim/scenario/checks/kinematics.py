@@ -22,15 +22,15 @@ _QUARTER_TURN = 1.58
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    yield from distinct(finding for record in context.written for finding in _of_object(context, record))
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     wrong = [finding for key in _CONTROL_KEYS if (finding := _wrong_length(context, record, key)) is not None]
     yield from wrong
     if not wrong:
-        yield from _limits(context, record)
-    if context.given(record, "angle_range"):
+        yield from _limits_order(context, record)
+    if context.is_given(record, "angle_range"):
         yield from _angle_range(context, record)
     if record.kinematics is None:
         return
@@ -52,7 +52,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         )
     steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
     if not wrong and options.name == "acker" and options.mode == "steer" and steering >= math.pi / 2:
-        key = "vel_max" if context.given(record, "vel_max") else "vel_min"
+        key = "vel_max" if context.is_given(record, "vel_max") else "vel_min"
         yield warning(
             "steering-limit",
             context.entry_path(record, key),
@@ -78,7 +78,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _wrong_length(context: Context, record: ObjectRecord, key: str) -> Finding | None:
-    values = _written(context, record, key)
+    values = _written_vector(context, record, key)
     if values is None or len(values) == record.vel_dim or record.kinematics is None:  # unused without a drive
         return None
     drive: Any = record.kinematics
@@ -101,14 +101,14 @@ def _wrong_length(context: Context, record: ObjectRecord, key: str) -> Finding |
 def _start_velocity(context: Context, record: ObjectRecord, values: list[float]) -> Edit | None:
     """The velocity that 2.12 reads for an object with a behavior: cut, padded, or one number for each component."""
     decides = record.behavior is not None or record.group_behavior is not None
-    limited = context.given(record, "acce") and len(values) > 1
+    limited = context.is_given(record, "acce") and len(values) > 1
     if not decides or limited or not values:
         return None
     read = values * record.vel_dim if len(values) == 1 else [*values, *[0.0] * record.vel_dim][: record.vel_dim]
     return Edit("replace", context.entry_path(record, "velocity"), read)
 
 
-def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
+def _written_vector(context: Context, record: ObjectRecord, key: str) -> list[float] | None:
     """The vector that the file gives this object."""
     value: Any = getattr(context.entry(record.path), key)
     if isinstance(value, list) and any(isinstance(item, list) or item is None for item in value):
@@ -116,11 +116,11 @@ def _written(context: Context, record: ObjectRecord, key: str) -> list[float] | 
     return value if value is None else list(value)
 
 
-def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+def _limits_order(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     for i, (low, high) in enumerate(zip(record.vel_min, record.vel_max, strict=True)):
         if low > high:
-            written = "vel_min" if context.given(record, "vel_min") else "vel_max"
-            other = "" if context.given(record, "vel_min") else ", which is the default"
+            written = "vel_min" if context.is_given(record, "vel_min") else "vel_max"
+            other = "" if context.is_given(record, "vel_min") else ", which is the default"
             yield error(
                 "limits-order",
                 context.entry_path(record, written),
@@ -129,7 +129,7 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
                 fix="each number of vel_min must not exceed that of vel_max",
             )
             return
-    if record.kinematics is None or context.given(record, "vel_min") or not context.given(record, "vel_max"):
+    if record.kinematics is None or context.is_given(record, "vel_min") or not context.is_given(record, "vel_max"):
         return
     if any(high > 1 for high in record.vel_max):
         lower = [-value for value in record.vel_max]
@@ -148,7 +148,7 @@ def _limits(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 
 def _angle_range(context: Context, record: ObjectRecord) -> Iterator[Finding]:
-    values = _written(context, record, "angle_range") or [-math.pi, math.pi]
+    values = _written_vector(context, record, "angle_range") or [-math.pi, math.pi]
     if abs(values[1] - values[0] - 2 * math.pi) > _ROUNDING:
         path = context.entry_path(record, "angle_range")
         yield error(

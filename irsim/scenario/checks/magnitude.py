@@ -18,21 +18,21 @@ def check(context: Context) -> Iterator[Finding]:
     """Check the extent of the world, and the places, bodies and speeds of its objects."""
     world = context.scenario.world
     for key, values in (("width", [world.width]), ("height", [world.height]), ("offset", world.offset)):
-        yield from _judge(("world", key), values)
+        yield from _check_values(("world", key), values)
     seen: set[Path] = set()
-    for record in context.written:
+    for record in context.entry_objects:
         goals = [value for goal in record.goals for value in goal[:2]]
-        key = "waypoints" if context.given(record, "waypoints") else "goal"
+        key = "waypoints" if context.is_given(record, "waypoints") else "goal"
         limits = [value for value in (*record.vel_max, *record.vel_min) if math.isfinite(value)]
         bodies = [reach_of(record.shape)]
         for name, numbers in (("state", record.state[:2]), (key, goals), ("vel_max", limits), ("shape", bodies)):
-            for finding in _judge(context.entry_path(record, name), [v for v in numbers if math.isfinite(v)]):
+            for finding in _check_values(context.entry_path(record, name), [v for v in numbers if math.isfinite(v)]):
                 if finding.diagnostic.path not in seen:
                     seen.add(finding.diagnostic.path)
                     yield finding
 
 
-def _judge(path: Path, values: Iterable[float]) -> Iterator[Finding]:
+def _check_values(path: Path, values: Iterable[float]) -> Iterator[Finding]:
     worst = max((abs(value) for value in values), default=0.0)
     if worst > MAX_MAGNITUDE:
         yield error(

@@ -28,13 +28,13 @@ _AVOIDING = ("rvo", "sfm", "orca", "follow")
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    yield from distinct(_all(context))
+    yield from distinct(_check_objects(context))
 
 
-def _all(context: Context) -> Iterator[Finding]:
+def _check_objects(context: Context) -> Iterator[Finding]:
     counts = {role: sum(r.role == role and not r.unobstructed for r in context.resolved.objects)
               for role in ("robot", "obstacle")}  # fmt: skip
-    for record in context.written:
+    for record in context.entry_objects:
         if record.kinematics is None:
             continue
         yield from _cannot_move(context, record)
@@ -43,7 +43,7 @@ def _all(context: Context) -> Iterator[Finding]:
             yield from _unobstructed_robot(context, record)
         yield from _never_arrives(context, record)
         yield from _overshoot(context, record)
-        yield from _circles(context, record)
+        yield from _circles_goal(context, record)
 
 
 def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
@@ -51,7 +51,7 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     options: Any = getattr(record, key)
     if options is None or isinstance(options, CustomOptions):
         return
-    path = context.entry_path(record, key) if context.given(record, key) else record.path
+    path = context.entry_path(record, key) if context.is_given(record, key) else record.path
     if record.static:
         yield warning(
             "static-behavior",
@@ -70,8 +70,8 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     ranges = list(zip(record.vel_min, record.vel_max, strict=False))
     if len(ranges) < moving or len(rows) != len(ranges) or any(low > high for low, high in ranges):
         return
-    written = "vel_max" if context.given(record, "vel_max") else "vel_min"
-    where = context.entry_path(record, written) if context.given(record, written) else path
+    written = "vel_max" if context.is_given(record, "vel_max") else "vel_min"
+    where = context.entry_path(record, written) if context.is_given(record, written) else path
     if all(low >= 0 >= high for low, high in ranges[:moving]):
         yield warning(
             "no-speed",
@@ -80,13 +80,13 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, written),
             fix=f"vel_max: {flow([1.0] * len(ranges))}, in m/s and rad/s",
         )
-    elif drive.name == "omni" and (lacking := _lacking(record)) is not None:
+    elif drive.name == "omni" and (lacking := _missing_direction(record)) is not None:
         row, sign, goal = lacking
         key = "vel_max" if sign > 0 else "vel_min"
         way = (("backwards", "forwards"), ("to the right", "to the left"))[row][sign > 0]
         yield warning(
             "no-speed",
-            context.entry_path(record, key) if context.given(record, key) else where,
+            context.entry_path(record, key) if context.is_given(record, key) else where,
             f"'{record.name}' cannot turn or drive {way}, so it cannot reach ({goal[0]:g}, {goal[1]:g})",
             given=getattr(record, key),
             fix=f"use a {'positive' if sign > 0 else 'negative'} {('first', 'second')[row]} number in '{key}'",
@@ -120,7 +120,7 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         )
 
 
-def _lacking(record: ObjectRecord) -> tuple[int, int, list[float]] | None:
+def _missing_direction(record: ObjectRecord) -> tuple[int, int, list[float]] | None:
     """Row and sign of the speed that an object of fixed heading would need to reach a goal but lacks, and the goal."""
     if record.wander or getattr(record.kinematics, "noise", False):
         return None
@@ -214,7 +214,7 @@ def _overshoot(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     )
 
 
-def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
+def _circles_goal(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     """Goals inside the turning circle of a car: ``dash`` steers towards them as far as it can and circles them."""
     drive: Any = record.kinematics
     options: Any = record.behavior if record.group_behavior is None else None
@@ -247,7 +247,7 @@ def _circles(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     towards = math.atan2(goal[1] - record.state[1], goal[0] - record.state[0])
     yield warning(
         "turning-circle",
-        context.entry_path(record, "state") if context.given(record, "state") else record.path,
+        context.entry_path(record, "state") if context.is_given(record, "state") else record.path,
         f"the smallest turning radius of '{record.name}' is {radius:.3g} m, and its goal ({goal[0]:g}, {goal[1]:g}) "
         f"lies inside that circle: it circles the goal and comes no nearer than {least:.2g} m",
         fix=f"start towards the goal, with heading {towards:.4g}, or goal_threshold: "

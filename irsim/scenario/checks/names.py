@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from irsim.diagnostics.diagnostic import Edit, nearest, surely
+from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error
 
@@ -39,6 +39,6 @@ def check(context: Context) -> Iterator[Finding]:
             given=viewpoint,
             allowed=sorted(first)[:20],
             fix=f"viewpoint: {near}" if near else None,
-            edit=Edit("replace", path, near, safe=surely(viewpoint, near)) if near else None,
+            edit=Edit("replace", path, near, safe=is_slip_of(viewpoint, near)) if near else None,
             carry_on=Edit("remove", path),
         )

@@ -53,26 +53,26 @@ def check(context: Context) -> Iterator[Finding]:
             found[key] = (*first[:2], first[2] + 1)
     by_id = {body.record.id: body for body in bodies}
     for mover, other, count in found.values():
-        where = context.entry_path(mover, "state") if context.given(mover, "state") else mover.path
-        deep, place = _depth(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
+        where = context.entry_path(mover, "state") if context.is_given(mover, "state") else mover.path
+        deep, place = _depth_text(by_id[mover.id], by_id[other.id]), _free_place(context, by_id[mover.id], bodies)
         instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
         harmless = context.scenario.world.collision_mode == "unobstructed"
         yield (hint if harmless else warning)(
             "initial-overlap",
             where,
-            f"'{mover.name}' starts {'overlapping' if harmless else 'in collision with'} {_named(other)}{deep}"
-            + (f", and {_more(count)} more such pairs of these entries" if count > 1 else ""),
+            f"'{mover.name}' starts {'overlapping' if harmless else 'in collision with'} {_describe(other)}{deep}"
+            + (f", and {_count_of_others(count)} more such pairs of these entries" if count > 1 else ""),
             fix="move one of them, or make it smaller" + instead
             if other.path[0] != "world"
             else "start in free space" + instead,
         )
 
 
-def _more(count: int) -> str:
+def _count_of_others(count: int) -> str:
     return f"at least {count - 1}" if count >= _MAX_COUNTED else str(count - 1)
 
 
-def _depth(a: _Body, b: _Body) -> str:
+def _depth_text(a: _Body, b: _Body) -> str:
     """Depth of an overlap, in words: the shortest move, in one of a few directions, that separates the two."""
     x, y, heading = a.record.state[:3]
     most = 2 * (a.reach + min(b.reach, 10 * a.reach))
@@ -124,7 +124,7 @@ def _free_place(context: Context, mover: _Body, bodies: list[_Body]) -> tuple[fl
     return None
 
 
-def _named(record: ObjectRecord) -> str:
+def _describe(record: ObjectRecord) -> str:
     kinds = {"map": f"the map ('{record.name}')", "walls": "the walls round the world"}
     return kinds.get(record.shape.name, f"'{record.name}'")
 

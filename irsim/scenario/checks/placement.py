@@ -23,15 +23,15 @@ def check(context: Context) -> Iterator[Finding]:
     for path, entry, records in context.entries():
         name = entry.distribution.name if entry.distribution is not None else "manual"
         if name == "random":
-            yield from _ranges(context, path)
+            yield from _empty_ranges(context, path)
         elif name == "circle" and len(records) > 1:
-            yield from _circle(path, records)
+            yield from _overlap_on_circle(path, records)
         elif name == "manual" and len(records) > 1:
-            yield from _stacked(path, entry, records)
-    yield from _twice(context)
+            yield from _stacked_objects(path, entry, records)
+    yield from _duplicate_obstacles(context)
 
 
-def _ranges(context: Context, path: Path) -> Iterator[Finding]:
+def _empty_ranges(context: Context, path: Path) -> Iterator[Finding]:
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     if placement is None:
         return
@@ -51,7 +51,7 @@ def _ranges(context: Context, path: Path) -> Iterator[Finding]:
             return
 
 
-def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _overlap_on_circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
     a, b = records[0].state, records[1].state
     gap = math.hypot(a[0] - b[0], a[1] - b[1])
     widths = [2 * getattr(record.shape, "radius", 0.0) for record in records[:2] if record.shape.name == "circle"]
@@ -64,12 +64,12 @@ def _circle(path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
         )
 
 
-def _twice(context: Context) -> Iterator[Finding]:
+def _duplicate_obstacles(context: Context) -> Iterator[Finding]:
     """Static obstacles with the same shape and place as one of another entry."""
     random = {index for placement in context.resolved.placements for index in placement.objects}
     places: dict[tuple[float, ...], list[ObjectRecord]] = defaultdict(list)
     reported: set[Path] = set()
-    for record in context.written:
+    for record in context.entry_objects:
         if record.role == "robot" or not record.static or record.id in random or record.path in reported:
             continue
         same = places[tuple(round(v, 9) for v in record.state[:3])]
@@ -81,13 +81,13 @@ def _twice(context: Context) -> Iterator[Finding]:
         reported.add(record.path)
         yield hint(
             "stacked",
-            context.entry_path(record, "state") if context.given(record, "state") else record.path,
+            context.entry_path(record, "state") if context.is_given(record, "state") else record.path,
             f"'{record.name}' has the same shape and place as '{twin.name}': one of them is not needed",
             fix="change 'state', or remove one of the two",
         )
 
 
-def _stacked(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _stacked_objects(path: Path, entry: Entry, records: list[ObjectRecord]) -> Iterator[Finding]:
     if isinstance(entry.shape, list):  # polygons with vertices in world coordinates share one state on purpose
         return
     places: dict[tuple[float, ...], int] = defaultdict(int)

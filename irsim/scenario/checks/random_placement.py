@@ -21,10 +21,10 @@ def check(context: Context) -> Iterator[Finding]:
     for placement in context.resolved.placements:
         records = [context.resolved.objects[index] for index in placement.objects]
         if len(records) > 1:
-            yield from _crowded(placement, records)
+            yield from _check_density(placement, records)
 
 
-def _crowded(placement: Placement, records: list[ObjectRecord]) -> Iterator[Finding]:
+def _check_density(placement: Placement, records: list[ObjectRecord]) -> Iterator[Finding]:
     width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
     distance = max(placement.min_distance, min(_thickness(record.shape) for record in records))
     if width < 0 or height < 0 or distance <= 0:

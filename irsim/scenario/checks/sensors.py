@@ -36,7 +36,7 @@ def check(context: Context) -> Iterator[Finding]:
             seen.add(where)
             for index, sensor in enumerate(record.sensors):
                 yield from _sensor(context, (*where, index), sensor)
-                yield from _blind(context, (*where, index), sensor, record)
+                yield from _blind_lidar(context, (*where, index), sensor, record)
         if not records:
             continue
         lidar = next((s for s in records[0].sensors if getattr(s, "is_lidar", False)), None)
@@ -67,14 +67,14 @@ def _sensor(context: Context, path: Any, sensor: Any) -> Iterator[Finding]:
         written = at(context.document.data, (*path, "angle_range"))
         if not isinstance(written, (int, float)) or is_span(written):
             yield from _beams(path, sensor)
-        yield from _unused(path, sensor)
+        yield from _keys_without_effect(path, sensor)
     if sensor.name == "contact2d" and context.scenario.world.collision_mode != "contact":
         yield hint(
             "contact-without-mode", path, "without 'collision_mode: contact' there are no contact forces to show"
         )
 
 
-def _blind(context: Context, path: Path, sensor: Any, record: ObjectRecord) -> Iterator[Finding]:
+def _blind_lidar(context: Context, path: Path, sensor: Any, record: ObjectRecord) -> Iterator[Finding]:
     """Beams that end inside the robot's own body, which they do not see."""
     if not getattr(sensor, "is_lidar", False) or not has_fixed_shape(record.shape):
         return
@@ -130,7 +130,7 @@ def _whole_degrees(directions: int) -> bool:
     return 720 % directions == 0 or directions % 360 == 0
 
 
-def _unused(path: Path, sensor: Any) -> Iterator[Finding]:
+def _keys_without_effect(path: Path, sensor: Any) -> Iterator[Finding]:
     """Keys that have no effect, given the other keys."""
     written = sensor.model_fields_set
     for key in ("std", "angle_std"):

@@ -24,8 +24,8 @@ _RANGES = (
 def check(context: Context) -> Iterator[Finding]:
     """Check each written shape once."""
     seen: set[Path] = set()
-    for record in context.written:
-        if not context.given(record, "shape"):
+    for record in context.entry_objects:
+        if not context.is_given(record, "shape"):
             if record.path not in seen:
                 seen.add(record.path)
                 yield hint(
@@ -76,7 +76,7 @@ def _polygon(path: Path, shape: Any) -> Iterator[Finding]:
     if shape.vertices is None:
         yield hint("default-vertices", path, "without 'vertices' the polygon is a square of 2 m")
         return
-    corners = _open(shape.vertices)
+    corners = _distinct_corners(shape.vertices)
     where = (*path, "vertices")
     if len(corners) < 3:
         yield error(
@@ -133,7 +133,7 @@ def _linestring(path: Path, shape: Any) -> Iterator[Finding]:
         )
 
 
-def _open(vertices: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+def _distinct_corners(vertices: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
     """The corners without repeated neighbours, and without the first corner repeated at the end."""
     corners: list[tuple[float, float]] = []
     for x, y in vertices:

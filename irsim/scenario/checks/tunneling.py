@@ -81,7 +81,7 @@ def _finding(context: Context, one: _Body, other: _Body, least: float, speed: fl
     longest = math.floor(least / speed * 100) / 100 or float(f"{least / speed:.1g}")
     return warning(
         "jumps-through",
-        context.entry_path(one.record, "vel_max") if context.given(one.record, "vel_max") else one.record.path,
+        context.entry_path(one.record, "vel_max") if context.is_given(one.record, "vel_max") else one.record.path,
         f"'{one.record.name}' moves {one.speed * dt:.3g} m per step{together}: it can pass through {thing} "
         f"({other.shape.width:.3g} m thick) without ever touching it",
         given=one.record.vel_max,

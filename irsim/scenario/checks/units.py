@@ -43,7 +43,7 @@ _MIN_REACH = 0.1
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
     yield from _times(context)
-    yield from distinct(finding for record in context.written for finding in _of_object(context, record))
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
     for path, entry, _ in context.entries():
         yield from _ranges((*path, "distribution"), entry.distribution)
 
@@ -53,7 +53,8 @@ def _times(context: Context) -> Iterator[Finding]:
     if world.step_time >= _MAX_STEP_TIME:
         likely = world.step_time / 1000
         meant = f"; {world.step_time:g} ms are {likely:g} s" if world.step_time >= 5 else ""
-        far = max((top_speed(r) for r in context.written if r.kinematics is not None), default=0.0) * world.step_time
+        speeds = (top_speed(record) for record in context.entry_objects if record.kinematics is not None)
+        far = max(speeds, default=0.0) * world.step_time
         yield (warning if max(world.width, world.height) <= far < math.inf else hint)(
             "step-time-long",
             ("world", "step_time"),
@@ -67,9 +68,9 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     yield from _lengths(context, record)
     yield from _speeds(context, record)
     for key in ("behavior", "group_behavior"):
-        if context.given(record, key):
+        if context.is_given(record, key):
             yield from _ranges(context.entry_path(record, key), getattr(record, key))
-    if context.given(record, "sensors"):
+    if context.is_given(record, "sensors"):
         for index, sensor in enumerate(record.sensors):
             where = (*context.entry_path(record, "sensors"), index)
             yield from _heading((*where, "offset"), list(getattr(sensor, "offset", None) or []))
@@ -82,7 +83,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
 
 def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     """Bodies that do not fit into their world, or are larger than any robot."""
-    if not context.given(record, "shape") or not has_fixed_shape(record.shape):
+    if not context.is_given(record, "shape") or not has_fixed_shape(record.shape):
         return
     if record.role != "robot":
         yield from _obstacle(context, record)
@@ -130,7 +131,7 @@ def _obstacle(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             return
     x0, y0, x1, y1 = world.bounds
     x, y = record.state[:2]
-    if not context.given(record, "state"):
+    if not context.is_given(record, "state"):
         return
     far = math.hypot(max(x0 - x, 0.0, x - x1), max(y0 - y, 0.0, y - y1)) - reach
     if far > _MAX_DISTANCE_RATIO * max(world.width, world.height) and x0 <= x / 100 <= x1 and y0 <= y / 100 <= y1:
@@ -205,7 +206,7 @@ def _sensor(context: Context, record: ObjectRecord, path: Path, sensor: Any) -> 
 
 def _speeds(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     rows: tuple[str, ...] = getattr(record.kinematics, "control_rows", ())
-    if len(rows) != len(record.vel_max) or not context.given(record, "vel_max"):
+    if len(rows) != len(record.vel_max) or not context.is_given(record, "vel_max"):
         return
     where = context.entry_path(record, "vel_max")
     by_rate = getattr(record.kinematics, "mode", "") == "angular"

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, Path, Severity
 
-__all__ = ["Finding", "error", "hint", "place", "warning"]
+__all__ = ["Finding", "error", "hint", "key_path", "warning"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Finding:
         return self.diagnostic.severity == "error" and not self.diagnostic.tolerated
 
 
-def place(path: Path) -> str:
+def key_path(path: Path) -> str:
     """A path without indices, robots and obstacles alike: ``entry.sensors.noise``."""
     words = [part for part in path if isinstance(part, str)]
     if words and words[0] in ("robot", "obstacle"):

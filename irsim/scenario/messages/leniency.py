@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path
-from irsim.scenario.messages.findings import place
+from irsim.scenario.messages.findings import key_path
 from irsim.scenario.model.lookup import at
 
 __all__ = ["carry_on_group", "carry_on_type", "carry_on_unknown_key", "carry_on_value"]
@@ -65,7 +65,7 @@ def carry_on_group(path: Path, data: Any) -> Edit | None:
 
 def carry_on_unknown_key(path: Path, parent: Any) -> Edit | None:
     """2.12 ignores unknown keys, except where it passes them on to a constructor that fails."""
-    section = place(path[:-1])
+    section = key_path(path[:-1])
     if section in _STRICT_SECTIONS:
         return None
     if section in ("entry.shape", "entry.shape.parts") and isinstance(parent, Mapping):
@@ -83,9 +83,9 @@ def carry_on_type(kind: str, path: Path, value: Any) -> Edit | None:
         return Edit("replace", path, bool(value))
     if kind in ("float_type", "int_type") and isinstance(value, bool):
         return Edit("replace", path, int(value))
-    if kind == "list_type" and place(path) in _SINGLE and isinstance(value, (int, float)):
+    if kind == "list_type" and key_path(path) in _SINGLE and isinstance(value, (int, float)):
         return Edit("replace", path, [value])
-    if kind == "string_type" and place(path) in _NAMES and isinstance(value, (str, int, float)):
+    if kind == "string_type" and key_path(path) in _NAMES and isinstance(value, (str, int, float)):
         return Edit("replace", path, str(value))
     if kind in ("model_type", "model_attributes_type") and path in (("robot",), ("obstacle",)):
         return Edit("remove", path)
@@ -97,7 +97,7 @@ def carry_on_value(kind: str, path: Path, value: Any, max_length: int | None = N
 
     With an ``acce`` of zero or less its ``rvo`` finds no new velocity, so the object does not move.
     """
-    where = place(path)
+    where = key_path(path)
     if kind == "unknown-value" and where in _FALLBACKS:
         return Edit("replace", path, _FALLBACKS[where])
     if kind == "unknown-color":

@@ -96,7 +96,7 @@ def read_number(text: str, unit: str | None) -> ParsedNumber:
         sign, before, divisor, after = pi.groups()
         value = math.pi * float(before or 1) * float(after or 1) * (-1 if sign == "-" else 1)
         if divisor is None or float(divisor) != 0:
-            return ParsedNumber(value / float(divisor or 1), " (YAML knows no pi)")
+            return ParsedNumber(value / float(divisor or 1), " (YAML has no pi)")
     if (fraction := _FRACTION.match(text)) and float(fraction.group(2)) != 0:
         return ParsedNumber(float(fraction.group(1)) / float(fraction.group(2)), " (YAML does not calculate)")
     if quantity := _QUANTITY.match(text):

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from irsim.diagnostics.codes import CODES
-from irsim.diagnostics.diagnostic import Edit, Path, format_path, nearest, surely
+from irsim.diagnostics.diagnostic import Edit, Path, format_path, is_slip_of, nearest
 from irsim.options.vectors import is_vector
-from irsim.scenario.messages.findings import Finding, error, place
+from irsim.scenario.messages.findings import Finding, error, key_path
 from irsim.scenario.messages.flat_poses import split_poses, split_waypoints
 from irsim.scenario.messages.leniency import carry_on_group, carry_on_type, carry_on_unknown_key, carry_on_value
 from irsim.scenario.messages.number_text import decimal_commas, read_number
@@ -99,7 +99,7 @@ class Explainer:
         """An error of the language's own validators, which bring message, allowed values and fix."""
         context = self.context
         meant = context.get("replace")
-        sure = not isinstance(meant, str) or surely(self.value, meant)
+        sure = not isinstance(meant, str) or is_slip_of(self.value, meant)
         edit = Edit("replace", self.path, meant, safe=sure) if meant is not None else None
         carry_on = edit if context.get("tolerated") else self._carry_on()
         if "tolerated_as" in context:
@@ -139,7 +139,10 @@ class Explainer:
         elif other is None and near is not None and isinstance(written, Mapping) and near in written:
             fix = f"the key is called '{near}', which is given here too: keep one of them"
         elif other is None and near is not None:
-            fix, edit = f"rename it to '{near}'", Edit("rename", self.path, near, safe=bool(meant) or surely(key, near))
+            fix, edit = (
+                f"rename it to '{near}'",
+                Edit("rename", self.path, near, safe=bool(meant) or is_slip_of(key, near)),
+            )
         elif other is None:
             fix, edit = "remove it", Edit("remove", self.path, safe=False)
         return error(
@@ -156,12 +159,14 @@ class Explainer:
     def _after_comma(self, key: Any, written: Any) -> str | None:
         """What to write for ``{radius: 0,3}``, which YAML reads as ``{radius: 0, 3: null}``."""
         keys = list(written) if isinstance(written, Mapping) else []
-        place = next((i for i, other in enumerate(keys) if str(other) == key), 0)
-        if not str(key).isdigit() or place == 0 or written[keys[place]] is not None:
+        position = next((i for i, other in enumerate(keys) if str(other) == key), 0)
+        if not str(key).isdigit() or position == 0 or written[keys[position]] is not None:
             return None
-        before = written[keys[place - 1]]
+        before = written[keys[position - 1]]
         return (
-            f"{keys[place - 1]}: {before}.{key}" if isinstance(before, int) and not isinstance(before, bool) else None
+            f"{keys[position - 1]}: {before}.{key}"
+            if isinstance(before, int) and not isinstance(before, bool)
+            else None
         )
 
     def _choice(self) -> Finding:
@@ -174,7 +179,7 @@ class Explainer:
             given=self.value,
             allowed=allowed,
             fix=f"{self._key()}: {near}" if near else None,
-            edit=Edit("replace", self.path, near, safe=surely(self.value, near)) if near else None,
+            edit=Edit("replace", self.path, near, safe=is_slip_of(self.value, near)) if near else None,
             carry_on=carry_on_value("unknown-value", self.path, self.value),
         )
 
@@ -185,12 +190,13 @@ class Explainer:
             limit = next((source[name] for source in sources if source.get(name) is not None), None)
             if limit is not None:
                 limits[name] = f"{sign} {number(limit)}"
+        allowed = " and ".join(limits.values()) + self._unit()
         return error(
             "out-of-range",
             self.path,
-            f"{quote_value(self.value)} is out of range",
+            f"{self._subject()} must be {allowed}, got {quote_value(self.value)}",
             given=self.value,
-            allowed=" and ".join(limits.values()) + self._unit(),
+            allowed=allowed,
             carry_on=self._carry_on(),
         )
 
@@ -211,13 +217,14 @@ class Explainer:
         numbers = count > 0 and all(isinstance(v, (int, float)) for v in self.value)
         wanted = f"at least {least}" if most is None else f"{most}" if least == most else f"{least or 0} to {most}"
         if not numbers:
-            message = f"this list must have {wanted} elements, got {count}"
-            return error("wrong-length", self.path, message, allowed=f"{wanted} elements")
+            elements = f"{wanted} element{'s' if wanted[-2:] not in ('1', ' 1') else ''}"
+            message = f"{self._subject()} must have {elements}, got {count}"
+            return error("wrong-length", self.path, message, allowed=elements)
         fix, edit = self._shorter(most)
         return error(
             "wrong-length",
             self.path,
-            f"'{self._key()}' must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
+            f"{self._subject()} must have {wanted} number{'s' if wanted != '1' else ''}, got {count}",
             given=self.value,
             allowed=f"{wanted} numbers",
             fix=fix,
@@ -227,7 +234,7 @@ class Explainer:
 
     def _shorter(self, most: int | None) -> tuple[str | None, Edit | None]:
         """Fix and edit for a vector that is too long."""
-        value, several = self.value, place(self.path) == "entry.waypoints"
+        value, several = self.value, key_path(self.path) == "entry.waypoints"
         if most is None or not isinstance(value, (list, tuple)) or len(value) <= most:
             return None, None
         text = self.document.source_text((*self.document.prefix, *self.path))
@@ -277,7 +284,8 @@ class Explainer:
             return f"write {flow(vector)}", Edit("replace", path, vector)
         if expected == "a list" and isinstance(value, Mapping) and value and is_vector(list(value.values())):
             return f"write the numbers alone, in a list: {flow(list(value.values()))}", None
-        if expected == "a list" and place(path) == "entry.waypoints" and is_vector(points := at(self.data, path[:-1])):
+        points = at(self.data, path[:-1])
+        if expected == "a list" and key_path(path) == "entry.waypoints" and is_vector(points):
             poses = split_poses(points)
             if poses is None:
                 return "write one list per waypoint: waypoints: [[x, y], [x, y]]", None
@@ -290,7 +298,7 @@ class Explainer:
         if expected == "true or false" and str(value).strip().lower() in _BOOLEANS:
             meant = _BOOLEANS[str(value).strip().lower()]
             return f"write {str(meant).lower()}", Edit("replace", path, meant)
-        if expected == "a list" and isinstance(value, (int, float)) and place(path) in _CONTROLS:
+        if expected == "a list" and isinstance(value, (int, float)) and key_path(path) in _CONTROLS:
             return f"write one number per control component: [{value}, {value}]", None
         return None, None
 
@@ -317,7 +325,7 @@ class Explainer:
         )
 
     def _list_for_number(self, expected: str) -> Finding:
-        if place(self.path) in ("entry.state", "entry.goal", "entry.waypoints"):
+        if key_path(self.path) in ("entry.state", "entry.goal", "entry.waypoints"):
             message, fix = "the brackets are nested too deeply here", "write one vector as [x, y, theta]"
         else:
             message = f"'{self._key()}' must be {expected} for all objects of the entry, got a list"
@@ -353,6 +361,11 @@ class Explainer:
 
     def _key(self) -> str:
         return next((part for part in reversed(self.path) if isinstance(part, str)), "value")
+
+    def _subject(self) -> str:
+        """The value at fault, as the beginning of a message."""
+        key = f"'{self._key()}'"
+        return f"each element of {key}" if self.path and isinstance(self.path[-1], int) else key
 
     def _unit(self) -> str:
         unit = unit_of(self.field) if self.field is not None else None

@@ -8,7 +8,7 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Path
 from irsim.options.vectors import is_vector
-from irsim.scenario.messages.findings import place
+from irsim.scenario.messages.findings import key_path
 from irsim.scenario.model.lookup import at
 from irsim.scenario.yaml.formatting import flow
 
@@ -28,7 +28,7 @@ def advice_on_key(path: Path, data: Any) -> tuple[str | None, str | None]:
     key, parent, value = str(path[-1]).lower(), at(data, path[:-1]), at(data, path)
     if not isinstance(parent, Mapping):
         return None, None
-    where = place(path[:-1])
+    where = key_path(path[:-1])
     if where == "world":
         return (_sides(value, "width", "height"), None) if key in _SIDES else (None, None)
     if where == "entry":

@@ -87,7 +87,7 @@ class Entry(Options):
     tags: Annotated[Any, PerObject(list[Text], "list")] = []
     """Free words; metrics count objects with the tag `pedestrian` as humans."""
     role: Literal["robot", "obstacle"] | None = None
-    """Name of the section that the entry is in; it has no effect."""
+    """Name of the section that the entry is in; it is not needed."""
     state: Annotated[Any, PerObject(State | None, "vector")] = None
     """Initial state [x, y, theta, ...]; null is [1, 1, 0]. Missing numbers are zero, surplus ones are dropped."""
     goal: Annotated[Any, PerObject(Annotated[Any, PerObject(Pose, "vector")] | None, "vector")] = None
@@ -116,8 +116,8 @@ class Entry(Options):
     static: Annotated[Bool, OrNull(False)] = False
     """The object never moves, although it has kinematics."""
     vel_min: Annotated[Any, PerObject(Control | None, "vector")] = None
-    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. With 0 as the first the
-    object cannot reverse."""
+    """Lower limits of the controls, in the order of `vel_max`; null is -1 each. If the first number is 0,
+    the object cannot reverse."""
     vel_max: Annotated[Any, PerObject(Control | None, "vector")] = None
     """Upper limits of the controls, such as top speed and turn rate; null is 1 each.
 

@@ -63,7 +63,7 @@ def json_schema(*, user_code: bool = True) -> dict[str, Any]:
         "required": ["irsim"],
         "properties": {
             "irsim": {
-                "description": "The scenario; it stands for the whole document.",
+                "description": "The scenario, as if it were the whole document.",
                 "type": "object",
                 "if": True,
                 "then": {"$ref": "#/$defs/Scenario"},

@@ -19,7 +19,7 @@ __all__ = ["SavedFigure", "WorldModel", "WorldPlot"]
 Text = Annotated[str, Field(strict=True)]
 
 
-def _trimmed(value: Any) -> Any:
+def _normalize_word(value: Any) -> Any:
     return value.strip().lower() if isinstance(value, str) else value
 
 
@@ -42,7 +42,9 @@ def _viewpoint(value: Any) -> list[float] | str | None:
         return value
     if isinstance(value, (list, tuple)) and len(value) == 2 and all(_is_finite(v) for v in value):
         return [float(v) for v in value]
-    raise problem("wrong-type", "this is not a valid viewpoint", allowed="[x, y] in metres, or the name of an object")
+    raise problem(
+        "wrong-type", "a viewpoint must be [x, y] or the name of an object", allowed="[x, y] in metres, or a name"
+    )
 
 
 class SavedFigure(Options):
@@ -134,7 +136,7 @@ class WorldModel(Options):
     """Longest duration of a run, unless its caller gives one; null derives it from distances and speeds."""
     seed: Annotated[Integer, Field(ge=0, lt=2**64)] | None = None
     """Seed of everything random, unless the caller gives one; null draws a new seed."""
-    step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_trimmed)] = "internal"
+    step_mode: Annotated[Literal["internal", "external"], BeforeValidator(_normalize_word)] = "internal"
     """What moves the objects: the simulator (`internal`), or the calling program (`external`), which sets their
     states."""
     control_mode: Annotated[Literal["auto", "keyboard"], OrNull("auto")] = "auto"

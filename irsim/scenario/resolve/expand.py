@@ -148,7 +148,7 @@ class _Maker:
 
     def records(self) -> list[ObjectRecord]:
         """One record per object."""
-        placed = self._placed()
+        placed = self._compute_places()
         return [self._record(i, placed[i] if placed is not None else None) for i in range(self.count)]
 
     def placement(self) -> Placement | None:
@@ -172,7 +172,7 @@ class _Maker:
         feature = DISTRIBUTIONS.get(options.name)
         return feature is not None and feature.kernel is not None
 
-    def _placed(self) -> list[tuple[list[float], list[float]]] | None:
+    def _compute_places(self) -> list[tuple[list[float], list[float]]] | None:
         """Start and goal of each object where the distribution computes them now."""
         options = self.entry.distribution
         feature = DISTRIBUTIONS.get(options.name) if options is not None else None
@@ -204,7 +204,7 @@ class _Maker:
             index=i,
             kinematics=kinematics,
             shape=shape,
-            state=_fitted(DEFAULT_STATE if state is None else state, state_dim),
+            state=_with_length(DEFAULT_STATE if state is None else state, state_dim),
             goals=[] if random else self._goals(value, placed),
             velocity=_control(value["velocity"], 0.0, vel_dim, kinematics),
             vel_min=_limit(value["vel_min"], "vel_min", vel_dim, kinematics),
@@ -326,7 +326,7 @@ def _usual(values: list[float] | None, key: str, size: int, kinematics: Any) -> 
     return list(usual) if values is None and len(usual) == size else values
 
 
-def _fitted(values: Sequence[float], length: int) -> list[float]:
+def _with_length(values: Sequence[float], length: int) -> list[float]:
     """The values cut, or padded with zeros, to ``length`` numbers."""
     return [*(float(v) for v in values[:length]), *([0.0] * (length - len(values)))]
 

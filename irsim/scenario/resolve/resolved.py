@@ -106,11 +106,11 @@ class ResolvedScenario:
         """The robots, in id order."""
         return [o for o in self.objects if o.role == "robot"]
 
-    def parked(self, record: ObjectRecord) -> bool:
+    def is_parked(self, record: ObjectRecord) -> bool:
         """Whether an object cannot move and its goal is only the default, not written in the scenario."""
-        return (record.kinematics is None or record.static) and not self.goal_written(record)
+        return (record.kinematics is None or record.static) and not self.has_written_goal(record)
 
-    def goal_written(self, record: ObjectRecord) -> bool:
+    def has_written_goal(self, record: ObjectRecord) -> bool:
         """Whether the entry of an object gives it a goal; otherwise its goal is at most the default."""
         entry: Any = self.document
         for key in record.path:

@@ -14,7 +14,7 @@ import yaml
 from irsim.diagnostics.diagnostic import Diagnostic, Path
 from irsim.scenario.limits import Limits
 from irsim.scenario.yaml.nodes import NO_KEY, Anchored, Frame, Mark, Node, merge, scalar_mark, start_mark
-from irsim.scenario.yaml.scalars import resolve, tagged
+from irsim.scenario.yaml.scalars import resolve, resolve_tagged
 from irsim.scenario.yaml.syntax import syntax_problem
 
 __all__ = ["Composed", "compose"]
@@ -130,7 +130,7 @@ class _Composer:
                     self._surprise(surprise, text, value, event)
         elif event.tag is not None and event.tag != "!":
             try:
-                value = tagged(event.tag, text)
+                value = resolve_tagged(event.tag, text)
             except KeyError:
                 self._unsupported_tag(event)
             except ValueError as error:

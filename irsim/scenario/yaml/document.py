@@ -112,15 +112,15 @@ def load_text(
         return Document(None, [problem], True, name=name, path=path, limits=limits)
     composed: Composed = compose(text, limits)
     document = Document(composed.data, composed.problems, composed.fatal, text, name, path, (), limits)
-    return _unwrapped(document)
+    return _unwrap(document)
 
 
 def load_data(data: Any, name: str | None = None, limits: Limits = DEFAULT_LIMITS) -> Document:
     """Wrap a scenario that is data already, as :func:`irsim.make` accepts it; it has no text and no positions."""
-    return _unwrapped(Document(data, name=name, limits=limits))
+    return _unwrap(Document(data, name=name, limits=limits))
 
 
-def _unwrapped(document: Document) -> Document:
+def _unwrap(document: Document) -> Document:
     """The part under ``irsim:``, which is the scenario in files shared with another simulator, if there is one."""
     if isinstance(document.data, Mapping) and isinstance(document.data.get("irsim"), Mapping):
         document.data, document.prefix = document.data["irsim"], ("irsim",)

@@ -41,11 +41,11 @@ def number(value: float) -> str:
 
 def quote_value(value: Any, longest: int = _MAX_CHARACTERS) -> str:
     """A value as in YAML, text in single quotes, cut to ``longest`` characters."""
-    text = f"'{value[:longest]}'" if isinstance(value, str) else flow(_shortened(value))
+    text = f"'{value[:longest]}'" if isinstance(value, str) else flow(_shorten(value))
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
-def _shortened(value: Any) -> Any:
+def _shorten(value: Any) -> Any:
     """The first elements of a large value: more would not fit into a message."""
     if isinstance(value, Mapping):
         return dict(list(value.items())[:_MAX_CHARACTERS])

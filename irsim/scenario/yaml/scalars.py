@@ -6,7 +6,7 @@ import re
 from datetime import date
 from typing import Any, Literal, NamedTuple
 
-__all__ = ["Scalar", "resolve", "tagged"]
+__all__ = ["Scalar", "resolve", "resolve_tagged"]
 
 Surprise = Literal["sexagesimal", "octal"]
 
@@ -106,7 +106,7 @@ def _timestamp(text: str) -> Any:
         return text
 
 
-def tagged(tag: str, text: str) -> Any:
+def resolve_tagged(tag: str, text: str) -> Any:
     """The value of a scalar with one of the standard tags.
 
     Raises:

@@ -74,7 +74,7 @@ def movers_of(context: Context) -> list[Mover]:
     """Movers whose body has a filled part and is the same in every scene."""
     found: list[Mover] = []
     known: dict[int, tuple[list[Any], tuple[float, float, float]]] = {}
-    for record in context.written:
+    for record in context.entry_objects:
         if record.static or record.kinematics is None or not has_fixed_shape(record.shape):
             continue
         if record.role != "robot" and record.behavior is None:
@@ -95,11 +95,11 @@ def movers_of(context: Context) -> list[Mover]:
 
 
 def _has_goal(context: Context, record: ObjectRecord) -> bool:
-    return any(context.given(record, key) for key in ("goal", "waypoints", "distribution"))
+    return any(context.is_given(record, key) for key in ("goal", "waypoints", "distribution"))
 
 
 def _goal_path(context: Context, record: ObjectRecord) -> Path:
     for key in ("waypoints", "goal"):
-        if context.given(record, key):
+        if context.is_given(record, key):
             return context.entry_path(record, key)
-    return (*record.path, "distribution") if context.given(record, "distribution") else record.path
+    return (*record.path, "distribution") if context.is_given(record, "distribution") else record.path

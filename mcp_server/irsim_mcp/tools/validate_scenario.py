@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
-from irsim.common.text import clean, kinds, pair, seconds
+from irsim.common.text import clean, names_if_different, seconds, shorten_pair
 from irsim.validation.diff.keys import place
 from irsim_mcp.json_answer import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
@@ -171,11 +171,11 @@ def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
     lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
     facts = [item for item in found["world"] or [] if not item["direct"]]
     for item in facts:
-        before, after = kinds(item["before"], item["after"])
+        before, after = names_if_different(item["before"], item["after"])
         values = _values(item | {"before": before, "after": after})
         lines.append(f"in the world: {item['change']} {_fact(item)}: {values}")
     lines += [f"comment lost: {comment}" for comment in found["comments_lost"]]
-    edited = [pair(item["before"], item["after"]) for item in found["comments_changed"]]
+    edited = [shorten_pair(item["before"], item["after"]) for item in found["comments_changed"]]
     lines += [f"comment changed: {before} -> {after}" for before, after in edited]
     cut = [f"{len(lines) - most} more with response_format=detailed"] if len(lines) > most else []
     return [clean(line, 300) for line in [found["summary"], *lines[:most], *cut]]
@@ -188,7 +188,7 @@ def _fact(item: dict[str, Any]) -> str:
 def _values(item: dict[str, Any]) -> str:
     before, after = (json.dumps(item[key], ensure_ascii=False) for key in ("before", "after"))
     if item["change"] == "changed":
-        before, after = pair(before, after)
+        before, after = shorten_pair(before, after)
     before, after = clean(before), clean(after)
     return {"added": after, "removed": before, "changed": f"{before} -> {after}", "moved": f"{before} -> {after}"}[
         item["change"]

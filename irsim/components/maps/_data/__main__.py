@@ -17,7 +17,7 @@ _CAVE, _OFFICE, _MAZE, _FLAT = 500, 500, 410, 400
 _FREE, _WALL = 255, 0
 
 
-def neighbours(rock: Grid) -> NDArray[np.int_]:
+def rock_around(rock: Grid) -> NDArray[np.int_]:
     """Number of rock cells among the nine cells at and around each cell; the outside counts as rock."""
     padded = np.pad(rock, 1, constant_values=True).astype(np.int_)
     rows, columns = rock.shape
@@ -26,7 +26,7 @@ def neighbours(rock: Grid) -> NDArray[np.int_]:
     )
 
 
-def reached(free: Grid, start: tuple[int, int]) -> Grid:
+def reachable(free: Grid, start: tuple[int, int]) -> Grid:
     """The free cells that can be reached from ``start``."""
     found = np.zeros_like(free)
     found[start] = True
@@ -60,13 +60,13 @@ def cave(seed: int = 2024) -> Image.Image:
         keep |= (np.abs(columns - middle + winding[rows]) < 2.2) & (rows >= 8) & (rows <= 91)
     rock = rng.random((size, size)) < 0.47
     for _ in range(6):
-        rock = neighbours(rock) >= 5
+        rock = rock_around(rock) >= 5
         rock[keep] = False
     rock[[0, -1]] = rock[:, [0, -1]] = True
-    rock |= ~reached(~rock, (10, 10))
+    rock |= ~reachable(~rock, (10, 10))
     fine = np.kron(rock, np.ones((_CAVE // size, _CAVE // size), dtype=bool))
     for _ in range(4):  # smooth the steps
-        fine = neighbours(fine) >= 5
+        fine = rock_around(fine) >= 5
     fine[:2] = fine[-2:] = fine[:, :2] = fine[:, -2:] = True
     return Image.fromarray(np.where(fine, _WALL, _FREE).astype(np.uint8))
 
