@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.public import PUBLIC_HOMES
 from irsim.common.conflict import refuse_conflicts
 from irsim.compat.finder import install
 
@@ -29,28 +30,6 @@ if TYPE_CHECKING:
     from irsim.runs.replay.export import replay
 
     __version__: str
-
-_HOMES = {
-    "Batch": "irsim.env.batch",
-    "Env": "irsim.env",
-    "EnvBase": "irsim.env",
-    "EnvBase3D": "irsim.env",
-    "IrsimError": "irsim.diagnostics.errors",
-    "NotSimulatedError": "irsim.diagnostics.errors",
-    "PlacementError": "irsim.diagnostics.errors",
-    "ScenarioError": "irsim.diagnostics.errors",
-    "ScenarioNotFoundError": "irsim.diagnostics.errors",
-    "batch": "irsim.env.batch",
-    "benchmark": "irsim.benchmarks",
-    "diff": "irsim.api",
-    "fix": "irsim.api",
-    "make": "irsim.env",
-    "register_behavior": "irsim.objects.handlers.registration",
-    "render": "irsim.api",
-    "replay": "irsim.runs.replay.export",
-    "run": "irsim.api",
-    "validate": "irsim.api",
-}
 
 _PACKAGES = frozenset({"config", "env", "gui", "lib", "msg", "util", "version", "world"})
 """Packages of IR-SIM that are attributes of ``irsim`` whether somebody has imported them or not."""
@@ -83,11 +62,11 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     if name == "__version__":
-        from importlib.metadata import version
+        from irsim.common.version import version
 
-        value: Any = version("irsim-mcp")
-    elif name in _HOMES:
-        value = getattr(import_module(_HOMES[name]), name)
+        value: Any = version()
+    elif name in PUBLIC_HOMES:
+        value = getattr(import_module(PUBLIC_HOMES[name]), name)
     elif name in _PACKAGES:
         return import_module(f"irsim.{name}")
     else:

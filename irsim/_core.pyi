@@ -1,7 +1,7 @@
-"""Types of the compiled core (irsim/core): arrays in, arrays out; knows no YAML and no Python objects.
+"""Types of the compiled core (irsim/core): arrays in, arrays out, without YAML and without Python objects.
 
-N objects per world, W worlds, R = N * W rows; row w * N + i is object i of world w. All arrays returned as properties
-are writable views of the core's own memory (no copy), float64 unless said otherwise.
+There are W worlds of N objects each, so R = N * W rows; row w * N + i is object i of world w. Array
+properties are writable views of the memory of the core (no copies), of type float64 unless stated otherwise.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
 
 class _Options:
-    """Every options class: keyword-only constructor that wants every field, `fields` in declaration order."""
+    """Base of every options class: its constructor requires all fields as keywords; `fields` lists them in order."""
 
     fields: ClassVar[tuple[str, ...]]
 
@@ -119,12 +119,12 @@ Cells = tuple[tuple[float, float], tuple[float, float], int, int]
 """Origin, cell size [m], columns, rows."""
 
 class RouteOptions(_Options):
-    """How an object plans a path for its behavior to follow; 0 for `replan` and `lookahead` is none."""
+    """How an object plans a path for its behavior to follow; 0 switches `replan` or `lookahead` off."""
 
     def __init__(self, *, planner: object, replan: float, lookahead: float) -> None: ...
 
 class Terrain:
-    """What stands in the way of planning, within a rectangle that footprints must not leave.
+    """Obstacles for planning, within a rectangle that footprints must not leave.
 
     Args:
         bounds: x0, y0, x1, y1 [m].
@@ -146,38 +146,38 @@ class Terrain:
         first_draw: int,
         smooth: bool,
     ) -> tuple[Floats | None, float, Floats, NDArray[np.int32], Floats]:
-        """A path for a body of these parts at a heading (no parts: that of a cell).
+        """Plan a path for a body of these parts at a heading; without parts, for a body as large as a cell.
 
         Returns:
-            (N, 2) points from start to goal, or None; its length; (K, 2) points looked at; (K,) the index of the point
-            each was reached from, or -1; (K,) length of the way there.
+            (N, 2) points from start to goal, or None; the length of the path; (K, 2) points examined; (K,) the index of
+            the point from which each was reached, or -1; (K,) the length of the path to each.
         """
     def open_cells(self, parts: Sequence[object], heading: float, cells: Cells) -> Flags:
-        """(nx, ny) where grid planners may go."""
+        """(nx, ny) 1 for cells that grid planners may use."""
     def collides(self, parts: Sequence[object], pose: Sequence[float]) -> bool:
         """Whether a body touches an obstacle or leaves the rectangle."""
     def clear(self, parts: Sequence[object], heading: float, start: Sequence[float], goal: Sequence[float]) -> bool:
         """Whether a body of fixed heading can move straight from start to goal."""
 
 class Clearance:
-    """Distances from the middles of cells to what stands in the way, and the widest ways between them.
+    """Distances from the centres of cells to the nearest obstacle, and the widest paths between cells.
 
-    They are never too short, and seldom (by much less than a cell) too long; what lies outside of the cells is not
-    seen. A body of which a disc of radius r gets
-    from one place to another passes cells with a distance of at least r minus half the diagonal of a cell.
+    Distances are never too short; in rare cases they are too long by much less than a cell. Obstacles outside of the
+    cells are ignored. A body that contains a disc of radius r about its origin passes only cells with a distance of at
+    least r minus half the diagonal of a cell.
     """
 
     def __init__(self, terrain: Terrain, cells: Cells) -> None: ...
-    distance: NDArray[np.float32]  # (nx, ny) [m]; 0 inside of an obstacle, infinity without any; a copy
+    distance: NDArray[np.float32]  # (nx, ny) [m]; 0 inside of an obstacle, infinity without obstacles; a copy
     def widest(self, start: Sequence[float], goal: Sequence[float], reach: float) -> tuple[float, float, float]:
-        """Least distance on the widest way from a cell by `start` to one within `reach` [m] of `goal`, and where.
+        """Clearance [m] of the widest path from `start` to within `reach` [m] of `goal`, and its narrowest point x, y.
 
-        -infinity if there is no way.
+        The clearance is -infinity without a path.
         """
     def climb(self, start: Sequence[float], reach: float) -> tuple[float, float]:
-        """The roomiest place uphill from `start`, at most `reach` [m] away."""
+        """Follow growing distances from `start`, at most `reach` [m] away, and return the last point."""
     def way(self, start: Sequence[float], goal: Sequence[float], room: float) -> Floats:
-        """(K, 2) shortest way over cells with a distance of at least `room`; (0, 2) if there is none."""
+        """(K, 2) shortest path over cells with a distance of at least `room` [m]; (0, 2) without a path."""
 
 # sensors (core/sensors/)
 class Lidar2dOptions(_Options):
@@ -218,26 +218,26 @@ class Circle:
     def __init__(self, *, radius: float, center: Sequence[float]) -> None: ...
 
 class Polygon:
-    """Closed and filled; convex or not; simple."""
+    """A closed, filled, simple polygon, convex or not."""
 
     vertices: list[list[float]]
 
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
 class Linestring:
-    """Open polyline without thickness."""
+    """An open polyline without thickness."""
 
     vertices: list[list[float]]
 
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
 class RandomCircle:
-    """Radius drawn per scene."""
+    """A circle whose radius is drawn for each scene."""
 
     def __init__(self, *, radius_range: Sequence[float], center: Sequence[float]) -> None: ...
 
 class RandomPolygon:
-    """Vertices drawn per scene (reference/dynamics.md section 10); `closed` False gives an open polyline."""
+    """A polygon, or an open polyline if not `closed`, drawn for each scene (reference/dynamics.md section 10)."""
 
     def __init__(
         self,
@@ -251,14 +251,14 @@ class RandomPolygon:
     ) -> None: ...
 
 class Room:
-    """A closed line that is solid outside: the walls round a world."""
+    """A closed line that is solid outside: the walls around a world."""
 
     vertices: list[list[float]]
 
     def __init__(self, *, vertices: Sequence[Sequence[float]]) -> None: ...
 
 class OccupancyGrid:
-    """Cells of a map; the occupied ones are closed boxes. Never changes, and worlds share it.
+    """Cells of a map, of which the occupied ones are closed boxes. A grid never changes, so worlds share it.
 
     Args:
         occupied: (nx, ny), i along +x, j along +y; non-zero where occupied.
@@ -270,26 +270,27 @@ class OccupancyGrid:
     shape: tuple[int, int]  # (nx, ny)
     origin: tuple[float, float]
     cell: tuple[float, float]
-    count: int  # of occupied cells
+    count: int  # number of occupied cells
     occupied: Flags  # (nx, ny), a copy
-    clearance: Flags  # (nx, ny) how many cells away, diagonally too, the nearest occupied one is; at most 255; a copy
+    clearance: Flags  # (nx, ny) steps to any of 8 neighbors up to the nearest occupied cell, at most 255; a copy
     def outline(self) -> list[Floats]:
-        """Rings around the occupied cells, (K, 2) corners each, straight runs merged, the occupied side on the left."""
+        """Rings around the occupied cells, (K, 2) corners each, with the occupied side on the left."""
     def cast(self, from_: Sequence[float], direction: Sequence[float], limit: float) -> float:
         """Distance at which a beam (unit direction) first meets the outline; infinity beyond `limit` [m]."""
 
 class GridCells:
-    """The occupied cells of a grid; the pose of the object does not move them."""
+    """The occupied cells of a grid, which the pose of the object does not move."""
 
     grid: OccupancyGrid
 
     def __init__(self, *, grid: OccupancyGrid) -> None: ...
 
 class PerlinCells:
-    """Cells of gradient noise, drawn per scene from the stream `map`.
+    """Cells of gradient noise, drawn for each scene from the stream `map`.
 
     Args:
-        size: Cells of the noise along x and y; of `every` cells along an axis one is kept.
+        size: Cells of the noise along x and y.
+        every: One of this many cells is kept along each axis.
         origin: Lower left corner, world frame [m].
         cell_size: Extent of the cells that are kept [m].
         complexity, fill, fractal, attenuation: As in :class:`irsim.components.maps.perlin.PerlinMap`.
@@ -317,7 +318,7 @@ def perlin_cells(
     fractal: int,
     attenuation: float,
 ) -> Flags:
-    """(columns, rows) 1 where gradient noise over a permutation of 0 ... 255 is among the highest `fill` of it."""
+    """(columns, rows) 1 for the share `fill` of cells with the highest noise; `permutation` is one of 0 to 255."""
 
 Part = Circle | Polygon | Linestring | RandomCircle | RandomPolygon | Room | GridCells | PerlinCells
 
@@ -325,36 +326,36 @@ class ObjectSpec:
     """One object of the template world. All keyword arguments are required.
 
     Args:
-        number: Names it in random draws and events, so that neither changes when other objects come and go; -1: its
-            place in the list.
+        number: Id in random draws and events, which thus do not change when other objects are added or removed; -1: the
+            index in the list.
         role: 0 robot, 1 obstacle.
         group: Group id.
         drive: Kinematics options, or None for an object that never moves.
-        parts: Shape; more than one part = compound (their union).
+        parts: Shape; several parts make a compound, their union.
         static, unobstructed, wander, loop: Flags.
         pose: x, y, theta. Ignored for objects of a random placement.
         extra: Extra state rows (steering angle first for acker); may be empty.
         control: Initial control, padded to 3.
         vel_min, vel_max, acce: Limits, padded to 3.
-        angle_range: Interval of the heading.
+        angle_range: Interval of the heading [rad].
         goals: Queue of goals, 2 or 3 numbers each; may be empty.
         goal_threshold: Arrival distance [m].
         arrive_mode: 0 position, 1 state.
         range_low, range_high: Box of wander goals (3 each).
         target_roles: 0 all, 1 robots, 2 obstacles.
         behavior: Options of a native behavior, or None.
-        grouped: The behavior is that of the group: it decides for all members at once.
-        route: How it plans a path for its behavior to follow, or None.
+        grouped: Whether the behavior belongs to the group and decides for all members at once.
+        route: How the object plans a path for its behavior to follow, or None.
         sensors: Options of the sensors, in order; None in the place of one that the core does not compute.
-        centroid: x, y in the body frame, what contacts turn it about, and possibly the square of its radius of gyration
-            [m^2]; empty follows from the shape, where overlaps of parts count twice.
-        mass: [kg], infinity for what nothing can push.
+        centroid: Centre of mass x, y in the body frame [m], and optionally the square of the radius of gyration [m^2].
+            If empty, both follow from the shape, in which overlaps of parts count twice.
+        mass: Mass [kg], infinity for an object that cannot be pushed.
         friction: Coefficient of friction with the ground.
-        inertia: Moment of inertia [kg m^2]; NaN follows from shape and mass.
+        inertia: Moment of inertia [kg m^2]; if NaN, it follows from shape and mass.
         restitution: Bounciness, 0 to 1.
-        tau: Lag of the drive [s].
-        driven: Whether it has a drive, native or not; what has none and is not static is moved by contacts only;
-            its control is a world-frame velocity and a yaw rate.
+        tau: Time constant of the drive [s].
+        driven: Whether the object has a drive, native or in Python. Contacts alone move an object that has none and is
+            not static; its control is a world-frame velocity and a yaw rate.
     """
 
     def __init__(
@@ -396,9 +397,9 @@ class ObjectSpec:
     ) -> None: ...
 
 class RandomPlacement:
-    """Objects of one `random` distribution: states, then goals, drawn per scene (D7).
+    """Objects of one `random` distribution: states, then goals, are drawn for each scene (D7).
 
-    Wanderers draw no goal here but one at every reset; nothing keeps the goals of static objects apart.
+    Goals of wandering objects are drawn at every reset instead. The goals of static objects keep no distance.
     """
 
     def __init__(
@@ -417,11 +418,11 @@ class FogView:
     def __init__(self, *, object: int, angle: float, reach: float, occlusion: bool) -> None: ...
 
 class Fog:
-    """Cells over the world, explored or not; (columns, rows) of them over `size` from the lower left corner `origin`.
+    """Cells over the world that robots explore: (columns, rows) over `size` from the lower left corner `origin`.
 
     Args:
-        carriers: Objects whose first native sensor clears it along its beams.
-        views: Objects that clear it where they look.
+        carriers: Objects whose first native sensor clears the fog along its beams.
+        views: Objects that clear the fog in their field of view.
     """
 
     def __init__(
@@ -436,7 +437,7 @@ class Fog:
     ) -> None: ...
 
 class World:
-    """What never changes during an episode: shapes, drives, limits, options; `copies` worlds of one template."""
+    """What never changes during an episode (shapes, drives, limits, options), for `copies` worlds of one template."""
 
     def __init__(
         self,
@@ -454,82 +455,81 @@ class World:
     objects: int  # N
     step_time: float
     collision_mode: int  # may be set at run time
-    extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m], where paths are looked for; may be set
+    extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
     def scans(self) -> list[tuple[int, int, int]]:
-        """(object, first beam, beams) of each native sensor of one world, in order.
+        """(object, first beam, number of beams) of each native sensor of one world, in order.
 
-        Beams of world w follow at w * beams_per_world.
+        The beams of world w start at w * beams_per_world.
         """
     beams_per_world: int
     def velocity_slices(self) -> list[tuple[int, int]]:
-        """(first, rows) of each native sensor: its velocities are rows x beams numbers from `first` of its world's."""
+        """(first, rows) of each native sensor: it has rows x beams velocities from index `first` of its world."""
     velocities_per_world: int
 
 class State:
-    """What changes: poses, controls, goals, flags, scans, counters, random keys.
+    """What changes during an episode: poses, controls, goals, flags, scans, counters, random keys.
 
-    Constructing draws scene 0 of every world and evaluates collisions, arrival and sensors (D12).
+    The constructor draws scene 0 of every world and evaluates collisions, arrival and sensors (D12).
     """
 
     @overload
     def __init__(self, world: World, seeds: NDArray[np.uint64], history: bool) -> None: ...
     @overload
     def __init__(self, world: World, before: State, origins: Sequence[tuple[State, int]]) -> None:
-        """Go on where `before` (of one world) is, with other objects.
+        """Continue from `before`, which has one world, with other objects.
 
         Clock, keys and events are those of `before`; object i has the pose, initial values, goals, flags, history and
-        shape of its origin, a row of `before` or of another state. Flags are those of the last step; sensors look
-        again.
+        shape of its origin, a row of `before` or of another state. Flags are those of the last step; sensors take a new
+        scan.
         """
     pose: Floats  # (R, 3) x, y, theta
     extra: Floats  # (R, E) extra state rows, E >= 1
     control: Floats  # (R, 3) executed control without noise
     twist: Floats  # (R, 3) true vx, vy (world frame), yaw rate of the last step
     command: Floats  # (R, 3) control wanted for the next step
-    drive: Floats  # (R, 3) control of the drives in `collision_mode: contact`, before contacts interfere
-    contact_time: Floats  # (R,) how long the row has touched something [s]
-    air_time: Floats  # (R,) how long it has touched nothing [s]
+    drive: Floats  # (R, 3) control of the drives in `collision_mode: contact`, before contacts change it
+    contact_time: Floats  # (R,) time for which the row has touched something [s]
+    air_time: Floats  # (R,) time for which the row has touched nothing [s]
     touching: Flags  # (R,) bit 0: in contact in the last step, bit 1: in the one before
-    given: Flags  # (R,) 1: `command` comes from outside, behaviors leave the row alone; cleared by every step
+    given: Flags  # (R,) 1: the caller wrote `command`, so behaviors skip the row; every step clears it
     arrived: Flags  # (R,)
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
-    radius: Floats  # (R,) minimum bounding circle radius of the body
-    infeasible: NDArray[
-        np.int32
-    ]  # (R,) steps of the episode in which its behavior found no velocity free of collisions
+    radius: Floats  # (R,) radius of the minimum bounding circle [m]
+    infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
-    hits: NDArray[np.int32]  # same length: object (its row within the world) hit by each beam, -1 none
-    valid: Flags  # same length: 1 where the beam hit something and its (noisy) range lies in [range_min, range_max]
+    hits: NDArray[np.int32]  # same length: index within its world of the object hit by each beam, -1 without a hit
+    valid: Flags  # same length: 1 where the beam hit something at a (noisy) range within [range_min, range_max]
     beam_angles: Floats  # same length: nominal angle of each beam in the sensor frame
     velocities: Floats  # (W * velocities_per_world,) measured velocities [m/s], see World.velocity_slices
-    explored: Flags  # (W, columns, rows) 1 where no fog is left; no rows without fog
+    explored: Flags  # (W, columns, rows) 1 where the fog is cleared; (W, 0, 0) without fog
     count: NDArray[np.int64]  # (W,) executed steps of the episode
     scene: NDArray[np.uint32]  # (W,)
     noise: NDArray[np.uint32]  # (W,)
     seed: NDArray[np.uint64]  # (W,)
-    event_count: int  # events so far in this state, for a cheap "anything new?"
-    failed_placement: NDArray[np.int32]  # (W,) object that found no room, -1 if all did
+    event_count: int  # number of events since the state was made, a cheap check for new ones
+    failed_placement: NDArray[np.int32]  # (W,) first object that could not be placed, -1 if all were placed
     def reset(self, mask: NDArray[np.uint8], next_scene: bool) -> None:
         """Reset the worlds where mask is 1.
 
-        next_scene False: initial poses, noise + 1. True: scene + 1, noise 0, shapes, placements and goals drawn anew.
-        Then collisions, arrival and sensors are evaluated.
+        Without `next_scene`, objects return to their initial poses and `noise` increases by 1. With it, `scene`
+        increases by 1, `noise` becomes 0, and shapes, placements and goals are drawn again. Then collisions, arrival
+        and sensors are evaluated.
         """
     def reseed(self, seeds: NDArray[np.uint64], mask: NDArray[np.uint8]) -> None:
-        """New seeds; the next reset of these worlds, of either kind, draws scene 0, noise 0."""
+        """Set new seeds; the next reset of these worlds, of either kind, draws scene 0 with noise 0."""
     def refresh(self) -> None:
-        """Re-evaluate geometry, collisions, stops and sensors (not arrival) after poses were written from outside."""
+        """Re-evaluate geometry, collisions, stops and sensors (not arrival) after poses were written."""
     def done(self, world: int) -> bool:
         """Whether every robot of the world has arrived or stopped; False without robots."""
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
-        """(kind, step, number of the object, of its partner or -1, x, y), kind "arrival", "waypoint", "collision".
+        """Events since the last reset except the first `start`: (kind, step, object, partner or -1, x, y).
 
-        Those since the last reset, the first `start` left out.
+        The kind is "arrival", "waypoint", "collision" or "no_path"; objects are given by their number.
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
-        """(P, 2) pairs i < j whose closed shapes intersect now, sorted, `unobstructed` ones included."""
+        """(P, 2) sorted pairs i < j whose closed shapes intersect now, including `unobstructed` ones."""
     def contacts(self, world: int) -> list[tuple[int, int, float, float, float, float, float, float]]:
         """Contacts of the last step: a, b, normal x, y (from b to a), depth [m], point x, y, force [N]."""
     def body(self, row: int) -> tuple[float, float, float, float, float]:
@@ -539,36 +539,36 @@ class State:
     def goals(self, row: int) -> list[list[float]]: ...
     def set_goals(self, row: int, goals: Sequence[Sequence[float]], init: bool) -> None: ...
     def set_initial(self, row: int, pose: bool, control: bool) -> None:
-        """Make the row's present pose (and extra rows), or control, or both, those that reset() returns to."""
+        """Make the present pose (and extra rows) or control of the row, or both, the initial one for `reset`."""
     def route(self, row: int) -> Floats | None:
-        """(K, 2) corners of the path that a row follows, from where it was planned to the goal; None without one."""
+        """(K, 2) corners of the path that a row follows, from the place of planning to the goal; None without one."""
     def initial_state(self, row: int) -> Floats:
-        """(3 + E,) pose and extra rows that reset() returns to."""
+        """(3 + E,) initial pose and extra rows, to which `reset` returns."""
     def velocity_world(self, row: int) -> tuple[float, float]:
-        """World-frame velocity that the present control gives at the present pose."""
+        """World-frame velocity [m/s] from the present control and pose."""
     def velocities_world(self, world: int) -> NDArray[np.float64]:
-        """(N, 2) the same of every object of a world."""
+        """(N, 2) world-frame velocity [m/s] of every object of a world, as `velocity_world` gives it."""
     def near_row(self, row: int) -> list[int]:
-        """Places, ascending, of the other objects of its world whose bounding boxes meet that of a row now."""
+        """Indices, ascending, of other objects of its world whose bounding boxes meet that of a row now."""
     def drive_velocity_world(self, row: int) -> tuple[float, float]:
-        """World-frame velocity that `drive` gives at the present pose."""
+        """World-frame velocity [m/s] from `drive` and the present pose."""
     def moved(self, row: int) -> None:
-        """The row's pose was written from outside: forget geometry cached for it (flags and scans wait for a step)."""
+        """Update cached geometry after the pose of a row was written (flags and scans follow in the next step)."""
     def in_view(self, row: int, angle: float, reach: float, occlusion: bool) -> list[int]:
-        """Ids, ascending, of the other objects of which some part lies in the view of a row, at the present poses.
+        """Ids, ascending, of other objects that are partly or wholly in the view of a row at the present poses.
 
         Args:
-            row: Who looks.
-            angle: Opening about the heading [rad]; 2 pi or more: all round.
-            reach: From the origin of the object [m].
-            occlusion: Parts hidden behind what is not `unobstructed` do not count.
+            row: Row of the observer.
+            angle: Full opening angle about the heading [rad]; 2 pi or more is all directions.
+            reach: Range from the origin of the observer [m].
+            occlusion: Whether parts hidden behind objects that are not `unobstructed` are left out.
         """
     def reset_row(self, row: int) -> None:
-        """Put one object back to its initial pose, control and goals and clear its flags and history."""
+        """Return one object to its initial pose, control and goals and clear its flags and history."""
     def reshape(self, row: int, parts: Sequence[Part], seed: int) -> None:
-        """Give the row another body until the next scene is drawn; `seed` is for random parts."""
+        """Replace the shape of the row until the next scene is drawn; `seed` is for random parts."""
     def look(self) -> None:
-        """Take every scan anew from where objects are now; collisions and flags wait for a step or `refresh`."""
+        """Take every scan again at the present poses; collisions and flags change only in a step or `refresh`."""
     def vertices(self, row: int, part: int, world_frame: bool) -> Floats:
         """(M, 2) vertices of a polygon or linestring part; (0, 2) for a circle."""
     def circle(self, row: int, part: int, world_frame: bool) -> tuple[float, float, float]:
@@ -576,15 +576,15 @@ class State:
     def parts(self, row: int) -> list[str]:
         """Kinds of the parts: "circle", "polygon", "linestring", "room", "cells" (vertices: corners of their box)."""
     def cells(self, row: int) -> OccupancyGrid | None:
-        """The cells of a row that is a map."""
+        """The cells of a row that is a map; None for other rows."""
     def trajectory(self, row: int) -> Floats:
-        """(K, 3 + E) state after each executed step since the last reset (history=True only).
+        """(K, 3 + E) state after each executed step since the last reset, if the state was made with history.
 
         Steps in which the object was static or stopped are left out.
         """
 
 class Trace:
-    """Everything that happened, step by step: arrays of shape (steps executed, R, …)."""
+    """Values of every step: arrays of shape (steps executed, R, …)."""
 
     pose: Floats
     control: Floats
@@ -594,20 +594,20 @@ class Trace:
     stopped: Flags
     steps: NDArray[np.int64]  # (W,) steps executed by each world
     ranges: Floats
-    returns: NDArray[np.float32]  # (steps, W * beams) ranges, infinite where a beam hit nothing
+    returns: NDArray[np.float32]  # (steps, W * beams) ranges [m], infinite without a valid hit
 
 class Log:
-    """What world 0 of a state writes down of each step while it is attached.
+    """The record of world 0 of a state: one row for each step while it is attached.
 
-    Arrays look at the memory of the log and stay as they are when it goes on. Goals, flags and ranges are there for the
-    rows in which they differ from the row before.
+    Arrays are views of the memory of the log and do not change when rows are added. Goals, flags and ranges are stored
+    only for the rows in which they differ from the row before.
     """
 
     def __init__(self, world: World, movers: Sequence[int], columns: int, scans: bool) -> None: ...
     def attach(self, state: State) -> None: ...
     def detach(self, state: State) -> None: ...
     def add(self, state: State) -> None:
-        """Write the present state down: what native steps do by themselves."""
+        """Add a row with the present state; native steps do this automatically."""
 
     def clear(self) -> None: ...
     @property
@@ -620,38 +620,38 @@ class Log:
     def bytes(self) -> int: ...
     @property
     def pose(self) -> Floats:
-        """(rows, movers, 3)."""
+        """(rows, movers, 3) poses."""
 
     @property
     def control(self) -> NDArray[np.float32]:
-        """(rows, movers, columns)."""
+        """(rows, movers, columns) controls."""
 
     @property
     def goal_rows(self) -> NDArray[np.int64]: ...
     @property
     def goal(self) -> Floats:
-        """(goal_rows, N, 3)."""
+        """(goal_rows, N, 3) goals, NaN without one."""
 
     @property
     def flag_rows(self) -> NDArray[np.int64]: ...
     @property
     def flags(self) -> Flags:
-        """(flag_rows, N): 1 arrived, 2 collided, 4 stopped."""
+        """(flag_rows, N) sums of 1 arrived, 2 collided, 4 stopped."""
 
     @property
     def scan_rows(self) -> NDArray[np.int64]: ...
     @property
     def ranges(self) -> NDArray[np.float32]:
-        """(scan_rows, beams), infinite where a beam hit nothing."""
+        """(scan_rows, beams) ranges [m], infinite without a valid hit."""
 
 def advance(
     world: World, state: State, steps: int, *, threads: int = 1, until_done: bool = False, external: bool = False
 ) -> int:
     """Run `steps` periods of every world; rows with `given` use `command` in the first one.
 
-    until_done: a world rests once every robot is stopped or arrived (a world without robots never does). external:
-    poses are set by the caller, only finish … sense run. Releases the GIL. Returns the largest number of steps executed
-    by a world.
+    With `until_done` a world ends once every robot has stopped or arrived; a world without robots never does. With
+    `external` the caller has set the poses, and only the phases from `finish` to `sense` run. Releases the GIL. Returns
+    the largest number of steps that a world executed.
     """
 
 def rollout(
@@ -664,27 +664,27 @@ def rollout(
     ranges: bool = False,
     returns: bool = False,
 ) -> Trace:
-    """Like `advance`, recording."""
+    """Advance as `advance` does and return the values of every step."""
 
-# The phases of one step, for worlds in which Python code takes part. `advance(1)` is the sequence of all of them.
+# The phases of one step, for worlds with drives or behaviors in Python. `advance(1)` runs all of them in order.
 def decide(world: World, state: State) -> None:
-    """Renew goals (wander, loop), then let native behaviors fill `command` of rows not `given`.
+    """Renew goals (wander, loop), then let native behaviors fill `command` of rows that are not `given`.
 
     Rows without any behavior get zero.
     """
 
 def limit(world: World, state: State) -> None: ...
 def integrate(world: World, state: State) -> None:
-    """Move; rows without native drive keep pose, extra and twist, which are then the caller's to write."""
+    """Move rows with a native drive; for others the caller writes pose, extra and twist."""
 
 def push_apart(world: World, state: State) -> None:
-    """Push apart what overlaps (`collision_mode` 3 only); after `integrate`."""
+    """Push overlapping bodies apart; call after `integrate`, with `collision_mode` 3 only."""
 
 def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
 def scan(world: World, state: State, index: int, sensor: int, pose: Sequence[float]) -> None:
-    """Let a native sensor of world `index`, numbered as in `World.scans`, take its scan from a carrier at `pose`."""
+    """Let a native sensor of world `index`, numbered as in `World.scans`, take a scan with its carrier at `pose`."""
 
 def finish(world: World, state: State) -> None:
     """Count the step, append the history, clear `given`.
@@ -694,11 +694,11 @@ def finish(world: World, state: State) -> None:
 
 # Used by the Python API and by tests
 def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
-    """Controls with which the drive of a row realises a world-frame velocity [m/s]; that itself without one."""
+    """Controls with which the drive of a row realises a world-frame velocity [m/s]; without a drive, the velocity."""
 
-# The phases for one object alone; they look neither at `given` of others nor at the clock
+# The phases for a single object; they depend neither on `given` of others nor on the clock
 def renew_row(world: World, state: State, row: int) -> None:
-    """A wanderer's next random goal, a looper's goals again; nothing for others."""
+    """Give a wandering object its next random goal and a looping one its goals again; others do not change."""
 
 def decide_row(world: World, state: State, row: int) -> None:
     """Let the native behavior of a row fill its `command`; zero without one."""
@@ -712,7 +712,7 @@ def remember_row(world: World, state: State, row: int) -> None:
 def drive_step(
     drive: _Options, state: Sequence[float], control: Sequence[float], dt: float
 ) -> tuple[list[float], list[float]]:
-    """(state after one period, twist); as many state rows as given, at least 3."""
+    """State after one period, with as many rows as given (at least 3), and twist."""
 
 def drive_follow(
     drive: _Options,
@@ -729,7 +729,7 @@ def drive_deviation(drive: _Options, control: Sequence[float]) -> list[float]:
     """Standard deviations of the motion noise of three controls."""
 
 def shift(world: World, state: State, row: int, by: tuple[float, float], turn: float) -> None:
-    """Move a row by `by` [m] and turn it about its centroid, as within one period: its velocity changes too."""
+    """Move a row by `by` [m] and turn it about its centroid within one period, which changes its velocity, too."""
 
 def push(world: World, state: State, row: int, change: tuple[float, float]) -> None:
     """Change the velocity of a row, world frame [m/s]."""
@@ -743,33 +743,34 @@ def contact_step(
     slop: float,
     step_time: float,
 ) -> None:
-    """Push apart these pairs of objects of world `index` where they overlap; `state.contacts(index)` tells how."""
+    """Push these pairs of objects of world `index` apart where they overlap; see `state.contacts(index)`."""
 
 def neighbors(
     world: World, state: State, index: int, centre: tuple[float, float], reach: float
 ) -> list[tuple[int, float, float, float, float, float]]:
-    """What behaviors of world `index` see near a point, now: id, centre x, y, velocity x, y, radius; ascending ids.
+    """Discs that behaviors of world `index` see near a point now: id, centre x, y, velocity x, y, radius.
 
-    Every moving object but linestrings and every static circle whose bounding circle has its centre within `reach`.
+    They are all moving objects except linestrings, and all static circles, whose bounding circles have their centre
+    within `reach` [m], with ascending ids.
     """
 
 def walls(
     world: World, state: State, index: int, centre: tuple[float, float], reach: float, lines: bool
 ) -> list[tuple[float, float, float, float, int, int, int]]:
-    """Wall segments within `reach` of a point: x, y of both ends, object, next, previous (-1: a free end).
+    """Wall segments within `reach` [m] of a point: x, y of both ends, object, next, previous (-1 at a free end).
 
-    Those of static linestrings with `lines`, else the counter-clockwise outlines of other static objects that are
-    neither circles nor `unobstructed`.
+    With `lines` they are those of static linestrings, else the counter-clockwise outlines of other static objects that
+    are neither circles nor `unobstructed`.
     """
 
 def clearances(
-    world: World, state: State, index: int, poses: Floats, robots: Sequence[int], company: Flags
+    world: World, state: State, index: int, poses: Floats, robots: Sequence[int], kinds: Flags
 ) -> tuple[Floats, NDArray[np.int32]]:
     """Distances [m] between footprints over recorded poses (rows, N, 3) of world `index` in its present scene.
 
-    company: (N,) what each object is to a robot: 0 robot, 1 human, 2 something that stands still, 3 nobody. Returns
-    (rows, robots, 3) the distance to the nearest of the kinds 0 to 2, negative where they overlap, and its index; NaN
-    and -1 where there is none. Releases the GIL.
+    kinds: (N,) what each object is to a robot: 0 robot, 1 human, 2 static, 3 ignored. Returns (rows, robots, 3) the
+    distance to the nearest object of the kinds 0 to 2, negative where they overlap, and its index; NaN and -1 without
+    such an object. Releases the GIL.
     """
 
 def least_clearances(
@@ -778,12 +779,13 @@ def least_clearances(
     index: int,
     poses: Floats,
     robots: Sequence[int],
-    company: Flags,
+    kinds: Flags,
     ends: Sequence[int],
 ) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
-    """For each robot the least distance [m] of its first `ends` rows to anybody, (R,), whose it is, and in which row.
+    """Smallest distance [m] of each robot to any object in its first `ends` rows, the object and the row, (R,) each.
 
-    As :func:`clearances` otherwise, of all kinds together, and much faster. Releases the GIL.
+    Arguments are as for :func:`clearances`, of which this is the minimum over kinds and rows, found much faster.
+    Releases the GIL.
     """
 
 def intersects(
@@ -792,17 +794,18 @@ def intersects(
 def best_velocity(
     planes: Sequence[Sequence[float]], hard: int, max_speed: float, preferred: tuple[float, float]
 ) -> tuple[float, float, bool]:
-    """The velocity nearest to `preferred` within half-planes (point x, y, direction x, y; allowed: on the left).
+    """The velocity nearest to `preferred` within half-planes (point x, y, direction x, y; allowed on the left).
 
-    Where there is none (last value False), the one that is least outside, the first `hard` of them kept.
+    If no velocity is within all of them (last value False), it is the one with the smallest violation within the first
+    `hard` half-planes.
     """
 
 def nearest_points(
     points: Sequence[tuple[float, float]], centre: tuple[float, float], reach: float, most: int
 ) -> list[int]:
-    """Indices of the points less than `reach` away, nearest first, at most `most`."""
+    """Indices of up to `most` points less than `reach` [m] away, nearest first."""
 
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
-    """The Philox4x64-10 block of a key: key (seed, scene << 32 | noise), counter (draw, object, stream, 0)."""
+    """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""
 
 STREAMS: dict[str, int]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user

@@ -1,13 +1,20 @@
-"""What every test leaves as it found it."""
+"""What all tests share: examples, order, registries that are left as they were found, work that is done once."""
 
 from __future__ import annotations
 
+import functools
+import signal
+import sys
 from collections.abc import Iterator
 
 import pytest
+import typer.testing
 from hypothesis import HealthCheck, settings
 
 from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
+from irsim.scenario.model import json_schema
+from tests import warm
+from tests.warm import schema
 
 # How fast a machine draws and runs examples is no property of the code.
 settings.register_profile("irsim", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -33,10 +40,43 @@ def registered_features() -> Iterator[None]:
     before = [dict(table) for table in tables]
     yield
     for table, known in zip(tables, before, strict=True):
-        ours = {pair: made for pair, made in table.items() if made.__module__.startswith("irsim.lib.")}
+        ours = {pair: made for pair, made in table.items() if made.__module__.startswith("irsim.objects.handlers.")}
         table.clear()
         table.update(known | ours)
     for registry in REGISTRIES.values():
         for feature in [*registry._features.values()]:
             if feature.origin != "built-in":
                 del registry._features[feature.name]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _work_done_once() -> Iterator[None]:
+    """Do once a process what is the same for hundreds of tests: the schema, the tree of commands, imports of workers.
+
+    The schema is built again whenever a test has registered something, and each caller gets a copy of its own. Workers
+    of the MCP server start warm unless a test asks for ``ordinary_processes``.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(json_schema, "_definitions", schema.definitions)
+        patch.setattr(typer.testing, "_get_command", functools.cache(typer.main.get_command), raising=False)
+        if worker := sys.modules.get("irsim_mcp.worker"):
+            command = worker._command
+            patch.setattr(worker, "_command", lambda: warm.warm(command()))
+        yield
+
+
+@pytest.fixture
+def ordinary_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes start as users start them: for tests of what a start loads, of signals and of parents and children."""
+    monkeypatch.setattr(warm, "ENABLED", False)
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Processes that a test starts can be interrupted, even where this one was told to ignore it.
+
+    A shell has jobs in the background ignore Ctrl-C, and children inherit that.
+    """
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

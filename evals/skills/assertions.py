@@ -1,14 +1,13 @@
-"""The sentences that say what an answer must be like, and what decides whether each is true.
+"""The assertions about an answer, and the checks that decide whether each of them holds.
 
-Every assertion of `evals/skills/*/evals.json` and of the transcripts is one of the forms in `FORMS`: people and models
-read it as it stands, a program looks it up here. Files are those of the folder that the agent worked in; "the given
-one" is the file of that name as the agent got it.
+Every assertion of `evals/skills/*/evals.json` and of the transcripts has one of the forms in `FORMS`: people and models
+read the sentence, a program finds its check here. Files are in the folder that the agent worked in; "the given one" is
+the file of that name as the agent got it.
 
     python -m evals.skills.assertions SKILL ID FOLDER [--reply FILE]
 
-prints as JSON which assertions of an eval hold for a folder. Exits with 0 if all do, 1 if not, 2 if there is no such
-eval.
-Programs that an assertion names are run: use it only on answers that you would run yourself.
+prints as JSON which assertions of an eval hold for a folder. Exits with 0 if all hold, 1 if not, 2 if the eval or the
+folder does not exist. It runs the programs that assertions name: use it only on answers that you would run yourself.
 """
 
 from __future__ import annotations
@@ -33,12 +32,12 @@ Check = Callable[[Path, str, dict[str, str]], bool]
 
 
 def read(path: Path) -> Any:
-    """A file of YAML or JSON."""
+    """Load a file of YAML or JSON."""
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
 def values(data: Any, path: str) -> list[Any]:
-    """What stands at a path such as `robot[*].vel_max[0]`; one entry is a list of one, too."""
+    """Return the values at a path such as `robot[*].vel_max[0]`; a single entry counts as a list of one."""
     found = [data]
     for name, index in re.findall(r"([^.\[\]]+)|\[(\d+|\*)\]", path):
         if name:
@@ -50,7 +49,7 @@ def values(data: Any, path: str) -> list[Any]:
 
 
 def alike(found: Any, wanted: Any) -> bool:
-    """The same value; numbers within two percent."""
+    """Whether two values are equal, numbers within two percent."""
     if isinstance(wanted, list):
         return isinstance(found, list) and len(found) == len(wanted) and all(map(alike, found, wanted))
     if isinstance(wanted, bool) or not isinstance(wanted, int | float):
@@ -144,7 +143,7 @@ FORMS: dict[str, Check] = {
 
 
 def form_of(assertion: str) -> tuple[Check, dict[str, str]] | None:
-    """What decides an assertion, and the words in it; None if it has none of the forms."""
+    """Return the check of an assertion and the words in it, or None if the assertion has none of the forms."""
     for form, check in FORMS.items():
         found = re.fullmatch(form, assertion)
         if found:
@@ -153,13 +152,13 @@ def form_of(assertion: str) -> tuple[Check, dict[str, str]] | None:
 
 
 def passes(assertion: str, folder: Path, reply: str = "", given: Path = HERE) -> tuple[bool, str]:
-    """Whether an assertion holds; if not, why it could not be looked at, if that is so.
+    """Whether an assertion holds, and if it could not be checked, why.
 
     Args:
         assertion: A sentence of one of the forms.
-        folder: What the agent left.
-        reply: What it said.
-        given: Where the files are as it got them.
+        folder: The folder that the agent worked in.
+        reply: Its last message.
+        given: Folder of the files as the agent got them.
 
     Raises:
         ValueError: The sentence has none of the forms.
@@ -177,22 +176,22 @@ def passes(assertion: str, folder: Path, reply: str = "", given: Path = HERE) ->
 
 
 def evals_of(skill: str) -> list[dict[str, Any]]:
-    """The evals of a skill."""
+    """Return the evals of a skill."""
     found: list[dict[str, Any]] = read(HERE / skill / "evals.json")["evals"]
     return found
 
 
 def main() -> int:
-    """Look at one answer."""
+    """Check one answer."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("skill", choices=sorted(path.parent.name for path in HERE.glob("*/evals.json")))
-    parser.add_argument("id", help="of the eval")
-    parser.add_argument("folder", type=Path, help="what the agent left")
-    parser.add_argument("--reply", type=Path, help="what it said")
+    parser.add_argument("id", help="id of the eval")
+    parser.add_argument("folder", type=Path, help="folder that the agent worked in")
+    parser.add_argument("--reply", type=Path, help="file with its last message")
     given = parser.parse_args()
     chosen = [item for item in evals_of(given.skill) if item["id"] == given.id]
     if not chosen or not given.folder.is_dir():
-        print(f"assertions.py: no eval {given.id!r}, or no folder {given.folder}", file=sys.stderr)
+        print(f"assertions.py: eval {given.id!r} or folder {given.folder} does not exist", file=sys.stderr)
         return 2
     reply = given.reply.read_text(encoding="utf-8") if given.reply else ""
     rows = []

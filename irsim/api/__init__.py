@@ -1,4 +1,4 @@
-"""The functions behind ``irsim.run``, ``irsim.render`` and ``irsim.validate``, for the CLI, Python and MCP alike."""
+"""The functions behind ``irsim.run``, ``irsim.render`` and ``irsim.validate``, which CLI, Python and MCP share."""
 
 from __future__ import annotations
 

@@ -1,41 +1,44 @@
-"""Several moments of an episode as one picture."""
+"""Film strip: several moments of an episode as one picture."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from irsim.api.overlays import Overlay, additions, planned, plot_keys
+from irsim.api.overlays import Overlay, additions, plot_keys, requested_plans
 from irsim.diagnostics.errors import ArgumentError
 
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.episodes.episode import Progress
 
-__all__ = ["FEWEST", "MOST", "StripError", "drawn_strip", "moments_of"]
+__all__ = ["MAX_MOMENTS", "MIN_MOMENTS", "StripError", "draw_strip", "moments_of"]
 
-FEWEST, MOST = 2, 12
-"""Moments of one picture."""
+MIN_MOMENTS = 2
+"""Least number of moments of one picture."""
+MAX_MOMENTS = 12
+"""Greatest number of moments of one picture."""
 
 
 class StripError(ArgumentError):
-    """No such strip can be drawn."""
+    """A strip has an invalid number of moments."""
 
     where = "strip"
 
 
 def moments_of(last: int, count: int) -> list[int]:
-    """So many steps, evenly from 0 to the last one; fewer if there are not so many.
+    """Steps of the moments of a strip, evenly spaced from 0 to the last one; fewer in a shorter episode.
 
     Raises:
-        StripError: They are too few or too many for a picture.
+        StripError: ``count`` is too small or too large for one picture.
     """
-    if not FEWEST <= count <= MOST:
-        raise StripError(f"a strip of {count} moments", f"give {FEWEST} to {MOST}")
+    if not MIN_MOMENTS <= count <= MAX_MOMENTS:
+        what = f"a strip must have {MIN_MOMENTS} to {MAX_MOMENTS} moments, got {count}"
+        raise StripError(what, f"give {MIN_MOMENTS} to {MAX_MOMENTS}")
     return sorted({round(k * last / (count - 1)) for k in range(count)})
 
 
-def drawn_strip(
+def draw_strip(
     env: Env,
     moments: Sequence[int],
     *,
@@ -44,15 +47,15 @@ def drawn_strip(
     region: Sequence[float] | None = None,
     progress: Progress | None = None,
 ) -> bytes:
-    """Draw moments of an episode as one PNG; the environment is at the last of them afterwards.
+    """Draw moments of an episode as one PNG, and advance the environment to the last of them.
 
     Args:
         env: An environment at its start.
-        moments: Steps, ascending.
-        size: Longer side of the picture at most [px].
+        moments: Steps of the moments, ascending.
+        size: Greatest length of the longer side of the picture [px].
         overlays: What to show besides bodies.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
-        progress: Told how far it is.
+        progress: Callback ``(steps_done, steps_total)``.
     """
     from irsim.episodes.episode import advance
     from irsim.rendering.strip import Strip
@@ -60,7 +63,7 @@ def drawn_strip(
     sheet = Strip(len(moments), size, region=region, overrides=plot_keys(overlays))
     for moment in moments:
         advance(env, moment - int(env.simulation.count[0]), None, until_done=False)
-        sheet.add(env.simulation, additions(env, overlays, planned(env, overlays)))
+        sheet.add(env.simulation, additions(env, overlays, requested_plans(env, overlays)))
         if progress is not None:
             progress(moment, moments[-1])
     return sheet.png()

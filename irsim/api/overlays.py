@@ -1,4 +1,4 @@
-"""What a snapshot shows besides bodies: plot keys, free space, and the ways that robots would take."""
+"""Overlays of a snapshot: what it shows besides bodies, such as names, free space and planned paths."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from irsim.diagnostics.errors import ArgumentError
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.graphics.scene.scene import Floats
-    from irsim.rendering.planned_paths import Planned
+    from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
-    from irsim.results.results import RobotPlan
+    from irsim.results.picture import RobotPlan
 
-__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "planned", "plot_keys"]
+__all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "plot_keys", "requested_plans"]
 
 Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
@@ -27,14 +27,14 @@ OVERLAYS: dict[Overlay, tuple[str, ...]] = {
     "clearance": (),
     "plan": (),
 }
-"""What a snapshot may show besides bodies, and the plot keys that switch it."""
+"""Overlays, and the plot keys that switch each of them."""
 
 
 def overlays_from(words: Iterable[str]) -> list[Overlay]:
-    """Overlays by name.
+    """The overlays with some names.
 
     Raises:
-        ArgumentError: One has no such name.
+        ArgumentError: A name is not that of an overlay.
     """
     known: dict[str, Overlay] = {name: name for name in OVERLAYS}
     asked = [word.strip() for word in words if word.strip()]
@@ -42,29 +42,29 @@ def overlays_from(words: Iterable[str]) -> list[Overlay]:
     if unknown is not None:
         near = nearest(unknown, OVERLAYS)
         fix = (f"write {near!r}; " if near else "") + f"overlays are {', '.join(OVERLAYS)}"
-        raise ArgumentError(f"there is no overlay {clean(unknown, 40)!r}", fix)
+        raise ArgumentError(f"{clean(unknown, 40)!r} is not a valid overlay", fix)
     return [known[word] for word in asked]
 
 
 def plot_keys(overlays: Iterable[Overlay] | None) -> dict[str, bool]:
-    """Plot keys over those of objects; none if nothing is said about overlays."""
+    """Plot keys that override those of objects; none if no overlays are given."""
     if overlays is None:
         return {}
     shown = set(overlays)
     return {key: name in shown for name, keys in OVERLAYS.items() for key in keys}
 
 
-def planned(env: Env, overlays: Collection[Overlay] | None) -> list[Planned]:
-    """The ways of the robots of an environment, if they are asked for."""
+def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[PlannedPath]:
+    """Paths planned for the robots of an environment, if the overlay ``plan`` is requested."""
     if not overlays or "plan" not in overlays:
         return []
-    from irsim.rendering.planned_paths import plans
+    from irsim.rendering.planned_paths import plan_paths
 
-    return plans(env.simulation, routes=_routes(env))
+    return plan_paths(env.simulation, routes=_routes(env))
 
 
-def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned]) -> Extra:
-    """Draws what no plot key switches."""
+def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
+    """A function that draws the overlays that no plot key switches."""
     from irsim.graphics.scene.scene import Scene
     from irsim.rendering.clearance_map import draw_clearance
     from irsim.rendering.planned_paths import draw_plans
@@ -77,9 +77,9 @@ def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[Planned
     return add
 
 
-def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
-    """The ways in numbers."""
-    from irsim.results.results import RobotPlan
+def plan_results(env: Env, ways: list[PlannedPath]) -> list[RobotPlan]:
+    """The planned paths as results."""
+    from irsim.results.picture import RobotPlan
 
     labels = {view.id: view.abbr for view in env.robot_list}
     return [
@@ -97,7 +97,7 @@ def plan_results(env: Env, ways: list[Planned]) -> list[RobotPlan]:
 
 
 def _routes(env: Env) -> dict[int, Floats | None]:
-    """What robots that plan for themselves have planned, or will in their first step, by id."""
+    """Routes of robots with the behavior ``follow``, by id; before the first step, those they will plan in it."""
     following = [record for record in env.scenario.objects if getattr(record.behavior, "name", "") == "follow"]
     if not following:
         return {}

@@ -1,4 +1,4 @@
-"""Maps of the ROS map server, to scenarios and back."""
+"""Convert maps of the ROS map server to scenarios and back."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from PIL import Image
 from irsim.common.files import check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 from irsim.objects.obstacle_map import grid_values
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.modeline import with_modeline
@@ -25,28 +25,21 @@ from irsim.simulation.simulation import Simulation
 __all__ = ["MODES", "MapFileError", "MapFiles", "export_map", "import_map"]
 
 Floats = NDArray[np.float64]
-_SQUARE = 1e-6
+_MAX_ASPECT_ERROR = 1e-6
+"""Share by which the sides of a cell may differ for it to count as square."""
 
 
-class MapFileError(IrsimError, ValueError):
-    """A map that cannot be read or written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+class MapFileError(CodedError, ValueError):
+    """A map cannot be read or written."""
 
 
 @dataclass(frozen=True)
 class MapFiles:
-    """What was written.
+    """The files of a converted map, and its size.
 
     Attributes:
-        files: The files.
-        columns, rows: Cells along x and y.
+        files: Paths of the files.
+        columns, rows: Number of cells along x and y.
         resolution: Side of a cell [m].
         origin: Lower left corner [m].
         occupied: Number of occupied cells.
@@ -60,21 +53,22 @@ class MapFiles:
     occupied: int
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """The result as JSON types."""
         return dict(self.__dict__)
 
 
 def import_map(file: str | Path, out: str | Path, *, unknown: str = "free", overwrite: bool = False) -> MapFiles:
-    """Write a scenario, and a picture beside it, from a map of the ROS map server.
+    """Convert a map of the ROS map server to a scenario and a picture.
 
     Args:
-        file: The map's YAML file.
-        out: Scenario file to write; the picture has its name with ``.png``.
-        unknown: What cells count as that are neither: ``free`` or ``occupied``.
-        overwrite: Replace files that exist.
+        file: YAML file of the map.
+        out: Scenario file to write; the picture is written beside it, with the suffix ``.png``.
+        unknown: Whether unknown cells count as ``free`` or ``occupied``.
+        overwrite: Replace existing files.
 
     Raises:
-        MapFileError: The map cannot be read; TargetError: a file is in the way.
+        MapFileError: The map cannot be read.
+        TargetError: A file exists already.
     """
     source, target = Path(file), Path(out)
     check_suffix(target, (".yaml", ".yml"))
@@ -94,7 +88,7 @@ def import_map(file: str | Path, out: str | Path, *, unknown: str = "free", over
         f"  offset: [{raster.origin[0]!r}, {raster.origin[1]!r}]\n"
         f"  obstacle_map: {{name: image, path: {json.dumps(picture.name)}}}\n"
     )
-    _refuse(picture, overwrite)
+    _check_new(picture, overwrite)
     write_new(target, with_modeline(text, target), overwrite=overwrite)
     grey = np.round(255 * (1 - values / 100)).astype(np.uint8)
     Image.fromarray(np.ascontiguousarray(grey[:, ::-1].T)).save(picture, optimize=True)
@@ -111,18 +105,19 @@ def export_map(
     seed: int | None = None,
     overwrite: bool = False,
 ) -> MapFiles:
-    """Write the map of a scenario for the ROS map server.
+    """Convert the map of a scenario to files for the ROS map server.
 
     Args:
-        scenario: With a map.
-        out: YAML file to write; the picture has its name.
-        mode: ``trinary``, ``scale`` or ``raw``.
-        image: ``pgm`` or ``png``.
-        seed: Of a map that is drawn per scene; default: the scenario's.
-        overwrite: Replace files that exist.
+        scenario: A scenario with a map.
+        out: YAML file to write; the picture is written beside it.
+        mode: Encoding of the occupancy: ``trinary``, ``scale`` or ``raw``.
+        image: Format of the picture: ``pgm`` or ``png``.
+        seed: Seed of a random map; default: the scenario's own.
+        overwrite: Replace existing files.
 
     Raises:
-        MapFileError: There is no map; TargetError: a file is in the way.
+        MapFileError: The scenario has no map.
+        TargetError: A file exists already.
     """
     target = Path(out)
     check_suffix(target, (".yaml", ".yml"))
@@ -134,10 +129,10 @@ def export_map(
         assert values is not None
     else:
         values = scenario.grid.values()
-    values, side = _square(values, scenario.grid.cell)
+    values, side = _with_square_cells(values, scenario.grid.cell)
     picture = target.with_suffix(f".{image}")
     meta = RosMeta(picture.name, side, (*scenario.grid.origin, 0.0), mode=mode)
-    _refuse(picture, overwrite)
+    _check_new(picture, overwrite)
     write_new(target, meta.as_yaml(), overwrite=overwrite)
     Image.fromarray(np.ascontiguousarray(pixels_of(values, meta))).save(picture)
     nx, ny = values.shape
@@ -145,10 +140,10 @@ def export_map(
     return MapFiles([str(target), str(picture)], nx, ny, side, scenario.grid.origin, occupied)
 
 
-def _square(values: Floats, cell: tuple[float, float]) -> tuple[Floats, float]:
-    """The grid with square cells as small as the smaller side, which the map server wants."""
+def _with_square_cells(values: Floats, cell: tuple[float, float]) -> tuple[Floats, float]:
+    """Resample a grid to square cells, which the map server needs, as small as the shorter side of the cells."""
     side = min(cell)
-    if max(cell) <= side * (1 + _SQUARE):
+    if max(cell) <= side * (1 + _MAX_ASPECT_ERROR):
         return values, side
     size = [max(1, round(n * c / side)) for n, c in zip(values.shape, cell, strict=True)]
     i, j = (
@@ -158,6 +153,7 @@ def _square(values: Floats, cell: tuple[float, float]) -> tuple[Floats, float]:
     return values[np.ix_(i, j)], side
 
 
-def _refuse(picture: Path, overwrite: bool) -> None:
+def _check_new(picture: Path, overwrite: bool) -> None:
+    """Refuse to overwrite an existing picture."""
     if not overwrite and os.path.lexists(picture):
         raise MapFileError("file-exists", f"{picture} exists; --force overwrites it, -o names another file")

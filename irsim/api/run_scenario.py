@@ -1,4 +1,4 @@
-"""``irsim.validate``, ``irsim.run`` and ``irsim.render``: what the CLI, Python and MCP share."""
+"""``irsim.run`` and ``irsim.render``: simulate or draw a scenario, for the CLI, Python and MCP alike."""
 
 from __future__ import annotations
 
@@ -19,8 +19,11 @@ from irsim.episodes.episode import (
     read_scenario,
     seed_of,
 )
-from irsim.episodes.run_report import command, region_words, run_result
-from irsim.results.results import RenderResult, RunResult, SnapshotResult
+from irsim.episodes.reproduce import region_options, reproduce_command
+from irsim.episodes.run_report import run_result
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
+from irsim.results.picture import RenderResult, SnapshotResult
+from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.validation.validate import diff, fix, validate
@@ -36,8 +39,6 @@ __all__ = [
     "snapshot",
     "validate",
 ]
-
-VIDEO_SUFFIXES = (".gif", ".apng", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 
 
 def run(
@@ -60,37 +61,41 @@ def run(
 
     Args:
         path: Scenario file.
-        text: Or its text.
-        seed: Over the file's; with neither, fresh entropy (reported), or 0 where nothing is random.
-        steps: Horizon in steps, over ``world.time_limit``.
+        text: Text of the scenario, instead of ``path``.
+        seed: Overrides the file's seed. Without either, a random seed is drawn and reported (0 if nothing is random).
+        steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
-        behavior: What every robot follows instead of its own: a name, or a mapping with options (in Python or as YAML
+        behavior: Behavior of every robot instead of its own: a name, or a mapping with options (in Python or as YAML
             text, such as ``{name: orca, timeHorizon: 5}``).
-        imports: Modules to import first, for behaviors they register.
-        save: Also write an animation here (gif, mp4, apng, …).
-        show: Also show it live in a window.
-        record: Also keep everything that happens: True for a folder below ``.irsim/runs`` of the current directory,
-            where it is let go 24 hours after its last use; or a new folder to keep it in. :func:`irsim.runs.open_run`
-            reads it.
-        recorded: Told the id of the record as soon as that has begun.
+        imports: Modules to import first, for behaviors that they register.
+        save: Also write an animation to this file (gif, mp4, apng, …).
+        show: Also show the episode live in a window.
+        record: Also record the run: True records to a folder below ``.irsim/runs`` of the current directory, which is
+            deleted 24 hours after its last use; a path records to a new folder that is kept.
+            :func:`irsim.runs.open_run` reads the recording.
+        recorded: Callback ``(run_id)``, called when the recording starts.
         limits: Limits of the loader and of the run.
-        progress: Told how far it is.
+        progress: Callback ``(steps_done, steps_total)``.
 
     Raises:
-        ScenarioError: The file cannot be used; ScenarioNotFoundError: there is none.
-        OverLimitError: More steps are asked for than the limits allow.
-        BenchmarkError: There is no such behavior.
-        ArgumentError: The steps are no whole number.
-        RunError: The folder to record into holds something already.
-        ValueError: Neither or both of ``path`` and ``text``.
+        ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
+        OverLimitError: ``steps`` exceeds the limits.
+        BenchmarkError: ``behavior`` is not a valid behavior.
+        ArgumentError: ``steps`` is not a whole number.
+        RunError: The folder to record to is not empty.
+        ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    told = _as_text(behavior)
-    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=told)
+    behavior_text = _as_text(behavior)
+    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
     chosen = seed_of(scenario, seed)
     env = Env(scenario, seed=chosen, display=show, headless=save is None and not show, log_level="ERROR")
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
-    options = {"strict": strict, "imports": list(imports), **({} if told is None else {"behavior": told})}
+    options = {
+        "strict": strict,
+        "imports": list(imports),
+        **({} if behavior_text is None else {"behavior": behavior_text}),
+    }
     with recording(env, path, record, horizon=horizon, options=options) as recorder:
         if recorder is not None and recorded is not None:
             recorded(recorder.run_id)
@@ -108,7 +113,7 @@ def run(
             files=files,
             imports=imports,
             strict=strict,
-            behavior=told,
+            behavior=behavior_text,
         )
         if recorder is not None:
             recorder.finish(result)
@@ -117,7 +122,7 @@ def run(
 
 
 def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
-    """A behavior for all robots as a command line has it; None for their own."""
+    """A behavior for all robots as text, as the command line takes it; None for their own."""
     if behavior is None:
         return None
     from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text
@@ -149,23 +154,23 @@ def render(
 
     Args:
         path: Scenario file.
-        out: File to write; its suffix says what.
-        seed: Over the file's.
-        steps: Steps before the picture (default 0: the start), or the longest an animation goes on.
+        out: File to write; its suffix determines the format.
+        seed: Overrides the file's seed.
+        steps: Number of steps before the picture (default 0: the start), or greatest number of steps of an animation.
         size: Longer side of the picture [px]; default from ``world.plot``.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
-        strip: So many moments on one sheet (png), labelled as snapshots are, evenly from the start to ``steps``
+        strip: Number of moments on one sheet (png), labelled like snapshots, evenly spaced from the start to ``steps``
             (default: of a whole episode).
-        overlays: What to show besides bodies, in a picture (png) labelled as snapshots are: see
+        overlays: What to show besides bodies, in a picture (png) labelled like snapshots: see
             :data:`irsim.api.overlays.OVERLAYS`.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first.
         limits: Limits of the loader.
-        progress: Told how far it is.
+        progress: Callback ``(steps_done, steps_total)``.
 
     Raises:
-        ScenarioError: The file cannot be used; ValueError: a suffix that nothing writes, a region that is none, too
-            few or too many moments.
+        ScenarioError: The scenario has errors.
+        ValueError: The suffix is unsupported, the region is invalid, or there are too few or too many moments.
     """
     target = Path(out)
     steps = None if steps is None else check_whole_number("steps", steps)
@@ -191,8 +196,8 @@ def render(
             imports=imports,
             out=out,
         )
-        return _written(sheet, target)
-    animated = target.suffix.lower() in VIDEO_SUFFIXES
+        return _write_sheet(sheet, target)
+    animated = target.suffix.lower() in MOVING_SUFFIXES
     env = Env(scenario, seed=seed_of(scenario, seed), display=False, log_level="ERROR")
     if region is not None:
         env._env_plot.set_region(region)
@@ -205,7 +210,7 @@ def render(
     else:
         advance(env, steps or 0, progress, until_done=False)
         files, frames = [str(env.save_figure(target.absolute()))], 1
-    sized = [*([] if size is None else ["--size", str(size)]), *region_words(region)]
+    sized = [*([] if size is None else ["--size", str(size)]), *region_options(region)]
     result = RenderResult(
         scenario=str(path),
         seed=env.seed,
@@ -214,15 +219,15 @@ def render(
         size=env._env_plot.size,
         files=files,
         warnings=warnings,
-        reproduce=command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
+        reproduce=reproduce_command("render", path, env, steps, strict, imports, extra=[*sized, "-o", str(out)]),
     )
     env.end(ending_time=0.0)
     return result
 
 
-def _written(sheet: SnapshotResult, target: Path) -> RenderResult:
+def _write_sheet(sheet: SnapshotResult, target: Path) -> RenderResult:
     """Write a picture of several moments."""
-    from irsim.graphics.encoding.picture_files import replacing
+    from irsim.common.files import replacing
 
     with replacing(target) as temporary:
         temporary.write_bytes(sheet.png)
@@ -243,14 +248,14 @@ def _animate(
 ) -> list[str]:
     env.save_ani = save is not None
     if save is not None:
-        env.ani_kwargs["suffix"] = save.suffix  # how many colours a kept frame needs
+        env.ani_kwargs["suffix"] = save.suffix  # determines how many colours a frame keeps
     env.render()
     for step in range(steps):
         if env.done():
             break
         env.step()
         if recorder is not None:
-            recorder.look()
+            recorder.write_if_due()
         env.render(env.step_time)
         if progress is not None:
             progress(step + 1, steps)

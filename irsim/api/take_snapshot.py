@@ -1,4 +1,4 @@
-"""``irsim.api.snapshot``: one moment of an episode, as a small picture and in words."""
+"""``irsim.api.snapshot``: one moment of an episode as a small picture and in words."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from irsim.api.film_strip import drawn_strip, moments_of
-from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, planned, plot_keys
+from irsim.api.film_strip import draw_strip, moments_of
+from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
 from irsim.env import Env
 from irsim.episodes.episode import Progress, advance, horizon_of, read_scenario, seed_of
-from irsim.episodes.run_report import command, overlay_words, region_words, strip_words
+from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import Finding, MovingPose, RobotPose, SnapshotResult
+from irsim.results.findings import Finding
+from irsim.results.picture import MovingPose, RobotPose, SnapshotResult
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -21,7 +22,7 @@ from irsim.simulation.outcome import robot_outcomes
 if TYPE_CHECKING:
     from irsim.objects.view import ObjectView
 
-__all__ = ["OVERLAYS", "Overlay", "drawn", "snapshot", "snapshot_of"]
+__all__ = ["OVERLAYS", "Overlay", "snapshot", "snapshot_of", "snapshot_of_env"]
 
 
 def snapshot(
@@ -39,28 +40,28 @@ def snapshot(
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> SnapshotResult:
-    """A small, labelled picture of one moment, and in words what is in it. Writes nothing.
+    """Draw a small, labelled picture of one moment and describe it in words, without writing a file.
 
     Args:
         path: Scenario file.
-        text: Or its text.
-        seed: Over the file's.
-        steps: Steps before the picture; None: those of a whole episode.
-        strip: So many moments in one picture, evenly from the start to ``steps`` (0: of a whole episode).
+        text: Text of the scenario, instead of ``path``.
+        seed: Overrides the file's seed.
+        steps: Number of steps before the picture; None: those of a whole episode.
+        strip: Number of moments in one picture, evenly spaced from the start to ``steps`` (0: of a whole episode).
         size: Longer side of the picture [px].
-        overlays: What to show besides bodies, see :data:`OVERLAYS`; by default names, goals and paths, and of sensors
-            what the scenario says.
+        overlays: What to show besides bodies, see :data:`OVERLAYS`; default: names, goals and paths, and the sensors
+            that the scenario shows.
         region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
-        draw: Make the picture too.
+        draw: Whether to draw the picture, too.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader and of the run.
-        progress: Told how far it is.
+        progress: Callback ``(steps_done, steps_total)``.
 
     Raises:
-        ScenarioError: The scenario cannot be used; ScenarioNotFoundError: there is none.
-        OverLimitError: More steps are asked for than the limits allow.
-        ValueError: Neither or both of ``path`` and ``text``; a region that is none, or too few or too
-            many moments.
+        ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
+        OverLimitError: ``steps`` exceeds the limits.
+        ValueError: Neither or both of ``path`` and ``text`` are given, the region is invalid, or there are too few or
+            too many moments.
     """
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
     return snapshot_of(
@@ -98,11 +99,11 @@ def snapshot_of(
     imports: Sequence[str] = (),
     out: str | Path = "snapshot.png",
 ) -> SnapshotResult:
-    """The same of a scenario that has been read, with what was odd about it; ``path`` is only told."""
+    """Like :func:`snapshot`, for a scenario already read, with its warnings; ``path`` is only used in the result."""
     if region is not None:
         from irsim.graphics.scene.scene import region_extent
 
-        region_extent(region)  # before much work is done
+        region_extent(region)  # reports an invalid region before the simulation
     shown = None if overlays is None else overlays_from(overlays)
     env = Env(scenario, seed=seed_of(scenario, seed), headless=True, log_level="ERROR")
     if strip is not None:
@@ -115,13 +116,13 @@ def snapshot_of(
     if strip is not None:
         last = int(env.simulation.count[0]) if steps is None else steps
         chosen = moments_of(last, strip)
-        if steps is None:  # nobody knew how long it would be
+        if steps is None:  # the number of steps was unknown, so the moments are simulated again
             env.end(ending_time=0.0)
             env = Env(scenario, seed=env.seed, headless=True, log_level="ERROR")
     count = int(env.simulation.count[0]) if chosen is None else chosen[-1]
-    options = [*region_words(region), *strip_words(strip), *overlay_words(shown)]
+    options = [*region_options(region), *strip_options(strip), *overlay_options(shown)]
     extra = ["--size", str(size), *options, "-o", str(out)]
-    result = drawn(
+    result = snapshot_of_env(
         env,
         path,
         size=size,
@@ -130,14 +131,14 @@ def snapshot_of(
         moments=chosen,
         draw=draw,
         warnings=warnings,
-        reproduce=command("render", path, env, count, strict, imports, extra=extra),
+        reproduce=reproduce_command("render", path, env, count, strict, imports, extra=extra),
         progress=progress,
     )
     env.end(ending_time=0.0)
     return result
 
 
-def drawn(
+def snapshot_of_env(
     env: Env,
     path: str | Path | None,
     *,
@@ -150,17 +151,27 @@ def drawn(
     reproduce: str,
     progress: Progress | None = None,
 ) -> SnapshotResult:
-    """An environment as it is now: like :func:`snapshot`, with the command that draws the same moment.
+    """Like :func:`snapshot`, for an environment in its present state.
 
-    With ``moments``, steps of which the first is now, it is at the last of them afterwards.
+    Args:
+        env: The environment.
+        path: Scenario file, which is only used in the result.
+        size: Longer side of the picture [px].
+        overlays: What to show besides bodies.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
+        moments: Steps of a strip, the first of which is the present one; the environment is advanced to the last.
+        draw: Whether to draw the picture, too.
+        warnings: Warnings about the scenario, for the result.
+        reproduce: Command that draws the same picture, for the result.
+        progress: Callback ``(steps_done, steps_total)``.
     """
     scenario = env.scenario
     png = b""
     if moments is not None and draw:
-        png = drawn_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress)
+        png = draw_strip(env, moments, size=size, overlays=overlays, region=region, progress=progress)
     elif moments is not None:
         advance(env, moments[-1], progress, until_done=False)
-    ways = planned(env, overlays)
+    ways = requested_plans(env, overlays)
     if moments is None and draw:
         from irsim.rendering.snapshot import render_scene
 
@@ -213,5 +224,5 @@ def _moving(view: ObjectView) -> MovingPose:
 
 
 def _size_of(png: bytes) -> tuple[int, int]:
-    """Width and height, which stand at a fixed place in a PNG file."""
+    """Width and height [px] from the header of a PNG file."""
     return int.from_bytes(png[16:20], "big"), int.from_bytes(png[20:24], "big")

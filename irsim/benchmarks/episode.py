@@ -1,4 +1,4 @@
-"""One episode of a benchmark."""
+"""Run and measure one episode of a benchmark."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from irsim.episodes.episode import horizon_of, import_modules
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
-from irsim.metrics.roles import on_their_way
+from irsim.metrics.roles import travelling_humans
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario
@@ -25,9 +25,9 @@ __all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
 
 Outcome = Literal["success", "collision", "timeout"]
 _STRIDE = 100
-"""Steps after which it is seen whether the people have arrived."""
-_TOLD = 10
-"""Robots of which an episode tells what became."""
+"""Number of steps between two checks whether all humans have arrived."""
+_MAX_FAILURES = 10
+"""Number of robots without success that an episode lists."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Job:
     """One scenario under one behavior.
 
     Attributes:
-        text: The scenario.
-        path: Its file, for what it names beside it; None for a text.
-        behavior: See :func:`irsim.scenario.behavior_override.parse_behavior`.
-        steps: Horizon; None: that of the scenario.
+        text: Text of the scenario.
+        path: Its file, relative to which it names other files; None for a text.
+        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`.
+        steps: Horizon in steps; None: that of the scenario.
         strict: Refuse what IR-SIM would ignore.
-        imports: Modules of the user, for what they register.
-        limits: Of reading and running, as (name, value).
+        imports: Modules of the user that register behaviors.
+        limits: Limits of the loader and of the run, as (name, value) pairs.
     """
 
     text: str
@@ -61,12 +61,12 @@ class Task:
     seed: int
 
     def as_data(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """The task as JSON types."""
         return asdict(self)
 
     @staticmethod
     def of_data(data: dict[str, Any]) -> Task:
-        """From :meth:`as_data`."""
+        """The task of the data that :meth:`as_data` returns."""
         job = data["job"]
         job["imports"] = tuple(job["imports"])
         job["limits"] = tuple((name, value) for name, value in job["limits"])
@@ -75,10 +75,10 @@ class Task:
 
 @lru_cache(maxsize=8)
 def scenario_of(job: Job) -> ResolvedScenario:
-    """The scenario of a job, ready to build; the last few are remembered.
+    """The scenario of a job, ready to build; the last few scenarios are cached.
 
     Raises:
-        ScenarioError: It cannot be used.
+        ScenarioError: The scenario has errors.
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
@@ -89,13 +89,13 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     """Run an episode until every robot has arrived or stopped, or the horizon is reached, and measure it.
 
     Args:
-        task: Which one.
-        ways: Shortest ways that are known of a world in which the same things stand in the same places.
+        task: The episode.
+        ways: Shortest paths in a world with the same static objects, if they are known.
 
     Returns:
-        ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (robots without a way to their
-        goal), ``failures`` (what became of robots without success, by name), and ``metrics`` of the episode by key (NaN
-        where undefined).
+        ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (number of robots without a
+        path to their goal), ``failures`` (outcome of robots without success, by name), and ``metrics`` of the episode
+        by key (NaN where undefined).
     """
     job = task.job
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
@@ -104,7 +104,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     trace = record(simulation, horizon)
     steps = int(simulation.count[0])
     measured = episode_metrics(trace, simulation, env.events, ways=ways)
-    measured.episode["pedestrian_delay"] = _delay(task, env, horizon)
+    measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)
     env.end(ending_time=0.0)
     robots = measured.robots
     outcome: Outcome = "timeout"
@@ -124,9 +124,9 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     }
 
 
-def _delay(task: Task, env: Env, horizon: int) -> float:
-    """``pedestrian_delay`` [s]; lets time pass until the people have arrived, at most to the horizon."""
-    people = on_their_way(env.scenario.objects)
+def _pedestrian_delay(task: Task, env: Env, horizon: int) -> float:
+    """``pedestrian_delay`` [s]; advances the environment until all humans have arrived, at most to the horizon."""
+    people = travelling_humans(env.scenario.objects)
     if not people or not env.robot_list:
         return math.nan
     with_robots: dict[str, float] = {}
@@ -148,14 +148,14 @@ def _delay(task: Task, env: Env, horizon: int) -> float:
 
 
 def _arrival_times(env: Env, names: Collection[str]) -> dict[str, float]:
-    """When each of some objects arrived first [s]; those that never did are left out."""
+    """Time of the first arrival of each of some objects [s]; objects that have not arrived are left out."""
     return {name: event.time for name, event in first_events(env.events, "arrival").items() if name in names}
 
 
 def _failures(measured: EpisodeMetrics) -> dict[str, str]:
-    """What became of the first robots that had no success."""
+    """Outcome of the first robots without success, by name."""
     found: dict[str, str] = {}
     for name, robot, hit in zip(measured.names, measured.robots, measured.hits, strict=True):
-        if not robot["success"] and len(found) < _TOLD:
+        if not robot["success"] and len(found) < _MAX_FAILURES:
             found[name] = "timeout" if robot["timeout"] else f"collision with {hit!r}"
     return found

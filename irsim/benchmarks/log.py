@@ -1,6 +1,6 @@
-"""Episodes on disk as soon as they are done, for whoever wants to keep what a benchmark had that was stopped.
+"""A log of the episodes of a benchmark, each written as soon as it is done, which survives an interruption.
 
-The first line of the file is the result without episodes; each further one is an episode and its place in the order.
+The first line of the file is the result without episodes; each further line is an episode and its place in the order.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from irsim.benchmarks.summary import notes_of, rows_of
-from irsim.results.results import BenchmarkResult, EpisodeRow
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import refusal, unreadable
 
 __all__ = ["Log", "logged", "with_episodes"]
@@ -22,11 +22,11 @@ _FLAGS = os.O_CREAT | os.O_TRUNC | os.O_WRONLY | os.O_APPEND | getattr(os, "O_BI
 
 
 class Log:
-    """The file, open. What the system refuses to write ends the log, not the benchmark.
+    """An open log file; a write error ends the log, not the benchmark.
 
     Args:
-        file: Where; what was there is gone.
-        head: The result, without episodes.
+        file: The file, which is replaced if it exists.
+        head: The result without episodes.
 
     Raises:
         RunError: The file cannot be written.
@@ -41,15 +41,20 @@ class Log:
         self._add(head.model_dump_json())
 
     def add(self, number: int, episode: EpisodeRow) -> None:
-        """Write an episode, whose place in the order is ``number``, down; from any thread."""
+        """Write an episode; may be called from any thread.
+
+        Args:
+            number: Place of the episode in the order.
+            episode: The episode.
+        """
         self._add(f'{{"number": {number}, "episode": {episode.model_dump_json()}}}')
 
     def __enter__(self) -> Log:
-        """Nothing."""
+        """Return the log."""
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Write no more."""
+        """Close the file."""
         with self._lock:
             self._open = False
             with suppress(OSError):
@@ -65,25 +70,25 @@ class Log:
 
 
 def logged(file: str | Path) -> BenchmarkResult:
-    """The result of the episodes in a log.
+    """Read the result of the episodes in a log.
 
     Raises:
-        RunError: It is no log.
+        RunError: The file cannot be read, or is not a log of a benchmark.
     """
     try:
-        lines = Path(file).read_bytes().split(b"\n")[:-1]  # whoever was killed may have left half of a line
+        lines = Path(file).read_bytes().split(b"\n")[:-1]  # a killed process may have left half a line
         head = BenchmarkResult.model_validate_json(lines[0])
         found = [json.loads(line) for line in lines[1:]]
         episodes = {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in found}
     except OSError as error:
         raise refusal(file, error) from None
     except (ValueError, LookupError, TypeError):
-        raise unreadable(f"{str(file)!r} is no log of a benchmark") from None
+        raise unreadable(f"{str(file)!r} is not a log of a benchmark") from None
     return with_episodes(head, [episodes[number] for number in sorted(episodes)])
 
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:
-    """A result with episodes, in their order, and all that follows from them."""
+    """A copy of a result with its episodes and with the rows and notes that follow from them."""
     rows = rows_of(episodes, head.scenarios, head.behaviors, head.random)
     notes = notes_of(episodes, head.random, head.seeds)
     return head.model_copy(update={"episodes": list(episodes), "rows": rows, "notes": notes})

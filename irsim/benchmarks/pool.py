@@ -1,4 +1,4 @@
-"""Many episodes on all cores, the results in the order of the tasks whoever computed them."""
+"""Run many episodes on all cores; results come in the order of the tasks."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from irsim.benchmarks.episode import Task, run_task
 
 __all__ = ["cores", "run_tasks"]
 
-_PATIENCE = 0.7
-"""Seconds of work after which other processes are started; most benchmarks of a few episodes are over by then."""
+_START_DELAY_S = 0.7
+"""Time [s] after which further processes are started; most benchmarks of a few episodes end before."""
 
 
 def cores() -> int:
-    """Cores this process may use."""
+    """Number of cores that this process may use."""
     with suppress(AttributeError, OSError):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -35,18 +35,21 @@ def run_tasks(
     progress: Callable[[int, int], None] | None = None,
     kept: Callable[[int, dict[str, Any]], None] | None = None,
 ) -> list[dict[str, Any]]:
-    """Run episodes, here and, if it takes longer than a moment, in further processes.
+    """Run episodes in this process and, if that takes longer than a moment, in further processes.
 
-    What a process cannot do (a behavior that only this program has registered) is done here.
+    A task that a further process cannot run (with a behavior that only this program has registered) is run here.
 
     Args:
-        tasks: In the order of the results.
-        workers: Processes at most, this one included.
-        progress: Told (episodes done, episodes) in this thread.
-        kept: Given the number of a task and its result as soon as there is one, in any thread.
+        tasks: The tasks.
+        workers: Greatest number of processes, including this one.
+        progress: Callback ``(episodes_done, episodes_total)``, called in this thread.
+        kept: Callback ``(number_of_the_task, result)``, called for each result, in any thread.
+
+    Returns:
+        The results, in the order of the tasks.
 
     Raises:
-        IrsimError: What an episode raised; the first in the order of the tasks.
+        IrsimError: The first error of an episode, in the order of the tasks.
     """
     shared = _Shared(tasks, kept)
     helpers: list[_Helper] = []
@@ -65,7 +68,7 @@ def run_tasks(
                     continue
                 finally:
                     shared.leave()
-            late = time.monotonic() - begin > _PATIENCE
+            late = time.monotonic() - begin > _START_DELAY_S
             if late and not helpers and workers > 1 and shared.left() > 1:
                 helpers = [_Helper(shared) for _ in range(min(workers - 1, shared.left()))]
             if progress is not None:
@@ -77,18 +80,22 @@ def run_tasks(
 
 
 class _Shared:
-    """What is left to do, and the results."""
+    """The remaining tasks and the results, shared by the threads."""
 
     def __init__(self, tasks: Sequence[Task], kept: Callable[[int, dict[str, Any]], None] | None) -> None:
         self.tasks, self._kept = tasks, kept
         self.results: dict[int, dict[str, Any]] = {}
         self._open = deque(range(len(tasks)))
-        self._mine: deque[int] = deque()  # what others could not do
+        self._mine: deque[int] = deque()  # tasks that only this process can run
         self._out = 0
         self._changed = threading.Condition()
 
     def take(self, *, elsewhere: bool = False) -> int | None:
-        """The next task; None if there is none at present."""
+        """Take the next task; None if there is none at present.
+
+        Args:
+            elsewhere: The task is for another process.
+        """
         with self._changed:
             queue = self._mine if self._mine and not elsewhere else self._open
             if not queue:
@@ -97,13 +104,17 @@ class _Shared:
             return queue.popleft()
 
     def put(self, index: int, result: dict[str, Any]) -> None:
-        """One has a result; it is kept before it counts as done."""
+        """Store the result of a task; the callback gets it before the task counts as done."""
         if self._kept is not None:
             self._kept(index, result)
         self.results[index] = result
 
     def leave(self, *, back: int | None = None) -> None:
-        """One is done; ``back``: it has to be done by the main thread."""
+        """Give a task back.
+
+        Args:
+            back: The task, if it has no result and the main thread must run it.
+        """
         with self._changed:
             self._out -= 1
             if back is not None:
@@ -111,23 +122,23 @@ class _Shared:
             self._changed.notify_all()
 
     def stop(self, index: int) -> None:
-        """Hand out only what comes before a task that failed, and then that once more."""
+        """Keep only the tasks before one that failed, and then that task again, so that its error is the first."""
         with self._changed:
             earlier = [one for one in (*self._mine, *self._open) if one < index]
             self._mine, self._open = deque([*earlier, index]), deque()
 
     def is_first(self, index: int) -> bool:
-        """Whether everything before a task is done."""
+        """Whether all tasks before one are done."""
         with self._changed:
             return all(one in self.results for one in range(index))
 
     def busy(self) -> bool:
-        """Whether somebody is at work."""
+        """Whether a task is being run."""
         with self._changed:
             return self._out > 0 or bool(self._mine)
 
     def wait(self) -> None:
-        """Until something has changed."""
+        """Wait until a task ends, but not for long."""
         with self._changed:
             if self._out and not self._mine:
                 self._changed.wait(0.2)
@@ -141,7 +152,7 @@ class _Shared:
 
 
 class _Helper:
-    """A process and the thread that feeds it."""
+    """A further process, and the thread that sends tasks to it."""
 
     def __init__(self, shared: _Shared) -> None:
         self._shared = shared
@@ -177,7 +188,7 @@ class _Helper:
             return None
 
     def end(self) -> None:
-        """Stop at once."""
+        """Stop the process immediately."""
         self._process.kill()
         self._thread.join()
         for pipe in (self._process.stdin, self._process.stdout):

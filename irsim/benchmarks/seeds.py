@@ -1,4 +1,4 @@
-"""Seeds of a benchmark: how many, or which."""
+"""The seeds of a benchmark, given as their number or one by one."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ from irsim.scenario.behavior_override import BenchmarkError
 
 __all__ = ["seeds_from"]
 
-_MOST = 1_000_000
-_TELL = "give how many, such as 20, or which, such as [1, 4, 7], '5-9' or '1,4,7'"
+_MAX_SEEDS = 1_000_000
+"""Greatest number of seeds."""
+_FIX = "give the number of seeds, such as 20, or the seeds, such as [1, 4, 7], '5-9' or '1,4,7'"
+"""Fix of every message about invalid seeds."""
 
 
 def seeds_from(given: Any) -> list[int]:
-    """The seeds that are meant, each once.
+    """The seeds, each once.
 
     Args:
-        given: How many (0, 1, 2, …); an iterable of those; or either as text of a command line: ``20``, ``5-9``,
-            ``1,4,7``.
+        given: The number of seeds (0, 1, 2, …), an iterable of seeds, or either as text: ``20``, ``5-9``, ``1,4,7``.
 
     Raises:
-        BenchmarkError: It is none of that.
+        BenchmarkError: ``given`` is neither, or there are no seeds or too many.
     """
     found: Iterable[Any]
     if isinstance(given, str):
         found = _read(given.replace(" ", ""))
     elif is_whole_number(given):
-        found = range(_counted(int(given)))
+        found = range(_checked_number(int(given)))
     elif isinstance(given, Iterable) and not isinstance(given, (Mapping, bytes, bytearray)):
         found = list(given)
     else:
@@ -39,31 +40,32 @@ def seeds_from(given: Any) -> list[int]:
             raise _wrong(seed)
     seeds = list(dict.fromkeys(int(seed) for seed in found))
     if not seeds:
-        raise BenchmarkError("there are no seeds", "give at least one of the seeds", "seeds")
+        raise BenchmarkError("there must be at least one seed, got none", "give at least one seed", "seeds")
     if min(seeds) < 0 or max(seeds) >= 2**64:
-        raise BenchmarkError("a seed is outside 0 to 2^64 - 1", "give seeds from 0", "seeds")
+        raise BenchmarkError("a seed must be from 0 to 2^64 - 1", "give seeds from 0", "seeds")
     return seeds
 
 
 def _read(text: str) -> Iterable[int]:
-    """Seeds as the command line has them."""
+    """The seeds of a text, as the command line has them."""
     if text.isdecimal() and len(text) < 20:
-        return range(_counted(int(text)))
+        return range(_checked_number(int(text)))
     found: list[int] = []
     for part in text.strip(",").split(","):
         ends = re.fullmatch(r"(\d{1,20})(?:-(\d{1,20}))?", part)
         low, high = (0, -1) if ends is None else (int(ends[1]), int(ends[2] or ends[1]))
-        if ends is None or not 0 <= high - low < _MOST:
+        if ends is None or not 0 <= high - low < _MAX_SEEDS:
             raise _wrong(text)
         found += range(low, high + 1)
     return found
 
 
-def _counted(number: int) -> int:
-    if number > _MOST:
-        raise BenchmarkError(f"{number:,} seeds are too many", f"give at most {_MOST:,}", "seeds")
+def _checked_number(number: int) -> int:
+    """The number of seeds, unless it is too large."""
+    if number > _MAX_SEEDS:
+        raise BenchmarkError(f"{number:,} seeds are too many", f"give at most {_MAX_SEEDS:,}", "seeds")
     return number
 
 
 def _wrong(given: Any) -> BenchmarkError:
-    return BenchmarkError(f"{as_given(given)} is no seed, nor several", _TELL, "seeds")
+    return BenchmarkError(f"{as_given(given)} is not a valid seed or list of seeds", _FIX, "seeds")

@@ -1,4 +1,4 @@
-"""From episodes to a table: proportions, means and paired differences, with intervals."""
+"""Summarise the episodes of a benchmark: proportions, means and paired differences, with intervals."""
 
 from __future__ import annotations
 
@@ -7,31 +7,48 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
-from irsim.results.results import BenchmarkRow, EpisodeRow, Estimate, Proportion
+from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
 __all__ = ["ALL", "KEYS", "estimate", "notes_of", "proportion", "rows_of"]
 
 ALL = "(all)"
+"""Name of the rows over all scenarios."""
 KEYS = tuple(metric.key for metric in (*METRICS, *EPISODE_METRICS))
-"""Metrics of an episode."""
-_SHARES = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
-_MOST = 10
-_FEWEST = 10
-"""Scenarios of one episode each from which on something can be said of all together."""
-_NAMED = 3
+"""Keys of the metrics of an episode."""
+_PROPORTIONS = frozenset(metric.key for metric in (*METRICS, *EPISODE_METRICS) if metric.unit == "0/1")
+"""Keys of the metrics that are 0 or 1."""
+_MAX_FAILURES = 10
+"""Number of failures that a row lists, the most frequent ones."""
+_MIN_SCENARIOS = 10
+"""Number of scenarios with one episode each from which on they are summarised together."""
+_MAX_NAMED = 3
+"""Number of scenarios that a note names."""
 _TABLE = ((True, True), (True, False), (False, True), (False, False))
+"""Order of the counts that :func:`irsim.metrics.statistics.newcombe` takes."""
 
 
 def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
-    """A share with its interval; without one if nothing is random, as it cannot come out differently."""
+    """A proportion with its interval.
+
+    Args:
+        count: Number of episodes with the property.
+        n: Number of all episodes.
+        certain: Nothing is random, so there is no interval.
+    """
     low, high = (None, None) if certain else wilson(count, n)
     return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
 def estimate(values: Sequence[float | None], *, share: bool = False) -> Estimate:
-    """Mean, spread and interval of the values that are not None; with ``share`` they are 0 and 1."""
+    """Mean, standard deviation and interval of the values that are not None.
+
+    Args:
+        values: The values.
+        share: All values are 0 or 1, so the interval is that of a proportion.
+    """
     known = [value for value in values if value is not None]
     n, mean, std = spread(known)
     low, high = wilson(sum(value > 0 for value in known), n) if share else bootstrap(known)
@@ -44,18 +61,18 @@ def rows_of(
     behaviors: Sequence[str],
     random: Mapping[str, Sequence[str]],
 ) -> list[BenchmarkRow]:
-    """Rows by scenario, then behavior, of which there are episodes; then of all together, if they weigh the same.
+    """Rows by scenario and behavior, then over all scenarios if each has the same number of episodes.
 
     Args:
-        episodes: Those that are done.
-        scenarios: Their scenarios, in order.
-        behaviors: Their behaviors, in order.
-        random: What the seed decides in each scenario.
+        episodes: The episodes that are done.
+        scenarios: The scenarios, in order.
+        behaviors: The behaviors, in order.
+        random: The random parts of each scenario.
     """
     groups = {name: [episode for episode in episodes if episode.scenario == name] for name in scenarios}
     sizes = {len(group) for group in groups.values()}
-    once = sizes == {len(behaviors)}  # one episode of each
-    if len(sizes) == 1 and len(scenarios) >= (_FEWEST if once else 2):
+    once = sizes == {len(behaviors)}  # one episode per scenario and behavior
+    if len(sizes) == 1 and len(scenarios) >= (_MIN_SCENARIOS if once else 2):
         groups[ALL] = list(episodes)
     rows = []
     for name, chosen in groups.items():
@@ -63,40 +80,36 @@ def rows_of(
         certain = name != ALL and not random[name]
         for behavior in behaviors:
             mine = [episode for episode in chosen if episode.behavior == behavior]
-            if not mine:  # none is done yet
+            if not mine:  # no episode is done yet
                 continue
             rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
     return rows
 
 
 def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]], seeds: Sequence[int]) -> list[str]:
-    """What to know before reading the rows.
+    """Notes that a reader of the rows must know.
 
     Args:
-        episodes: Those that are done.
-        random: What the seed decides in each scenario.
-        seeds: All that were asked for.
+        episodes: The episodes that are done.
+        random: The random parts of each scenario.
+        seeds: All seeds of the benchmark.
     """
     notes = []
     fixed = [name for name, chance in random.items() if not chance]
     if fixed and len(seeds) > 1:
         notes.append(
-            f"{_some(fixed)}: nothing is random, so every seed gives the same run and one was made; random placement "
-            "or motion noise would make seeds differ"
+            f"{listed(fixed, _MAX_NAMED)}: nothing is random, so every seed gives the same run and only one was "
+            "simulated; random placement or motion noise would make seeds differ"
         )
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:
         count = sum(bool(episode.unreachable) for episode in episodes)
-        notes.append(f"{_some(lost)}: in {count} episodes no way to a goal was found; spl is left out there")
+        missing = f"in {count} episodes no path to a goal was found; spl is left out there"
+        notes.append(f"{listed(lost, _MAX_NAMED)}: {missing}")
     cut = sorted({e.scenario for e in episodes if e.outcome == "timeout" and e.sim_time < e.time_limit - 1e-9})
     if cut:
-        notes.append(f"{_some(cut)}: episodes ended early with robots that stopped without arriving")
+        notes.append(f"{listed(cut, _MAX_NAMED)}: episodes ended early with robots that stopped without arriving")
     return notes
-
-
-def _some(names: Sequence[str]) -> str:
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(names[:_NAMED]) + more
 
 
 def _row(
@@ -113,11 +126,13 @@ def _row(
         behavior=behavior,
         episodes=len(episodes),
         metrics={
-            key: estimate([episode.metrics[key] for episode in episodes], share=key in _SHARES and not certain)
+            key: estimate([episode.metrics[key] for episode in episodes], share=key in _PROPORTIONS and not certain)
             for key in KEYS
         },
         paired={
-            key: _compared([(a.metrics[key], b.metrics[key]) for a, b in pairs], key in _SHARES and not certain)
+            key: _paired_difference(
+                [(a.metrics[key], b.metrics[key]) for a, b in pairs], key in _PROPORTIONS and not certain
+            )
             for key in KEYS
             if pairs
         },
@@ -126,18 +141,18 @@ def _row(
             for outcome in ("collision", "timeout")
             if outcome in outcomes and name != ALL
         },
-        failures={} if name == ALL else _counted(episodes),
+        failures={} if name == ALL else _frequent_failures(episodes),
         **shares,
     )
 
 
-def _counted(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
+def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
     count = Counter(f"{robot!r}: {fate}" for episode in episodes for robot, fate in episode.failures.items())
-    return dict(count.most_common(_MOST))
+    return dict(count.most_common(_MAX_FAILURES))
 
 
-def _compared(pairs: Sequence[tuple[float | None, float | None]], share: bool) -> Estimate:
-    """Differences of pairs; that of shares with an interval that does not vanish where all pairs agree."""
+def _paired_difference(pairs: Sequence[tuple[float | None, float | None]], share: bool) -> Estimate:
+    """Estimate of the differences of pairs; for proportions with an interval that is not empty if all pairs agree."""
     known = [(a, b) for a, b in pairs if a is not None and b is not None]
     found = estimate([a - b for a, b in known])
     if share and known:

@@ -1,6 +1,6 @@
 """A process that runs episodes: one task per line of standard input, one result per line of standard output.
 
-It ends with its standard input, at once, so it never outlives whoever started it.
+It ends immediately when its standard input is closed, so it never outlives the process that started it.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ __all__ = ["main"]
 
 
 def main() -> None:
-    """Do tasks until there are no more."""
+    """Run tasks until standard input is closed."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # whatever prints, does not print into the answers
+    os.dup2(2, 1)  # what user modules print must not mix with the answers
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
     from irsim.benchmarks.episode import Task, run_task

@@ -14,7 +14,7 @@ from typing import Literal
 
 from irsim.common import data_files as resources
 from irsim.diagnostics.diagnostic import nearest
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["PLACES", "Installed", "PlaceError", "Skill", "SkillError", "find_skills", "install", "place_of"]
 
@@ -33,16 +33,12 @@ _RECORD = ".irsim.json"
 Action = Literal["installed", "updated", "unchanged", "kept"]
 
 
-class SkillError(IrsimError, ValueError):
-    """The name of a skill is unknown."""
-
-    code = "unknown-skill"
+class SkillError(CodedError, ValueError):
+    """The package has no such skill."""
 
 
-class PlaceError(IrsimError, OSError):
-    """Skills cannot be installed into a folder."""
-
-    code = "file-access"
+class PlaceError(CodedError, OSError):
+    """Skills cannot be put into a folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +101,7 @@ def find_skills(names: Iterable[str] = ()) -> list[Skill]:
         if name not in known:
             near = nearest(name, list(known))
             fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"
-            raise SkillError(f"there is no skill {name!r}; {fix}")
+            raise SkillError("unknown-skill", f"there is no skill {name!r}", fix)
     return [_read(known[name]) for name in wanted]
 
 
@@ -148,11 +144,9 @@ def _check_place(place: Path) -> None:
             return
         if path.is_symlink():
             target = os.readlink(path)
-            raise PlaceError(
-                f"'{path}' is a link to '{target}', which is not a folder; create that folder, or remove the link: "
-                f"rm '{path}'"
-            )
-        raise PlaceError(f"'{path}' is a file where a folder must be: move it away")
+            what = f"'{path}' is a link to '{target}', which is not a folder"
+            raise PlaceError("file-access", what, f"make that folder, or remove the link: rm '{path}'")
+        raise PlaceError("file-access", f"'{path}' is a file where a folder must be", "move it away")
 
 
 def _read(page: Path) -> Skill:

@@ -1,6 +1,6 @@
-"""The command line ``irsim``: run, validate, render, describe, new, templates, schema, demo.
+"""The command line ``irsim``: one module per command.
 
-One module per verb; each only reads options, calls the function below it that knows the rules, and prints the result.
+Each command only reads its options, calls a function of another package that does the work, and prints the result.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ def main() -> None:
     from irsim.common.conflict import ConflictError, refuse_conflicts
 
     try:
-        refuse_conflicts()  # again, since ir-sim may have replaced irsim/__init__.py, which does it too
+        refuse_conflicts()  # irsim/__init__.py calls it too, but an installed ir-sim may have replaced that file
     except ConflictError as error:
         raise SystemExit(f"irsim: {error}") from None
     try:
@@ -22,9 +22,9 @@ def main() -> None:
 
         prepare_streams()
         app(prog_name="irsim")
-    except KeyboardInterrupt:  # while something was being imported
+    except KeyboardInterrupt:  # during an import, before a command can handle it
         raise SystemExit(130) from None
-    except OSError as error:  # of what is printed outside the verbs, such as --help to a disk that is full
+    except OSError as error:  # while printing outside a command, such as --help to a full disk
         from irsim.cli.output import silence_stdout
 
         silence_stdout()

@@ -1,4 +1,4 @@
-"""The application: its verbs in the order of ``irsim --help``."""
+"""The application: its commands in the order of ``irsim --help``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli import benchmark, demo, describe, diff, inspect, new, render, replay, run, schema, templates, validate
-from irsim.cli.guard import guarded
+from irsim.cli.guard import handle_errors
 from irsim.cli.map import map_app
 from irsim.cli.skills import skills_app
 
@@ -26,9 +26,9 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from irsim import __version__
+        from irsim.common.version import version
 
-        typer.echo(f"irsim {__version__}")
+        typer.echo(f"irsim {version()}")
         raise typer.Exit
 
 
@@ -41,7 +41,7 @@ def _options(
     """Simulate 2D robot navigation: scenarios are YAML files."""
 
 
-for _verb in (
+for _command in (
     demo.demo,
     templates.templates,
     new.new,
@@ -55,6 +55,6 @@ for _verb in (
     describe.describe,
     schema.schema,
 ):
-    app.command()(guarded(_verb))
+    app.command()(handle_errors(_command))
 app.add_typer(map_app)
 app.add_typer(skills_app)

@@ -14,7 +14,7 @@ from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import BenchmarkResult, BenchmarkRow, Estimate, Proportion
+    from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
 
 __all__ = ["benchmark", "show_benchmark"]
 
@@ -29,10 +29,15 @@ _DIFFERENCES = (
     ("time_to_goal", "time", " s"),
     ("path_length", "path", " m"),
 )
-_FAILED, _FAILURES = 10, 3
-"""Seeds told of each way to fail, and robots with what became of them."""
-_WIDE, _NARROW = 112, 96
-"""Characters that all columns need, and all but the last three."""
+"""(key of the metric, name in the line of differences, unit)."""
+MAX_FAILED_SEEDS = 10
+"""Number of seeds that the line of a failed combination lists."""
+MAX_FAILURES = 3
+"""Number of reasons that the line of a failed combination lists."""
+_FULL_WIDTH = 112
+"""Width that the table needs with all columns [characters]."""
+_MEDIUM_WIDTH = 96
+"""Width that the table needs without the last column [characters]."""
 
 
 def benchmark(
@@ -41,30 +46,32 @@ def benchmark(
         str,
         typer.Option(
             metavar="A,B,…",
-            help="Behaviors for all robots, such as rvo,orca or '{name: orca, timeHorizon: 5}'; differences are to the "
-            "first.",
+            help="Behaviors of all robots to compare, such as rvo,orca or '{name: orca, timeHorizon: 5}'. The first is "
+            "the reference for differences.",
         ),
     ] = "as-written",
     seeds: Annotated[
-        str, typer.Option(metavar="N|LIST", help="How many seeds from 0, or which: 20, 5-9, 1,4,7.")
+        str, typer.Option(metavar="N|LIST", help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7.")
     ] = "10",
     steps: Steps = None,
     json_output: Json = False,
     csv_output: Annotated[
-        bool, typer.Option("--csv", help="Print every episode with all metrics as comma-separated values.")
+        bool, typer.Option("--csv", help="Print all metrics of every episode as comma-separated values.")
     ] = False,
     strict: Strict = False,
     imports: Imports = None,
     workers: Annotated[
         int | None,
-        typer.Option(min=1, help="Processes; default: all cores. Results don't depend on it.", show_default=False),
+        typer.Option(
+            min=1, help="Number of processes, which does not affect results. Default: all cores.", show_default=False
+        ),
     ] = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Compare behaviors: every scenario under every behavior with the same seeds, on all cores.
+    """Compare behaviors: run every scenario with every behavior and the same seeds, on all cores.
 
-    Shows success, collision and time-out with 95 % intervals, and mean times, speeds and paths. All metrics are in
-    --json and --csv.
+    The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
+    --json and --csv contain all metrics.
     """
     from irsim.benchmarks import BenchmarkError
     from irsim.benchmarks import benchmark as compare
@@ -72,12 +79,12 @@ def benchmark(
     from irsim.cli.output import console, print_json, progress
 
     if json_output and csv_output:
-        raise BenchmarkError("--json and --csv are both given", "give one of them")
+        raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
     with progress("simulating") as report:
         result = compare(
             files,
-            _listed(behaviors),
+            _split_list(behaviors),
             seeds,
             steps=steps,
             strict=strict,
@@ -98,8 +105,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     """Print the table of a benchmark.
 
     Args:
-        result: From :func:`irsim.benchmark`.
-        out: Where to.
+        result: Result of :func:`irsim.benchmark`.
+        out: Console to print to.
     """
     from rich.table import Table
     from rich.text import Text
@@ -108,9 +115,9 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from irsim.results.labels import labels_of, seeds_of
 
     if not out.is_terminal:
-        out.width = max(out.width, _WIDE)
+        out.width = max(out.width, _FULL_WIDTH)
     width = out.width
-    columns = list(_COLUMNS[: 1 if width < _NARROW else 3 if width < _WIDE else 4])
+    columns = list(_COLUMNS[: 1 if width < _MEDIUM_WIDTH else 3 if width < _FULL_WIDTH else 4])
     if not any(row.metrics["distance_to_human_min"].n for row in result.rows):
         columns = [column for column in columns if column[1] != "human m"]
     shown = ["time_to_goal", *(key for key, *_ in columns)]
@@ -140,39 +147,41 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for text, label in behaviors.items():
         if label != text:
             out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)
-    told = "95 % intervals: Wilson for shares, Newcombe for their differences, bootstrap for the rest"
-    told += "; time s: of those that arrived"
+    legend = "95 % intervals: Wilson for rates, Newcombe for their differences, bootstrap for means"
+    legend += "; time s: time to goal of robots that arrived"
     if any(0 < row.metrics[key].n < row.episodes for row in result.rows for key in shown):
-        told += "; (5): of 5 of the n episodes"
+        legend += "; (5): only 5 of the n episodes have this value"
     if any(heading == "human m" for _, heading, _ in columns):
-        told += "; human m: least distance"
-    out.print(Text(told, "dim"))
+        legend += "; human m: smallest distance to a human"
+    out.print(Text(legend, "dim"))
     for row in result.rows:
         if row.paired and row.scenario == result.rows[-1].scenario:
-            out.print(_against(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
+            out.print(_difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
     for row in result.rows:
         if row.failed:
-            robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in list(row.failures.items())[:_FAILURES]]
-            whose = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
-            out.print(f"failed: {whose}: {seeds_of(row.failed, _FAILED)} ({', '.join(robots)})")
+            failures = list(row.failures.items())[:MAX_FAILURES]
+            robots = [f"{clean(what)} {n} of {row.episodes}" for what, n in failures]
+            combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+            out.print(f"failed: {combination}: {seeds_of(row.failed, MAX_FAILED_SEEDS)} ({', '.join(robots)})")
     for note in result.notes:
         out.print(Text.assemble(("note: ", "bold"), clean(note, 400)))
     periods = sorted(set(result.step_time.values()))
-    out.print(f"metrics are sampled every step ({', '.join(f'{period:g} s' for period in periods)})")
-    out.print(Text.assemble("again: ", (result.reproduce, "cyan")), soft_wrap=True)
+    out.print(f"metrics are sampled in every step ({', '.join(f'{period:g} s' for period in periods)})")
+    out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
 
 
-def _against(row: BenchmarkRow, mine: str, first: str) -> str:
-    """One line of paired differences."""
+def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
+    """Return one line with the paired differences between a behavior and the reference."""
     from irsim.common.text import clean
 
-    told = []
+    differences = []
     for key, name, unit in _DIFFERENCES:
         found = row.paired[key]
         if found.mean is not None:
             interval = "" if found.low is None else f" [{found.low:+.2f}, {found.high:+.2f}]"
-            told.append(f"{name} {found.mean:+.2f}{unit}{interval}{_fewer(found, row.episodes)}")
-    return f"{clean(mine)} - {clean(first)}, same seeds: " + (", ".join(told) or "no common episodes")
+            differences.append(f"{name} {found.mean:+.2f}{unit}{interval}{_episodes_note(found, row.episodes)}")
+    line = ", ".join(differences) or "no common episodes"
+    return f"{clean(behavior)} minus {clean(reference)}, same seeds: {line}"
 
 
 def _share(found: Proportion) -> str:
@@ -187,23 +196,23 @@ def _mean(found: Estimate, digits: int, episodes: int, *, interval: bool = False
     text = f"{found.mean:.{digits}f}"
     if interval and found.low is not None and found.high is not None:
         text += f" ±{(found.high - found.low) / 2:.{digits}f}"
-    return text + _fewer(found, episodes)
+    return text + _episodes_note(found, episodes)
 
 
-def _fewer(found: Estimate, episodes: int) -> str:
-    """Of how many episodes it is, if not of all."""
+def _episodes_note(found: Estimate, episodes: int) -> str:
+    """Return the number of episodes in parentheses if fewer than all have a value."""
     return f" ({found.n})" if found.n < episodes else ""
 
 
 def _labels(files: list[str]) -> dict[str, str]:
-    """Short names for files that differ in little."""
+    """Return a short label for each file; full paths without suffix if the file names are not unique."""
     stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
     short = {name: stem.rsplit("/", 1)[-1] for name, stem in stems.items()}
     return short if len(set(short.values())) == len(files) else stems
 
 
-def _listed(text: str) -> list[str]:
-    """A list separated by commas, those inside braces left alone."""
+def _split_list(text: str) -> list[str]:
+    """Split a list at commas, except for commas inside braces and brackets."""
     depth, parts = 0, [""]
     for character in text:
         depth += (character in "{[") - (character in "}]")

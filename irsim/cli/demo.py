@@ -1,4 +1,4 @@
-"""``irsim demo``: something to look at within seconds."""
+"""``irsim demo``: simulate a bundled scenario and write an animation."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _SEED = 7
 
 
 def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation to write.")] = Path(
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="FILE", help="Animation file to write.")] = Path(
         "irsim-demo.gif"
     ),
-    seed: Annotated[int, typer.Option(min=0, help="Seed of all randomness.")] = _SEED,
+    seed: Annotated[int, typer.Option(min=0, help="Random seed.")] = _SEED,
     json_output: Json = False,
 ) -> None:
-    """Simulate a bundled scenario and leave an animation of it in the current directory."""
+    """Simulate a bundled scenario and write an animation of it to the current directory."""
     from rich.text import Text
 
     from irsim.bundled import templates
@@ -32,8 +32,9 @@ def demo(
     with progress("simulating and drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 
-        check_suffix(out, api.VIDEO_SUFFIXES)
+        check_suffix(out, MOVING_SUFFIXES)
         result = api.run(templates.scenario_file(_TEMPLATE), seed=seed, save=out, progress=report)
     if json_output:
         print_json(result)
@@ -42,5 +43,5 @@ def demo(
     shown.print(templates.load(_TEMPLATE).purpose)
     show_result(result, shown, again=f"irsim demo --seed {seed}")
     shown.print(
-        Text.assemble("yours: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")), soft_wrap=True
+        Text.assemble("next: ", (f"irsim new {_TEMPLATE} && irsim run {_TEMPLATE}.yaml", "cyan")), soft_wrap=True
     )

@@ -1,4 +1,4 @@
-"""``irsim describe``: the language, its components, the templates and the codes, explained."""
+"""``irsim describe``: explain keys, components, templates, metrics and codes."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ def describe(
         list[str] | None,
         typer.Argument(
             metavar="[TOPIC]...",
-            help="Such as robot.sensors.lidar2d.range_max, behavior dash, vel_max, a template, a metric, a code.",
+            help="A key such as vel_max or robot.sensors.lidar2d.range_max, a component such as behavior dash, a "
+            "template, a metric, or an error code.",
             show_default=False,
         ),
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Explain a key, a component, a template, a metric or an error code; without a topic: what there is."""
+    """Explain a key, a component, a template, a metric or an error code. Without a topic, list all topics."""
     from irsim.cli.output import console, print_json
     from irsim.lookup import lookup
 
@@ -52,7 +53,7 @@ def _show(answer: Answer, out: Console) -> None:
     if answer.about is not None:
         line(Text(facts(answer.about), style="green"))
         if answer.about.per_object:
-            line(Text("also a list of these, one per object of the entry", style="green"))
+            line(Text("or a list with one value per object of the entry", style="green"))
     for heading, keys in answer.groups.items():
         if keys:
             line()
@@ -60,7 +61,7 @@ def _show(answer: Answer, out: Console) -> None:
             line(_table(keys))
     if answer.example:
         line()
-        line(Text("for example", style="dim"))
+        line(Text("example", style="dim"))
         line(Text(answer.example, style="cyan"))
     if answer.see:
         line()
@@ -78,7 +79,7 @@ def _table(keys: list[Key]) -> RenderableType:
     table.add_column()
     for key in keys:
         text = Text(key.text)
-        if told := facts(key):
-            text.append(("\n" if key.text else "") + told, style="green")
+        if key_facts := facts(key):
+            text.append(("\n" if key.text else "") + key_facts, style="green")
         table.add_row(key.name, text)
     return table

@@ -1,4 +1,4 @@
-"""``irsim diff``: what differs between two scenarios."""
+"""``irsim diff``: list the differences between two scenarios."""
 
 from __future__ import annotations
 
@@ -10,32 +10,34 @@ from irsim.cli.guard import FAILED
 from irsim.cli.options import Json, Seed
 
 if TYPE_CHECKING:
-    from irsim.results.results import ScenarioDiff
+    from irsim.results.diff import ScenarioDiff
 
 __all__ = ["diff"]
 
 _SIGNS = {"added": ("+", "green"), "removed": ("-", "red"), "changed": ("~", "yellow"), "moved": ("~", "yellow")}
-_LONGEST = 100
+MAX_VALUE_LENGTH = 100
+"""Longer values are cut off [characters]."""
 
 
 def diff(
     before: Annotated[str, typer.Argument(metavar="BEFORE", help="Scenario file.", show_default=False)],
-    after: Annotated[str, typer.Argument(metavar="AFTER", help="The same after an edit.", show_default=False)],
+    after: Annotated[str, typer.Argument(metavar="AFTER", help="Scenario file after an edit.", show_default=False)],
     seed: Seed = None,
     only: Annotated[
         list[str] | None,
         typer.Option(
             "--only",
             metavar="PATH",
-            help="What may differ, with all below it: robot[0].vel_max. Exit code 1 if anything else does, "
-            "comments too, or if one is lost.",
+            help="Key that may differ, with all keys below it, such as robot[0].vel_max. Exit with code 1 if another "
+            "key or a comment differs, or if a comment is lost. Repeatable.",
         ),
     ] = None,
     json_output: Json = False,
 ) -> None:
-    """Say what differs between two scenarios: keys of the files, and facts of the worlds they become.
+    """List the differences between two scenarios: keys of the files, and properties of the resulting worlds.
 
-    Order, layout and other ways to write the same do not count. Entries are recognised when others come or go.
+    Order of keys, layout and equivalent notations do not count. Entries are matched even if others are added or
+    removed.
     """
     from irsim import api
     from irsim.cli.output import print_json
@@ -57,7 +59,7 @@ def diff(
 
 
 def _comments_outside(found: ScenarioDiff, after: str, only: list[str]) -> list[str]:
-    """Changed comments about what may not change."""
+    """Return the changed comments that belong to keys other than the allowed ones."""
     from collections import defaultdict
 
     from irsim.diagnostics.diagnostic import Path, format_path
@@ -93,8 +95,8 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
         sign, color = _SIGNS[kind]
         was, now = yaml_flow(before), yaml_flow(after)
         if kind == "changed":
-            was, now = shorten_pair(was, now, _LONGEST)
-        was, now = clean(was, _LONGEST), clean(now, _LONGEST)
+            was, now = shorten_pair(was, now, MAX_VALUE_LENGTH)
+        was, now = clean(was, MAX_VALUE_LENGTH), clean(now, MAX_VALUE_LENGTH)
         moved = f"{was} -> {now}"
         change = {"added": now, "removed": was, "changed": moved, "moved": moved}[kind]
         out.print(Text.assemble((f"{sign} {clean(where, 120)}", color), f"  {change}"), soft_wrap=True)
@@ -113,9 +115,9 @@ def _show(found: ScenarioDiff, extra: list[str]) -> None:
             *names_if_different(fact.before, fact.after),
         )
     for comment in found.comments_lost:
-        out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, _LONGEST)}"), soft_wrap=True)
+        out.print(Text.assemble(("comment lost", "red"), f"  {clean(comment, MAX_VALUE_LENGTH)}"), soft_wrap=True)
     for edited in found.comments_changed:
         line("changed", "comment", edited.before, edited.after)
     out.print(clean(found.summary, 600), soft_wrap=True)
     if extra:
-        out.print(Text(f"not asked for: {clean(', '.join(extra), 400)}", style="bold red"), soft_wrap=True)
+        out.print(Text(f"not allowed by --only: {clean(', '.join(extra), 400)}", style="bold red"), soft_wrap=True)

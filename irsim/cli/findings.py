@@ -1,4 +1,4 @@
-"""Printing diagnostics, and the two things every verb does before it reads a scenario."""
+"""Printing of diagnostics, import of user modules, and the limits for reading a scenario."""
 
 from __future__ import annotations
 
@@ -7,33 +7,28 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from irsim.cli.output import has_colors
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Diagnostic
-    from irsim.results.results import Finding, ValidationReport
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["UserImportError", "import_user_modules", "limits_for", "not_found", "print_diagnostics", "print_findings"]
 
 
-class UserImportError(IrsimError, ImportError):
-    """A module named by ``--import`` cannot be imported.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    code = "import-failed"
+class UserImportError(CodedError, ImportError):
+    """A module named by ``--import`` cannot be imported."""
 
 
 def print_diagnostics(diagnostics: Sequence[Diagnostic], text: str | None, *, stderr: bool = False) -> None:
-    """Print diagnostics with the lines they are about.
+    """Print diagnostics with the lines of the scenario that they refer to.
 
     Args:
-        diagnostics: What was found.
-        text: The scenario's text.
-        stderr: To standard error instead of standard output.
+        diagnostics: The diagnostics.
+        text: Text of the scenario.
+        stderr: Print to standard error instead of standard output.
     """
     if not diagnostics:
         return
@@ -47,10 +42,10 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
     """Print the findings of a result.
 
     Args:
-        findings: From a result.
-        file: The scenario they are about.
-        text: Its text; None reads the file again.
-        stderr: To standard error instead of standard output.
+        findings: Findings of a result.
+        file: File of the scenario.
+        text: Text of the scenario; None reads the file again.
+        stderr: Print to standard error instead of standard output.
     """
     if not findings:
         return
@@ -76,10 +71,10 @@ def print_findings(findings: Sequence[Finding], file: str, text: str | None = No
 
 
 def import_user_modules(names: Sequence[str] | None) -> None:
-    """Import user modules, for what they register.
+    """Import user modules, which register behaviors and other components.
 
     Raises:
-        UserImportError: Whatever went wrong in one of them.
+        UserImportError: A module raised an error.
     """
     if not names:
         return
@@ -89,11 +84,11 @@ def import_user_modules(names: Sequence[str] | None) -> None:
         try:
             import_modules([name])
         except Exception as error:
-            raise UserImportError(f"import-failed: --import {name}: {type(error).__name__}: {error}") from error
+            raise UserImportError("import-failed", f"--import {name}: {type(error).__name__}: {error}") from error
 
 
 def limits_for(max_objects: int | None) -> Limits | None:
-    """Limits of the loader with another number of objects; None for the defaults."""
+    """Return the limits for reading a scenario with another number of objects; None stands for the default limits."""
     if max_objects is None:
         return None
     from irsim.scenario.limits import Limits
@@ -102,8 +97,9 @@ def limits_for(max_objects: int | None) -> Limits | None:
 
 
 def not_found(file: str, message: str) -> ValidationReport:
-    """The report on a file that does not exist."""
-    from irsim.results.results import Finding, ValidationReport
+    """Return the report on a file that does not exist."""
+    from irsim.results.findings import Finding
+    from irsim.results.validation import ValidationReport
 
     finding = Finding(
         code="file-not-found", severity="error", path="(document)", line=None, column=None, message=message

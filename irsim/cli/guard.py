@@ -1,4 +1,4 @@
-"""What every verb does when something goes wrong: one clear message, the right exit code, never a traceback."""
+"""Error handling of all commands: one clear message and the right exit code instead of a traceback."""
 
 from __future__ import annotations
 
@@ -17,25 +17,31 @@ from irsim.cli.output import silence_stdout
 from irsim.common.text import clean
 from irsim.diagnostics.errors import IrsimError, ScenarioError, ScenarioNotFoundError
 
-__all__ = ["FAILED", "INTERRUPTED", "INVALID", "guarded"]
+__all__ = ["FAILED", "INTERRUPTED", "INVALID", "handle_errors"]
 
-FAILED, INVALID, INTERRUPTED = 1, 2, 130
+FAILED = 1
+"""Exit code of a command that could not finish."""
+INVALID = 2
+"""Exit code after invalid input."""
+INTERRUPTED = 130
+"""Exit code after Ctrl-C."""
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def guarded(verb: Callable[P, R]) -> Callable[P, R]:
-    """A verb whose exceptions become messages and exit codes.
+def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
+    """Decorate a command, so that exceptions become messages and exit codes.
 
-    Invalid input exits 2, anything else that goes wrong 1, Ctrl-C 130; a reader that closed the pipe is no error.
-    With ``--json`` the error is a JSON object on standard output too. ``IRSIM_TRACEBACK=1`` lets exceptions through.
+    The exit code is 2 for invalid input, 130 for Ctrl-C and 1 for other errors; a closed output pipe is not an error.
+    With ``--json`` the error is also printed to standard output as a JSON object. ``IRSIM_TRACEBACK=1`` does not
+    handle exceptions, so that Python prints the traceback.
     """
 
-    @functools.wraps(verb)
+    @functools.wraps(command)
     def call(*args: P.args, **kwargs: P.kwargs) -> R:
         try:
-            result = verb(*args, **kwargs)
+            result = command(*args, **kwargs)
             sys.stdout.flush()
             return result
         except KeyboardInterrupt:
@@ -45,18 +51,18 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
             silence_stdout()
             raise typer.Exit(0) from None
         except Exception as error:
-            if isinstance(error, _PASS) or os.environ.get("IRSIM_TRACEBACK"):
+            if isinstance(error, _HANDLED_BY_TYPER) or os.environ.get("IRSIM_TRACEBACK"):
                 raise
             raise typer.Exit(_report(error, as_json=bool(kwargs.get("json_output")))) from None
 
     return call
 
 
-_PASS = (typer.Exit, typer.Abort, typer.BadParameter)
+_HANDLED_BY_TYPER = (typer.Exit, typer.Abort, typer.BadParameter)
 
 
 def _report(error: BaseException, *, as_json: bool) -> int:
-    """Print an error; returns the exit code."""
+    """Print an error and return the exit code."""
     code, message, exit_code = _describe(error)
     if isinstance(error, ScenarioError):
         from irsim.cli.findings import print_diagnostics
@@ -75,13 +81,13 @@ def _report(error: BaseException, *, as_json: bool) -> int:
         try:
             typer.echo(json.dumps({"error": data}, indent=2, default=str))
             sys.stdout.flush()
-        except OSError:  # it went to standard error in words
+        except OSError:  # the message is on standard error anyway
             silence_stdout()
     return exit_code
 
 
 def _describe(error: BaseException) -> tuple[str, str, int]:
-    """Code, message and exit code of an exception."""
+    """Return code, message and exit code of an exception."""
     if isinstance(error, ScenarioError):
         first = error.diagnostics[0]
         return first.code, first.message, INVALID
@@ -94,20 +100,20 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
             return "invalid-input", text, INVALID
         return str(code), text.removeprefix(f"{code}: "), FAILED if code == "file-access" else INVALID
     if isinstance(error, MemoryError):
-        return "out-of-memory", "not enough memory for this.", FAILED
+        return "out-of-memory", "not enough memory.", FAILED
     if isinstance(error, OSError):
         where = f" ({clean(error.filename, 200)})" if error.filename else ""
         return "file-access", f"{error.strerror or error}{where}", FAILED
     frame = _frame_of(error)
     return (
         "internal-error",
-        f"{type(error).__name__}: {error} ({frame}). IRSIM_TRACEBACK=1 shows how it came to that.",
+        f"{type(error).__name__}: {error} ({frame}). Set IRSIM_TRACEBACK=1 to see the traceback.",
         FAILED,
     )
 
 
 def _frame_of(error: BaseException) -> str:
-    """Where it happened: the innermost line of the user's own code if there is one, else of ours."""
+    """Return file and line of an error: the innermost frame in user code, if any, otherwise the innermost of all."""
     frames = traceback.extract_tb(error.__traceback__)
     package = str(Path(__file__).resolve().parents[1])
     own = [f for f in frames if not f.filename.startswith(package) and "site-packages" not in f.filename]

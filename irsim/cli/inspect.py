@@ -1,4 +1,4 @@
-"""``irsim inspect``: look into a recorded run."""
+"""``irsim inspect``: list recorded runs, and print tables of a recorded run."""
 
 from __future__ import annotations
 
@@ -11,47 +11,62 @@ from irsim.cli.options import Json
 from irsim.runs.files import RunError
 
 if TYPE_CHECKING:
-    from irsim.results.results import RunTable
+    from irsim.results.run import RunTable
 
 __all__ = ["inspect"]
 
-_LISTED = 20
-_LONGEST = 200  # characters of a name in comma-separated values
+MAX_ROWS = 20
+"""Default number of rows of a table."""
+MAX_CSV_TEXT_LENGTH = 200
+"""Longer texts are cut off in comma-separated values [characters]."""
 
 
 def inspect(
     run: Annotated[
         str | None,
-        typer.Argument(help="Id or folder of a run, or 'last'; without it, the runs there are.", show_default=False),
+        typer.Argument(
+            help="Id or folder of a run, or 'last'. Without it, the recorded runs are listed.", show_default=False
+        ),
     ] = None,
     view: Annotated[
         str,
         typer.Option(
-            help="rows: step by step; collisions: who touched whom; closest: who came near whom, edge to edge; speeds: "
-            "way, speed (forward below 0: backwards), turn rate."
+            help="rows: states step by step; collisions: objects that touched; closest: smallest distances between "
+            "objects, edge to edge; speeds: path length, speed (forward below 0 means backwards), turn rate."
         ),
     ] = "rows",
-    robot: Annotated[str | None, typer.Option(help="Only this robot or object.", show_default=False)] = None,
+    robot: Annotated[str | None, typer.Option(help="Show only this robot or object.", show_default=False)] = None,
     from_step: Annotated[int, typer.Option("--from", min=0, metavar="STEP", help="First step.")] = 0,
     to_step: Annotated[
         int | None, typer.Option("--to", min=0, metavar="STEP", help="Last step.", show_default=False)
     ] = None,
     every: Annotated[
         int | None,
-        typer.Option(min=1, metavar="STEPS", help="Every so many-th step; default: what fits.", show_default=False),
+        typer.Option(
+            min=1,
+            metavar="STEPS",
+            help="Show every Nth step. Default: as many steps as fit in the table.",
+            show_default=False,
+        ),
     ] = None,
     fields: Annotated[
         str | None,
-        typer.Option(metavar="A,B,…", help="Columns of the rows; a wrong one lists all.", show_default=False),
+        typer.Option(
+            metavar="A,B,…",
+            help="Columns of the view rows. An unknown name prints the list of all columns.",
+            show_default=False,
+        ),
     ] = None,
     limit: Annotated[
-        int | None, typer.Option(min=1, metavar="ROWS", help="Rows at most; default 20, with --csv all.")
+        int | None, typer.Option(min=1, metavar="ROWS", help="Maximum number of rows. Default: 20; with --csv, all.")
     ] = None,
-    cursor: Annotated[str | None, typer.Option(help="Go on where the last table ended.", show_default=False)] = None,
-    csv: Annotated[bool, typer.Option("--csv", help="Print comma-separated values, all rows.")] = False,
+    cursor: Annotated[
+        str | None, typer.Option(help="Continue after the last row of the previous table.", show_default=False)
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print all rows as comma-separated values.")] = False,
     json_output: Json = False,
 ) -> None:
-    """Look into a run that was recorded with `irsim run --record`.
+    """Print tables of a run that was recorded with `irsim run --record`.
 
     Lengths are in m, times in s, angles in rad.
     """
@@ -62,7 +77,7 @@ def inspect(
         _list_runs()
         return
     if view not in VIEWS:
-        raise RunError("bad-argument", f"there is no view {view!r}", f"there are {', '.join(VIEWS)}")
+        raise RunError("bad-argument", f"unknown view {view!r}", f"choose one of {', '.join(VIEWS)}")
     table = inspect_run(
         run,
         view=view,
@@ -71,7 +86,7 @@ def inspect(
         to_step=to_step,
         every=every if every is not None or not csv else 1,
         fields=None if fields is None else [name.strip() for name in fields.split(",") if name.strip()],
-        limit=limit if limit is not None or csv else _LISTED,
+        limit=limit if limit is not None or csv else MAX_ROWS,
         cursor=cursor,
     )
     if json_output:
@@ -85,7 +100,7 @@ def inspect(
 
 
 def _list_runs() -> None:
-    """Recorded runs of this folder, the one begun last first."""
+    """Print the recorded runs of this folder, the latest first."""
     from rich.table import Table
 
     from irsim.cli.output import console
@@ -94,13 +109,13 @@ def _list_runs() -> None:
 
     runs = list_runs()
     if not runs:
-        typer.echo("no recorded runs here; `irsim run FILE --record` makes one")
+        typer.echo("no recorded runs here; `irsim run FILE --record` records one")
         return
     table = Table(box=None, pad_edge=False, header_style="dim")
     for heading in ("run", "outcome", "steps", "seed", "recorded"):
         table.add_column(heading, no_wrap=True)
     table.add_column("scenario", overflow="fold")
-    for run in runs[:_LISTED]:
+    for run in runs[:MAX_ROWS]:
         try:
             result = run.result
             steps = run.last_step if result is None else result.steps
@@ -117,8 +132,8 @@ def _list_runs() -> None:
         )
     out = console()
     out.print(table)
-    if len(runs) > _LISTED:
-        out.print(f"... and {len(runs) - _LISTED} more")
+    if len(runs) > MAX_ROWS:
+        out.print(f"... and {len(runs) - MAX_ROWS} more")
 
 
 def _print_csv(table: RunTable) -> None:
@@ -128,7 +143,8 @@ def _print_csv(table: RunTable) -> None:
 
     writer = csv.writer(sys.stdout, lineterminator="\n")
     writer.writerow(table.columns)
-    writer.writerows([clean(cell, _LONGEST) if isinstance(cell, str) else cell for cell in row] for row in table.rows)
+    for row in table.rows:
+        writer.writerow([clean(cell, MAX_CSV_TEXT_LENGTH) if isinstance(cell, str) else cell for cell in row])
 
 
 def _show(table: RunTable, out: object) -> None:
@@ -153,11 +169,11 @@ def _show(table: RunTable, out: object) -> None:
         shown.add_row(*(_cell(value) for value in row))
     out.print(shown)
     if not table.rows:
-        out.print("nothing of the kind happened")
+        out.print("no such events in these steps")
     steps = f"steps {table.from_step} to {table.to_step}"
     if table.every > 1:
-        steps += f", one in {table.every}: --every, --from, --to and --robot look closer"
-    more = f" of {table.total}; go on with --cursor {table.next_cursor}" if table.next_cursor else ""
+        steps += f", every {table.every} steps: use --every, --from, --to and --robot for more detail"
+    more = f" of {table.total}; continue with --cursor {table.next_cursor}" if table.next_cursor else ""
     out.print(f"{len(table.rows)} rows{more}, {steps}")
 
 

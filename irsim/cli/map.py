@@ -1,4 +1,4 @@
-"""``irsim map``: maps of the ROS map server, in and out."""
+"""``irsim map``: import and export maps of the ROS map server."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.guard import guarded
+from irsim.cli.guard import handle_errors
 from irsim.cli.options import File, Imports, Json, Seed
 
 if TYPE_CHECKING:
@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 __all__ = ["map_app"]
 
 map_app = typer.Typer(
-    name="map", help="Maps of the ROS map server: into scenarios, and out of them.", no_args_is_help=True
+    name="map", help="Import maps of the ROS map server into scenarios, and export maps.", no_args_is_help=True
 )
 Out = Annotated[
-    Path, typer.Option("-o", "--out", metavar="FILE", help="YAML file to write; its picture lies beside it.")
+    Path, typer.Option("-o", "--out", metavar="FILE", help="YAML file to write; its picture is written next to it.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files.")]
 
 
 class Unknown(str, Enum):
-    """What unknown cells count as."""
+    """Treatment of unknown cells."""
 
     free = "free"
     occupied = "occupied"
 
 
 class Mode(str, Enum):
-    """How the map server reads a picture."""
+    """How the map server interprets a picture."""
 
     trinary = "trinary"
     scale = "scale"
@@ -50,13 +50,13 @@ class Picture(str, Enum):
 
 
 def import_(
-    file: Annotated[str, typer.Argument(help="The map's YAML file.", show_default=False)],
+    file: Annotated[str, typer.Argument(help="YAML file of the map.", show_default=False)],
     out: Out,
-    unknown: Annotated[Unknown, typer.Option(help="What cells count as that are neither.")] = Unknown.free,
+    unknown: Annotated[Unknown, typer.Option(help="How to treat cells of unknown occupancy.")] = Unknown.free,
     force: Force = False,
     json_output: Json = False,
 ) -> None:
-    """Write a scenario with the map of the ROS map server: its extent, and its cells as a picture."""
+    """Write a scenario with a map of the ROS map server: its extent, and its cells as a picture."""
     from irsim.api.ros_maps import import_map
 
     _show(import_map(file, out, unknown=unknown.value, overwrite=force), json_output, ["irsim", "render", str(out)])
@@ -65,7 +65,7 @@ def import_(
 def export(
     scenario: File,
     out: Out,
-    mode: Annotated[Mode, typer.Option(help="How the map server is to read the picture.")] = Mode.trinary,
+    mode: Annotated[Mode, typer.Option(help="How the map server interprets the picture.")] = Mode.trinary,
     image: Annotated[Picture, typer.Option(help="Format of the picture.")] = Picture.pgm,
     seed: Seed = None,
     imports: Imports = None,
@@ -82,7 +82,7 @@ def export(
     _show(files, json_output, None)
 
 
-def _show(written: MapFiles, json_output: bool, following: list[str] | None) -> None:
+def _show(written: MapFiles, json_output: bool, next_command: list[str] | None) -> None:
     from rich.text import Text
 
     from irsim.cli.output import console
@@ -93,9 +93,9 @@ def _show(written: MapFiles, json_output: bool, following: list[str] | None) -> 
     shown = console()
     size = f"{written.columns} x {written.rows} cells of {written.resolution:g} m, {written.occupied:,} occupied"
     shown.print(Text.assemble("wrote ", (" and ".join(written.files), "bold"), f": {size}"), soft_wrap=True)
-    if following is not None:
-        shown.print(Text.assemble("next: ", (shlex.join(following), "cyan")), soft_wrap=True)
+    if next_command is not None:
+        shown.print(Text.assemble("next: ", (shlex.join(next_command), "cyan")), soft_wrap=True)
 
 
-map_app.command("import")(guarded(import_))
-map_app.command("export")(guarded(export))
+map_app.command("import")(handle_errors(import_))
+map_app.command("export")(handle_errors(export))

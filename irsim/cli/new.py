@@ -1,4 +1,4 @@
-"""``irsim new``: a scenario file from a template."""
+"""``irsim new``: write a scenario file from a template."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ __all__ = ["new"]
 
 
 def new(
-    name: Annotated[str, typer.Argument(help="Template; irsim templates lists them.", show_default=False)],
+    name: Annotated[str, typer.Argument(help="Name of a template; `irsim templates` lists them.", show_default=False)],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", metavar="FILE", help="File to write; default NAME.yaml; - prints it.")
+        Path | None,
+        typer.Option("-o", "--out", metavar="FILE", help="File to write; - prints it. Default: NAME.yaml."),
     ] = None,
     settings: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="A parameter, such as width=1.6. Repeatable."),
+        typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, such as width=1.6. Repeatable."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the file.")] = False,
 ) -> None:
     """Write a new scenario from a template and its parameters.
 
-    irsim describe NAME shows what a template's parameters are.
+    `irsim describe NAME` shows the parameters of a template.
     """
     from rich.text import Text
 

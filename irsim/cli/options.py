@@ -1,4 +1,4 @@
-"""Options that several verbs share."""
+"""Options that several commands share."""
 
 from __future__ import annotations
 
@@ -12,22 +12,24 @@ File = Annotated[str, typer.Argument(help="Scenario file (YAML).", show_default=
 Seed = Annotated[
     int | None,
     typer.Option(
-        min=0, max=2**64 - 1, help="Seed of all randomness; default: the scenario's, else a fresh one that is reported."
+        min=0,
+        max=2**64 - 1,
+        help="Random seed. Default: the seed of the scenario, otherwise a new one, which is reported.",
     ),
 ]
 Steps = Annotated[
     int | None,
-    typer.Option(min=0, help="Most steps to simulate; default: the scenario's time limit.", show_default=False),
+    typer.Option(min=0, help="Maximum number of steps. Default: the time limit of the scenario.", show_default=False),
 ]
-Strict = Annotated[bool, typer.Option("--strict", help="Refuse what IR-SIM would ignore, such as unknown keys.")]
-Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON and nothing else on standard output.")]
+Strict = Annotated[bool, typer.Option("--strict", help="Treat tolerated problems, such as unknown keys, as errors.")]
+Json = Annotated[bool, typer.Option("--json", help="Print only the result to standard output, as JSON.")]
 Imports = Annotated[
     list[str] | None,
     typer.Option(
-        "--import", metavar="MODULE", help="Import a module first, for the behaviors it registers. Repeatable."
+        "--import", metavar="MODULE", help="First import a Python module that registers behaviors. Repeatable."
     ),
 ]
 MaxObjects = Annotated[
     int | None,
-    typer.Option(min=1, help="Most objects a scenario may have; default 100000.", show_default=False),
+    typer.Option(min=1, help="Maximum number of objects in a scenario. Default: 100000.", show_default=False),
 ]

@@ -1,4 +1,4 @@
-"""What the verbs print with: consoles, JSON, a progress bar that only shows up when it is worth it."""
+"""Output of the commands: consoles, JSON, and a progress bar that appears only for longer work."""
 
 from __future__ import annotations
 
@@ -24,74 +24,75 @@ __all__ = [
     "silence_stdout",
 ]
 
-_PATIENCE = 1.0  # s before a progress bar appears
+_PROGRESS_DELAY_S = 1.0
+"""Time after which a progress bar appears [s]."""
 
 
 def prepare_streams() -> None:
-    """Make printing safe: what the terminal's encoding lacks is escaped instead of raising."""
+    """Make printing safe: characters that the encoding of the terminal lacks are escaped instead of raising errors."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
 
 
 def console(*, stderr: bool = False) -> Console:
-    """A rich console on standard output or standard error, without markup and highlighting.
+    """Return a rich console on standard output or standard error, without markup and highlighting.
 
-    It breaks lines between words on a terminal and leaves them alone elsewhere. What is to be copied is printed with
-    ``soft_wrap=True``.
+    On a terminal it breaks lines between words; elsewhere it leaves lines as they are. Print text that users copy with
+    ``soft_wrap=True``, which never breaks lines.
     """
     from rich.console import Console as RichConsole
 
     class Console(RichConsole):
-        def on_broken_pipe(self) -> None:  # instead of exiting: the guard of the verbs decides
+        def on_broken_pipe(self) -> None:  # rich would exit, but handle_errors decides on the exit code
             raise BrokenPipeError
 
     return Console(stderr=stderr, markup=False, highlight=False, soft_wrap=not is_terminal(stderr=stderr))
 
 
 def has_colors(stream: TextIO) -> bool:
-    """Whether to use colors on a stream: on a terminal, and NO_COLOR is not set."""
+    """Whether to print colors: the stream is a terminal, and NO_COLOR is not set."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def is_terminal(*, stderr: bool = False) -> bool:
-    """Whether a person is looking at the stream."""
+    """Whether standard output or standard error is a terminal."""
     stream = sys.stderr if stderr else sys.stdout
     return stream.isatty()
 
 
 def print_json(model: BaseModel, *, line: bool = False) -> None:
-    """One JSON document on standard output: one line, for people on a terminal indented.
+    """Print a result as one JSON document on standard output: indented on a terminal, otherwise in one line.
 
     Args:
         model: The result.
-        line: One line for people, too.
+        line: Print one line on a terminal, too.
     """
     indent = 2 if is_terminal() and not line else None
     sys.stdout.write(model.model_dump_json(indent=indent) + "\n")
 
 
 def silence_stdout() -> None:
-    """Where nothing can be written: keep the interpreter from complaining when it flushes at exit."""
+    """Redirect standard output to nowhere after a write error, so that the final flush of Python does not fail."""
     with suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager
 def progress(label: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on standard error, if that is a terminal and the work takes longer than a second.
+    """Show a progress bar on standard error, if that is a terminal and the work takes longer than a second.
 
     Args:
-        label: What is going on: ``simulating``.
+        label: Text before the bar, such as ``simulating``.
 
     Yields:
-        Function to call with (done, total).
+        Callback ``(done, total)``.
     """
     if not is_terminal(stderr=True):
         yield lambda done, total: None
         return
     bar = _Bar(label)
-    timer = threading.Timer(_PATIENCE, bar.show)
+    timer = threading.Timer(_PROGRESS_DELAY_S, bar.show)
     timer.daemon = True
     timer.start()
     try:
@@ -102,7 +103,7 @@ def progress(label: str) -> Iterator[Callable[[int, int], None]]:
 
 
 class _Bar:
-    """A rich progress bar that one thread may show while another closes it."""
+    """A rich progress bar; one thread can show it while another closes it."""
 
     def __init__(self, label: str) -> None:
         self._label = label

@@ -1,4 +1,4 @@
-"""The table of commands in the README: ``python -m irsim.cli.overview README.md`` writes it again."""
+"""Makes the table of commands in the README: ``python -m irsim.cli.overview README.md`` updates it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BEGIN, _END = "<!-- begin commands -->\n", "<!-- end commands -->"
 
 
 def commands_table() -> str:
-    """A Markdown table with one row per command: name and the first sentence of its help."""
+    """Return a Markdown table with one row per command: its name and the first paragraph of its help."""
     rows = ["| command | what it does |", "|---|---|"]
     groups = [
         ("irsim", app),

@@ -1,4 +1,4 @@
-"""``irsim render``: a picture or an animation of a scenario."""
+"""``irsim render``: draw a picture or an animation of a scenario."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def render(
         int | None,
         typer.Option(
             min=0,
-            help="When a picture is taken (default 0: the start), or when an animation ends at the latest.",
+            help="Step that a picture shows (default 0: the start), or last step of an animation.",
             show_default=False,
         ),
     ] = None,
     size: Annotated[int | None, typer.Option(min=64, max=8192, help="Longer side of the picture in pixels.")] = None,
     region: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option(metavar="X_MIN Y_MIN X_MAX Y_MAX", help="The part of the world to show, in metres."),
+        typer.Option(metavar="X_MIN Y_MIN X_MAX Y_MAX", help="Part of the world to show, in metres."),
     ] = None,
     strip: Annotated[
         int | None,
@@ -38,14 +38,14 @@ def render(
             min=2,
             max=12,
             metavar="N",
-            help="N moments on one sheet, from the start to --steps (default: to the end of the episode).",
+            help="Show N moments in one picture, from the start to --steps (default: to the end of the episode).",
         ),
     ] = None,
     overlays: Annotated[
         str | None,
         typer.Option(
             metavar="NAME,NAME",
-            help=f"Show only these besides bodies (png): {', '.join(OVERLAYS)}.",
+            help=f"Draw only these besides the bodies (png): {', '.join(OVERLAYS)}.",
         ),
     ] = None,
     json_output: Json = False,
@@ -53,7 +53,7 @@ def render(
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Draw a scenario: the suffix of the file says whether it becomes a picture or an animation."""
+    """Draw a scenario as a picture or an animation, depending on the suffix of the file."""
     from rich.text import Text
 
     from irsim.cli.findings import import_user_modules, limits_for, print_findings
@@ -63,9 +63,9 @@ def render(
     with progress("drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
-        from irsim.graphics.encoding.picture_files import PICTURE_FORMATS
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, PICTURE_FORMATS
 
-        check_suffix(out, [*PICTURE_FORMATS, *api.VIDEO_SUFFIXES])
+        check_suffix(out, [*PICTURE_FORMATS, *MOVING_SUFFIXES])
         result = api.render(
             file,
             out,
@@ -91,4 +91,4 @@ def render(
         shown.print(
             Text.assemble("wrote ", (written, "bold"), f" ({width} x {height} px{frames}, step {result.steps})")
         )
-    shown.print(Text.assemble("again: ", (result.reproduce, "cyan")), soft_wrap=True)
+    shown.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""``irsim replay``: a recorded run as a page for the browser."""
+"""``irsim replay``: write a recorded run as a page for the browser."""
 
 from __future__ import annotations
 
@@ -16,19 +16,20 @@ __all__ = ["replay"]
 def replay(
     run: Annotated[str, typer.Argument(help="Id or folder of a run, or 'last'.")] = "last",
     file: Annotated[
-        Path | None, typer.Argument(help="File to write, as with -o; default: RUN.html here.", show_default=False)
+        Path | None,
+        typer.Argument(help="File to write. Default: RUN.html in the current directory.", show_default=False),
     ] = None,
-    html: Annotated[bool, typer.Option("--html", help="Write one HTML file; so far there is no other form.")] = True,
+    html: Annotated[bool, typer.Option("--html", help="Write one HTML file, the only format.")] = True,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", metavar="OUT", help="The same, as an option.", show_default=False),
+        typer.Option("-o", "--out", metavar="OUT", help="File to write, instead of the argument.", show_default=False),
     ] = None,
-    show: Annotated[bool, typer.Option("--open", help="Open it in the browser, too.")] = False,
+    show: Annotated[bool, typer.Option("--open", help="Also open the page in the browser.")] = False,
     json_output: Json = False,
 ) -> None:
     """Write a recorded run as one HTML page: play it, scrub, follow a robot, jump to events.
 
-    The page needs no network and nothing beside it. `irsim run FILE --record` records a run.
+    The page needs neither network nor other files. `irsim run FILE --record` records a run.
     """
     from rich.text import Text
 
@@ -36,7 +37,7 @@ def replay(
     from irsim.runs.replay.export import replay as write
 
     if file is not None and out is not None:
-        raise RunError("bad-argument", f"two files are named, '{file}' and '{out}'", "name one file")
+        raise RunError("bad-argument", f"two output files are given, '{file}' and '{out}'", "give one file")
     with progress("packing"):
         result = write(run, out or file)
     if show:
@@ -46,7 +47,7 @@ def replay(
     if json_output:
         print_json(result)
         return
-    thinned = f", one in {result.every}" if result.every > 1 else ""
+    thinned = f", every {result.every} steps" if result.every > 1 else ""
     size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
     console().print(
         Text.assemble("wrote ", (result.file, "bold"), f" ({size}, steps 0 to {result.last_step}{thinned})"),

@@ -14,11 +14,12 @@ from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Stri
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import RunResult
+    from irsim.results.run import RunResult
 
 __all__ = ["run", "show_result"]
 
-_MANY = 12  # robots listed one by one
+MAX_ROBOTS_SHOWN = 12
+"""Number of robots that the table lists."""
 _COLORS = {"success": "green", "collision": "red", "timeout": "yellow"}
 
 
@@ -30,35 +31,36 @@ def run(
     save_gif: Annotated[
         Path | None, typer.Option(metavar="PATH", help="Also write an animation: .gif, .mp4 or .apng.")
     ] = None,
-    show: Annotated[bool, typer.Option("--show", help="Watch it live in a window.")] = False,
+    show: Annotated[bool, typer.Option("--show", help="Show the simulation in a window.")] = False,
     strict: Strict = False,
     behavior: Annotated[
         str | None,
         typer.Option(
             metavar="NAME",
-            help="Replace every robot's behavior: rvo, or '{name: orca, timeHorizon: 5}'.",
+            help="Replace the behavior of every robot, such as rvo or '{name: orca, timeHorizon: 5}'.",
             show_default=False,
         ),
     ] = None,
     imports: Imports = None,
     require_success: Annotated[
-        bool, typer.Option("--require-success", help="Exit with 1 unless every robot reaches its goal.")
+        bool, typer.Option("--require-success", help="Exit with code 1 unless every robot reaches its goal.")
     ] = False,
     record: Annotated[
         bool,
         typer.Option(
             "--record",
-            help="Keep everything that happens, for `irsim inspect` and `replay`: 24 hours, below .irsim/runs.",
+            help="Record the run in .irsim/runs for 24 hours, for `irsim inspect` and `irsim replay`.",
         ),
     ] = False,
     record_to: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Keep it in a new folder instead, for good.", show_default=False)
+        Path | None,
+        typer.Option(metavar="DIR", help="Record the run in this new folder instead, permanently.", show_default=False),
     ] = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Simulate a scenario until every robot has arrived or collided, or time is up.
+    """Simulate a scenario until every robot has arrived or collided, or the time limit is reached.
 
-    A collision or a time-out is a result like any other: the exit code is 0 unless --require-success is given.
+    The exit code is 0 also after a collision or a time-out, unless --require-success is given.
     """
     from irsim.cli.findings import import_user_modules, limits_for, print_findings
     from irsim.cli.output import console, print_json, progress
@@ -69,9 +71,10 @@ def run(
     with progress("simulating" if save_gif is None else "simulating and drawing") as report:
         from irsim import api
         from irsim.common.files import check_suffix
+        from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 
         if save_gif is not None:
-            check_suffix(save_gif, api.VIDEO_SUFFIXES)
+            check_suffix(save_gif, MOVING_SUFFIXES)
         result = api.run(
             file,
             seed=seed,
@@ -98,9 +101,9 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
     """Print how an episode ended.
 
     Args:
-        result: From :func:`irsim.run`.
-        out: Where to.
-        again: Command that repeats it, if another than the result's own.
+        result: Result of :func:`irsim.run`.
+        out: Console to print to.
+        again: Command that reproduces the episode; default: the one in the result.
     """
     from rich.text import Text
 
@@ -108,19 +111,19 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
 
     if result.robots:
         out.print(_table(result))
-    if len(result.robots) > _MANY:
-        out.print(f"... and {len(result.robots) - _MANY} more robots (--json lists all)")
+    if len(result.robots) > MAX_ROBOTS_SHOWN:
+        out.print(f"... and {len(result.robots) - MAX_ROBOTS_SHOWN} more robots (--json lists all)")
     out.print(Text.assemble((result.outcome, f"bold {_COLORS[result.outcome]}"), ": ", clean(result.summary, 400)))
     if result.reason and result.reason not in result.summary:
-        out.print(f"why: {clean(result.reason, 400)}")
+        out.print(f"reason: {clean(result.reason, 400)}")
     limit = {
-        "argument": "--steps",
-        "scenario": "the scenario",
-        "default": "default: set world.time_limit",
-        "limits": "the most steps of one run",
+        "argument": "from --steps",
+        "scenario": "from the scenario",
+        "default": "default; set world.time_limit to change it",
+        "limits": "maximum of one run",
     }
     horizon = f"{seconds(result.time_limit)} ({limit[result.time_limit_from]})"
-    out.print(f"{result.steps} steps, {seconds(result.sim_time)} of at most {horizon}")
+    out.print(f"{result.steps} steps, {seconds(result.sim_time)} of simulated time; time limit {horizon}")
     for written in result.files:
         out.print(Text.assemble("wrote ", (written, "bold")), soft_wrap=True)
     if result.run_id is not None:
@@ -132,14 +135,14 @@ def show_result(result: RunResult, out: Console, again: str | None = None) -> No
         )
     for note in result.notes:
         out.print(f"note: {note}", style="yellow")
-    out.print(Text.assemble("again: ", (again or result.reproduce, "cyan")), soft_wrap=True)
+    out.print(Text.assemble("reproduce: ", (again or result.reproduce, "cyan")), soft_wrap=True)
 
 
 def _mention_missing_screen() -> None:
     from irsim.graphics.figure.window import has_screen
 
     if not has_screen():
-        typer.echo("there is no screen here, so no window opens; --save-gif leaves a film", err=True)
+        typer.echo("no window can be opened, because there is no screen; --save-gif writes an animation", err=True)
 
 
 def _table(result: RunResult) -> object:
@@ -153,7 +156,7 @@ def _table(result: RunResult) -> object:
         table.add_column(heading)
     for heading in ("arrived", "travelled", "to goal", "collisions"):
         table.add_column(heading, justify="right")
-    for robot in result.robots[:_MANY]:
+    for robot in result.robots[:MAX_ROBOTS_SHOWN]:
         table.add_row(
             clean(robot.name, 24),
             Text(robot.outcome, style=_COLORS[robot.outcome]),

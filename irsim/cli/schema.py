@@ -1,4 +1,4 @@
-"""``irsim schema``: the JSON Schema of scenario files, for editors."""
+"""``irsim schema``: write the JSON Schema of scenario files, for editors."""
 
 from __future__ import annotations
 
@@ -16,15 +16,18 @@ def schema(
     out: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--out", metavar="FILE", help="File to write; - prints it. Default: the one of the checkout."
+            "-o",
+            "--out",
+            metavar="FILE",
+            help="File to write; - prints the schema. Default: the schema file of the source checkout.",
         ),
     ] = None,
     check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit with 1 if the file is out of date.")
+        bool, typer.Option("--check", help="Write nothing; exit with code 1 if the file is out of date.")
     ] = False,
     scenario: Annotated[
         Path | None,
-        typer.Option("--for", metavar="FILE", help="Put the line by which editors find the schema on top of FILE."),
+        typer.Option("--for", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
     ] = None,
 ) -> None:
     """Write the JSON Schema of scenario files, or connect a file to it."""
@@ -44,14 +47,14 @@ def schema(
         write_atomically(target, text)
         typer.echo(f"wrote {target}")
     elif not target.is_file() or target.read_text(encoding="utf-8") != text:
-        typer.echo(f"{target} is out of date; irsim schema writes it again", err=True)
+        typer.echo(f"{target} is out of date: run irsim schema to update it", err=True)
         raise typer.Exit(FAILED)
     else:
         typer.echo(f"{target} is up to date")
 
 
 def _connect(scenario: Path) -> None:
-    """Put the editor line on top of a scenario file."""
+    """Add the line for editors at the top of a scenario file."""
     from irsim.common.files import write_atomically
     from irsim.diagnostics.errors import ScenarioError
     from irsim.scenario.locate import locate

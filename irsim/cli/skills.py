@@ -1,4 +1,4 @@
-"""``irsim skills``: what this package teaches coding agents, and putting it where they look."""
+"""``irsim skills``: list the skills for coding agents, and install them."""
 
 from __future__ import annotations
 
@@ -8,19 +8,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.guard import FAILED, guarded
+from irsim.cli.guard import FAILED, handle_errors
 from irsim.cli.options import Json
+from irsim.common.text import listed
 
 if TYPE_CHECKING:
     from irsim.bundled.skills import Installed
 
 __all__ = ["skills_app"]
 
-skills_app = typer.Typer(name="skills", help="Skills for coding agents: list them, install them.", no_args_is_help=True)
+skills_app = typer.Typer(name="skills", help="List and install the skills for coding agents.", no_args_is_help=True)
+
+MAX_CHANGED_FILES = 5
+"""Number of changed files that are listed by name."""
 
 
 class Target(str, Enum):
-    """Whose folder."""
+    """Agent whose folder is used."""
 
     claude = "claude"
     agents = "agents"
@@ -30,7 +34,7 @@ class Target(str, Enum):
 
 
 def list_(json_output: Json = False) -> None:
-    """List the skills for coding agents that come with irsim."""
+    """List the skills for coding agents that are included in irsim."""
     from irsim.bundled.skills import find_skills
 
     found = find_skills()
@@ -57,24 +61,31 @@ def list_(json_output: Json = False) -> None:
         table.add_row(skill.name, skill.description.partition(". ")[0].rstrip(".") + ".")
     out = console()
     out.print(table)
-    out.print("\nirsim skills install --target claude (or agents, gemini, cursor, codex) puts them into this project.")
+    out.print(
+        "\nirsim skills install --target claude (or agents, gemini, cursor, codex) installs them in this project."
+    )
 
 
 def install(
-    target: Annotated[list[Target], typer.Option(help="Host whose folder they go to. Repeatable.", show_default=False)],
+    target: Annotated[
+        list[Target], typer.Option(help="Agent for which the skills are installed. Repeatable.", show_default=False)
+    ],
     user: Annotated[
-        bool, typer.Option("--user/--project", help="In the home directory, or below the current directory.")
+        bool, typer.Option("--user/--project", help="Install in the home directory, or in the current directory.")
     ] = False,
     skill: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only this skill. Repeatable.", show_default=False)
+        list[str] | None, typer.Option(metavar="NAME", help="Install only this skill. Repeatable.", show_default=False)
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Overwrite files that were changed, and replace links.")
+        bool, typer.Option("--force", help="Overwrite files that you have changed, and replace links.")
     ] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be done.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only show what would be done.")] = False,
     json_output: Json = False,
 ) -> None:
-    """Put the skills where a coding agent looks for them. Exits with 1 if files changed by you were left alone."""
+    """Install the skills where a coding agent looks for them.
+
+    Files that you have changed are kept, unless --force is given; the exit code is then 1.
+    """
     from irsim.bundled import skills
 
     chosen = skills.find_skills(skill or ())
@@ -114,10 +125,11 @@ def _show(done: list[Installed], *, dry_run: bool) -> None:
         style = {"kept": "yellow", "unchanged": "dim"}.get(result.action, "green")
         out.print(Text.assemble((f"{result.action:9}", style), f" {result.folder}"), soft_wrap=True)
         if result.changed:
-            more = f" and {len(result.changed) - 5} more" if len(result.changed) > 5 else ""
-            fate = "left alone; --force overwrites" if result.action == "kept" else "overwritten"
-            out.print(f"          changed since: {', '.join(result.changed[:5])}{more} ({fate})", soft_wrap=True)
+            action = "kept; --force overwrites" if result.action == "kept" else "overwritten"
+            out.print(
+                f"          changed by you: {listed(result.changed, MAX_CHANGED_FILES)} ({action})", soft_wrap=True
+            )
 
 
-skills_app.command("list")(guarded(list_))
-skills_app.command("install")(guarded(install))
+skills_app.command("list")(handle_errors(list_))
+skills_app.command("install")(handle_errors(install))

@@ -1,4 +1,4 @@
-"""``irsim templates``: the scenarios one can start from."""
+"""``irsim templates``: list the bundled scenarios to start from."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _OVERLAYS: tuple[Literal["goals", "paths", "sensors"], ...] = ("goals", "paths",
 
 def templates(
     words: Annotated[
-        list[str] | None, typer.Argument(help="Only templates about these words.", show_default=False)
+        list[str] | None, typer.Argument(help="List only templates that match these words.", show_default=False)
     ] = None,
     sheet: Annotated[
         Path | None,
-        typer.Option(help="Draw them, each some seconds after its start, into one picture.", show_default=False),
+        typer.Option(help="Draw the templates, each some seconds after its start, in one picture.", show_default=False),
     ] = None,
     json_output: Json = False,
 ) -> None:
@@ -50,7 +50,7 @@ def templates(
 
     out = console()
     if not found:
-        out.print(f"no template is about {' '.join(words or ())}; irsim templates lists all")
+        out.print(f"no template matches {' '.join(words or ())!r}; irsim templates lists all")
         return
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(style="bold cyan", no_wrap=True)
@@ -58,4 +58,4 @@ def templates(
     for template in found:
         table.add_row(template.name, template.purpose)
     out.print(table)
-    out.print("\nirsim describe NAME shows the parameters, irsim new NAME writes the file.")
+    out.print("\nirsim describe NAME shows the parameters; irsim new NAME writes the scenario file.")

@@ -1,4 +1,4 @@
-"""``irsim validate``: everything that is wrong with scenario files, at once."""
+"""``irsim validate``: report all problems of scenario files at once."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from irsim.diagnostics.errors import ArgumentError, ScenarioNotFoundError
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from irsim.results.results import DryRun, ValidationReport
+    from irsim.results.validation import DryRun, ValidationReport
     from irsim.scenario.limits import Limits
 
 __all__ = ["validate"]
@@ -24,31 +24,31 @@ __all__ = ["validate"]
 def validate(
     files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Scenario files; - is standard input.")],
     json_output: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object per file, one per line, and nothing else.")
+        bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
     ] = False,
     lenient: Annotated[
-        bool, typer.Option("--lenient", help="Only warn where IR-SIM would carry on, as irsim run does.")
+        bool, typer.Option("--lenient", help="Report problems that `irsim run` tolerates as warnings.")
     ] = False,
     fix: Annotated[
         bool,
         typer.Option(
             "--fix",
-            help="Make the repairs that need no guessing, in the file; comments stay. With - it prints the repaired "
-            "text, and findings to standard error.",
+            help="Repair the file where the repair is unambiguous; comments stay. With -, print the repaired text to "
+            "standard output and the findings to standard error.",
         ),
     ] = False,
     simulate: Annotated[
         bool,
-        typer.Option("--simulate", help="Also try it, for about a second, and say what happens."),
+        typer.Option("--simulate", help="Also simulate the scenario for about a second and report what happens."),
     ] = False,
     seed: Annotated[
         int | None,
-        typer.Option(min=0, max=2**64 - 1, help="Seed of --simulate; default: the scenario's, else 0."),
+        typer.Option(min=0, max=2**64 - 1, help="Seed for --simulate. Default: the seed of the scenario, otherwise 0."),
     ] = None,
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Check scenario files without running them. Exits with 2 if any is invalid."""
+    """Check scenario files without running them; the exit code is 2 if any file is invalid."""
     from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
 
@@ -56,16 +56,16 @@ def validate(
     filtering = fix and "-" in files
     if filtering and (json_output or len(files) > 1):
         raise ArgumentError(
-            "--fix prints the repaired text of standard input, and nothing else fits beside it",
-            "leave out --json and other files, or give the text as a file",
+            "--fix with - prints the repaired text, so it cannot be combined with --json or other files",
+            "leave out --json and other files, or give the name of a file instead of -",
         )
     valid = True
     for file in files:
         text = sys.stdin.read() if file == "-" else None
         with progress(f"checking {file}"):
             try:
-                report, text = _checked(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
-            except ScenarioNotFoundError as error:  # the other files are checked all the same
+                report, text = _check_file(file, text, fix, simulate, seed, not lenient, limits_for(max_objects))
+            except ScenarioNotFoundError as error:  # continue with the other files
                 report, text = not_found(file, str(error)), ""
         valid &= report.valid
         if json_output:
@@ -78,18 +78,19 @@ def validate(
         raise typer.Exit(INVALID)
 
 
-def _checked(
+def _check_file(
     file: str, text: str | None, fix: bool, simulate: bool, seed: int | None, strict: bool, limits: Limits | None
 ) -> tuple[ValidationReport, str | None]:
-    """The report on a file, or on a text from standard input; with ``fix``, on the repaired one."""
+    """Return the report on a file or a text from standard input, and the text; with ``fix``, on the repaired one."""
     from irsim import api
 
     path = None if file == "-" else file
-    fixes, told = [], {}
+    fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)
         fixes = report.fixes
-        told = {(item.code, item.path): item.fix for item in report.findings}  # with the reason why one was left
+        # these texts also give the reason why a problem was not repaired
+        fix_texts = {(item.code, item.path): item.fix for item in report.findings}
         if fixes and path is None:
             text = mended
         elif fixes:
@@ -100,7 +101,7 @@ def _checked(
     report = api.validate(path, text=text, strict=strict, simulate=simulate, seed=seed, limits=limits)
     report.fixes = fixes
     for item in report.findings:
-        item.fix = told.get((item.code, item.path), item.fix)
+        item.fix = fix_texts.get((item.code, item.path), item.fix)
     return report, text
 
 
@@ -125,11 +126,11 @@ def _show(report: ValidationReport, file: str, text: str | None, *, stderr: bool
 
 
 def show_dry_run(found: DryRun, out: Console) -> None:
-    """Print what happened in a first look.
+    """Print the result of a dry run.
 
     Args:
-        found: From a report.
-        out: Where to.
+        found: Dry run of a report.
+        out: Console to print to.
     """
     from rich.text import Text
 
@@ -143,6 +144,6 @@ def show_dry_run(found: DryRun, out: Console) -> None:
         f"'{s.name}' {s.doing} since {seconds(s.since)} at ({s.x:.2f}, {s.y:.2f}): {s.why}" for s in found.stuck[1:]
     ]
     lines += [f"'{gone.name}' left the world at {seconds(gone.time)}" for gone in found.left[1:]]
-    out.print(Text.assemble(("tried", "bold"), f"{seed}: {clean(found.summary, 600)}"), soft_wrap=True)
+    out.print(Text.assemble(("dry run", "bold"), f"{seed}: {clean(found.summary, 600)}"), soft_wrap=True)
     for line in lines:
         out.print(f"  {clean(line, 200)}", soft_wrap=True)

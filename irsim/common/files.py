@@ -1,39 +1,49 @@
-"""Writing files so that nobody ever sees half of one, and nothing is overwritten by accident."""
+"""Writing files in one step, so that no incomplete file is ever seen, and without overwriting by accident."""
 
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Iterable
-from contextlib import suppress
+import stat
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TypeAlias
 
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
-__all__ = ["TargetError", "check_suffix", "write_atomically", "write_new"]
+__all__ = [
+    "TEMPORARY",
+    "Buffer",
+    "TargetError",
+    "check_suffix",
+    "create_bytes",
+    "replace_bytes",
+    "replacing",
+    "write_all",
+    "write_atomically",
+    "write_new",
+]
+
+Buffer: TypeAlias = bytes | memoryview
+"""Bytes as they are stored."""
+TEMPORARY = ".new-"
+"""How names of temporary files begin."""
+_NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
 
 
-class TargetError(IrsimError, ValueError):
-    """A file that will not be written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+class TargetError(CodedError, ValueError):
+    """A file cannot be written under the given name."""
 
 
 def check_suffix(target: Path, known: Iterable[str]) -> None:
-    """Refuse a file whose suffix nothing writes, before any work is done.
+    """Refuse a file with an unsupported suffix before any work is done.
 
     Args:
         target: The file.
-        known: Suffixes, with or without the dot.
+        known: Supported suffixes, with or without the dot.
 
     Raises:
-        TargetError: The suffix is not among them.
+        TargetError: The suffix is not supported.
     """
     suffixes = [suffix.lstrip(".") for suffix in known]
     if target.suffix.lower().lstrip(".") not in suffixes:
@@ -41,15 +51,15 @@ def check_suffix(target: Path, known: Iterable[str]) -> None:
 
 
 def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
-    """Write a text file, all at once.
+    """Write a text file in one step.
 
     Args:
-        target: Where to; its directory must exist.
-        text: What to write.
+        target: The file; its folder must exist.
+        text: Its content.
         overwrite: Replace a file that exists.
 
     Raises:
-        TargetError: There is one and ``overwrite`` is not set.
+        TargetError: The file exists and ``overwrite`` is not set.
     """
     if not overwrite:
         try:
@@ -66,13 +76,31 @@ def write_new(target: Path, text: str, *, overwrite: bool = False) -> None:
 
 
 def write_atomically(target: Path, text: str) -> None:
-    """Replace a text file in one step, by way of a temporary one beside it; links are followed, modes kept."""
+    """Replace a text file in one step; links are followed, and the permissions of the file stay.
+
+    Args:
+        target: The file.
+        text: Its new content.
+    """
     target = target.resolve()
-    descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
+    replace_bytes(target, text.encode(), mode=mode)
+
+
+def replace_bytes(target: str | Path, *parts: Buffer, mode: int | None = 0o600) -> None:
+    """Replace a file in one step: another process sees the old content or the new one, never a part of it.
+
+    Args:
+        target: The file; its folder must exist.
+        *parts: Its new content.
+        mode: Permissions; None for those that new files usually have.
+    """
+    head, separator, _ = os.fspath(target).rpartition(os.sep)
+    temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
+    create_bytes(temporary, *parts, mode=0o666 if mode is None else 0o600)
     try:
-        with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-        os.chmod(temporary, target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~_umask())
+        if mode not in (None, 0o600):
+            os.chmod(temporary, mode)
         os.replace(temporary, target)
     except BaseException:
         with suppress(OSError):
@@ -80,7 +108,46 @@ def write_atomically(target: Path, text: str) -> None:
         raise
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def create_bytes(target: str | Path, *parts: Buffer, mode: int = 0o600) -> None:
+    """Write a file that does not exist yet; if that fails, nothing is left of it.
+
+    Args:
+        target: The file; its folder must exist.
+        *parts: Its content.
+        mode: Permissions, from which the process's umask is taken.
+    """
+    descriptor = os.open(target, _NEW, mode)
+    try:
+        try:
+            write_all(descriptor, *parts)
+        finally:
+            os.close(descriptor)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(target)
+        raise
+
+
+def write_all(descriptor: int, *parts: Buffer) -> None:
+    """Write all parts to an open file, without copies and buffers, whose cost short runs would feel."""
+    done = os.writev(descriptor, parts) if hasattr(os, "writev") else 0
+    if done < sum(map(len, parts)):
+        rest = memoryview(b"".join(parts))[done:]
+        while rest:
+            rest = rest[os.write(descriptor, rest) :]
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a temporary file beside ``path``, which replaces it if the block succeeds and is deleted otherwise.
+
+    This is for encoders that open files by name; the temporary file has the suffix of the path. The folder is made if
+    it does not exist.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-__all__ = ["clean", "names_if_different", "seconds", "shorten_pair"]
+__all__ = ["clean", "listed", "names_if_different", "quoted", "seconds", "shorten_pair"]
+
+MAX_NAME = 40
+"""Number of characters of a name that a message shows."""
 
 
 def shorten_pair(before: object, after: object, longest: int = 80) -> tuple[str, str]:
@@ -59,3 +62,24 @@ def clean(text: object, longest: int = 80) -> str:
     """
     shown = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in str(text))
     return shown if len(shown) <= longest else shown[: longest - 3] + "..."
+
+
+def quoted(name: object, longest: int = MAX_NAME) -> str:
+    """Quote a name for a message: ``'scout'``.
+
+    Args:
+        name: The name.
+        longest: Characters to keep.
+    """
+    return f"'{clean(name, longest)}'"
+
+
+def listed(items: Sequence[str], most: int) -> str:
+    """List words in a message and count the rest: ``a, b, c and 2 more``.
+
+    Args:
+        items: The words.
+        most: Number of words to show.
+    """
+    more = f" and {len(items) - most} more" if len(items) > most else ""
+    return ", ".join(items[:most]) + more

@@ -1,4 +1,7 @@
-"""What is the same as in IR-SIM 2.12, what differs on purpose, and why: data for tests and for the published page."""
+"""Compatibility with IR-SIM 2.12: old module paths, old helpers, and the list of intended differences.
+
+The list is data for the tests and for the published page, ``irsim/compat/README.md``.
+"""
 
 from irsim.compat.differences import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, Difference
 from irsim.compat.names import missing_names, reference_names

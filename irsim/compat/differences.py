@@ -1,4 +1,4 @@
-"""The intended differences, each under an id, and the keys and names they touch."""
+"""The intended differences from IR-SIM 2.12, each with an id, and the keys and names that they affect."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["ABSENT", "DIFFERENCES", "EXTENSIONS", "KEY_DIFFERENCES", "NAME_DIFFE
 
 
 class Difference(NamedTuple):
-    """One intended difference."""
+    """One intended difference: the behaviour of IR-SIM 2.12, the behaviour of irsim, and the reason."""
 
     theirs: str
     ours: str
@@ -17,64 +17,64 @@ class Difference(NamedTuple):
 
 DIFFERENCES: dict[str, Difference] = {
     "D1": Difference(
-        "objects move one after another; later ones see earlier ones already moved",
-        "all decide on one snapshot, then all move",
-        "results do not depend on the order of declaration (contact pushing and random placement excepted), and "
+        "objects move one after another; later objects see the new positions of earlier ones",
+        "all objects decide on one snapshot, then all move",
+        "results do not depend on the order of declaration (except for contact pushing and random placement), and "
         "batches equal single runs",
     ),
     "D2": Difference("circles are 64-gons in collision and lidar", "circles are circles", "exact and faster"),
     "D3": Difference(
-        "a missing scenario file makes an empty world",
-        "`FileNotFoundError` with the places searched and near matches",
+        "a missing scenario file results in an empty world",
+        "`FileNotFoundError` with the folders searched and similar names",
         "a typo must not look like success",
     ),
     "D4": Difference(
-        "unknown keys in behaviors, sensors, shapes, plot: silence or a bare TypeError",
-        "a diagnostic with path, line and nearest name; `make` and `irsim run` warn where 2.12 carries on, "
-        "`validate`, `strict=True` and the MCP server refuse. Numbers that a behavior cannot use (`vmax: -1`, "
-        "`timeHorizon: 0`) are refused by `make`, too, but for `acce` of `rvo` and for keys with which 2.12 goes on "
-        "without a group behavior",
-        "whoever mistypes needs to be told",
+        "unknown keys in behaviors, sensors, shapes, plot are ignored or cause a bare TypeError",
+        "a diagnostic with path, line and nearest name: a warning of `make` and `irsim run` where 2.12 continues, an "
+        "error in `validate`, with `strict=True` and in the MCP server. Numbers that a behavior cannot use (`vmax: "
+        "-1`, `timeHorizon: 0`) are errors in `make`, too, except for `acce` of `rvo` and for keys with which 2.12 "
+        "continues without a group behavior",
+        "a typo must not go unnoticed",
     ),
     "D5": Difference(
         "an unknown behavior fails at the first step",
         "an error when the scenario is read (`validate`, `strict=True`); plain `make` warns, and the first step "
-        "raises unless something has registered the name by then",
-        "told before anything runs",
+        "raises an error unless the name has been registered by then",
+        "errors should be reported before anything runs",
     ),
     "D6": Difference(
         "polygons and maps are one disc for `rvo` and `sfm`, and invisible to `orca`",
-        "walls are walls: their segments are avoided; `orca` also sees movers outside its group",
-        "robots drove through walls or stayed metres away",
+        "their edges are avoided as line segments; `orca` also sees moving objects outside its group",
+        "robots drove through walls or stayed metres away from them",
     ),
     "D7": Difference(
-        "entries placed at random may overlap each other and obstacles",
-        "they keep clear of everything placed before; what finds no room is an error",
+        "randomly placed objects can overlap each other and obstacles",
+        "they do not overlap anything placed before; an object that cannot be placed is an error",
         "a scenario must not start in collision",
     ),
     "D8": Difference(
-        "`end()` and module-level aliases touch state that environments share",
-        "everything belongs to its environment; `irsim.config.*` follows the one used last",
-        "several environments in one process",
+        "`end()` and module-level aliases change state that environments share",
+        "each environment has its own state; `irsim.config.*` follows the environment used last",
+        "several environments in one process must not affect each other",
     ),
-    "D9": Difference("`world.name` and `role` raise", "they are accepted", "they are documented"),
+    "D9": Difference("`world.name` and `role` raise an error", "they are accepted", "they are documented"),
     "D10": Difference(
         "random draws come from one generator in the order of calls",
-        "each draw is keyed by seed, scene, noise episode, stream, object and number",
-        "a world of a batch draws what it draws alone; numbers differ from 2.12",
+        "each draw is keyed by seed, scene, noise episode, stream, object and number; values differ from 2.12",
+        "a world gives the same draws in a batch as alone",
     ),
     "D11": Difference(
-        "`orca` keeps velocities of its own, in single precision; `diff` members leave heading errors below 0.1 rad "
-        "alone",
-        "real velocities, double precision; who avoids somebody turns however little the new velocity is off its "
-        "heading (who avoids nobody leaves 0.1 rad alone as in 2.12)",
-        "the solver planned from fiction: fed with the real velocity, it would ask for the same small turn again and "
-        "again, and nobody would ever make it",
+        "`orca` computes with its own velocities, in single precision; `diff` members ignore heading errors below 0.1 "
+        "rad",
+        "`orca` computes with the true velocities, in double precision; a member that avoids another object also turns "
+        "by less than 0.1 rad (a member that avoids nothing ignores such errors as in 2.12)",
+        "velocities of its own differ from the true motion; and with true velocities, a small turn that is ignored "
+        "would be requested in each step without ever being executed",
     ),
     "D12": Difference(
         "status, arrival and collisions exist after the first step",
-        "they are evaluated by `make` and `reset`, too",
-        "observations of a reset",
+        "`make` and `reset` evaluate them, too",
+        "the observation after a reset needs them",
     ),
     "D13": Difference(
         "behaviors exist for some drives only",
@@ -82,105 +82,114 @@ DIFFERENCES: dict[str, Difference] = {
         "users expect it",
     ),
     "D14": Difference(
-        "`state`, scans and others are live internals",
-        "read-only snapshots, scans are copies; write through `set_state` and its like",
-        "writes that vanish or corrupt",
+        "`state`, scans and other arrays are the internal ones",
+        "they are read-only snapshots, and scans are copies; `set_state` and similar methods change them",
+        "direct writes were lost or corrupted the state",
     ),
     "D15": Difference(
-        "a map cell collides as a disc plus the outline; planners stand on cell corners",
-        "cells are squares; planners search the grid inflated by the footprint, nodes in cell centres",
-        "the robot that has to drive the path",
+        "a map cell collides as a disc plus the outline; the nodes of planners are cell corners",
+        "cells are squares; planners search the grid inflated by the footprint, and their nodes are cell centres",
+        "the robot must fit along the whole path",
     ),
     "D16": Difference(
-        "bundled maps of third parties",
-        "maps of our own under the old names",
+        "bundled maps come from third parties",
+        "the maps with these names were made for irsim",
         "licences",
     ),
     "D17": Difference(
         "sampling planners, and maps without `seed`, ignore the environment's seed",
         "they draw from its named streams",
-        "reproducible",
+        "results are reproducible",
     ),
     "D18": Difference(
         "the field of view can miss a large object straight ahead",
         "an object is seen when any part of it lies in the sector; occlusion is optional",
-        "correct",
+        "correctness",
     ),
     "D19": Difference(
         "`object_patch`, `goal_patch`, … of an object are artists of the environment's figure",
-        "the figure draws all objects together; these are what a script has drawn with `plot`, `plot_goal`, …; "
-        "`plot_kwargs` and `render(…)` change looks",
-        "pictures of many objects stay fast",
+        "the figure draws all objects together; these attributes hold what a script has drawn with `plot`, "
+        "`plot_goal`, …; `plot_kwargs` and `render(…)` change the style",
+        "drawing many objects stays fast",
     ),
     "D20": Difference(
-        "`collision_mode: contact` resolves overlaps in at most 32 sweeps; dense jams may stay inside each other",
-        "the same sweeps, then up to 480 more while anything is deeper than 0.5 mm, the later ones with drivers that "
-        "stall and wedged bodies that stay put (fewer of both where more than 8,000 pairs touch at once); where 32 "
-        "suffice both agree to rounding",
-        "things should not stay inside each other",
+        "`collision_mode: contact` resolves overlaps in at most 32 sweeps; in dense jams objects can stay inside each "
+        "other",
+        "the same sweeps, then up to 480 more while any overlap is deeper than 0.5 mm; in the later ones, stalled "
+        "drives stop pushing and wedged bodies stay in place (fewer sweeps if more than 8,000 pairs touch at once). If "
+        "32 sweeps suffice, both agree to rounding",
+        "objects should not stay inside each other",
     ),
     "D21": Difference(
-        "attributes can be written, but some writes are only kept (`lidar.number`, `info`), or half of them "
-        "(`step_time`: the clock goes on as before)",
-        "a write takes effect at once, or it is an error that names what to call; `world_param.step_time` may be set "
-        "before the first step, `collision_mode` and others at any time",
-        "nobody should learn from wrong results that a line did nothing",
+        "attributes can be written, but some writes have no effect (`lidar.number`, `info`) or only part of it "
+        "(`step_time`: the clock does not change)",
+        "a write takes effect at once, or it is an error that names the method to call; `world_param.step_time` can be "
+        "set before the first step, `collision_mode` and others at any time",
+        "a line without effect should not be found only through wrong results",
     ),
     "D22": Difference(
-        "under `arrive_mode: state` `dash` stands at the goal with a heading error below `angle_tolerance`, or swings "
-        "about it, and does not arrive where position and heading together are off by `goal_threshold`",
-        "the same law, but where it would leave `omni_angular` standing or swinging it turns the rest; under the other "
-        "behaviors it turns there, too",
+        "with `arrive_mode: state`, `dash` stops at the goal with a heading error below `angle_tolerance`, or "
+        "oscillates around it, and does not arrive if position and heading error together exceed `goal_threshold`",
+        "the same law, but an `omni_angular` robot that would stop or oscillate there turns to the heading of the "
+        "goal, also with the other behaviors",
         "a robot at its goal should arrive",
     ),
     "format-3": Difference(
-        "`obstacle: {…}` joins group 0 and is driven by its group behavior",
+        "`obstacle: {…}` joins group 0 and follows its group behavior",
         "the same, with a warning; the map is in no group",
-        "rarely meant",
+        "this is rarely intended",
     ),
     "format-12": Difference(
         "a self-crossing polygon becomes its bounding box",
-        "an error with a repaired outline; `make` warns and uses the repaired one",
-        "the box is not what was drawn",
+        "an error that suggests a repaired outline; `make` warns and uses the repaired outline",
+        "the box is not the shape in the file",
     ),
     "format-17": Difference(
-        "headings of the circle distribution are not wrapped, a goal of the entry is ignored",
-        "headings in [-π, π); a goal that is given wins",
+        "headings of the circle distribution are not wrapped, and a goal of the entry is ignored",
+        "headings are in [-π, π), and a goal of the entry takes precedence",
         "one convention for angles",
     ),
     "format-18": Difference(
         "`wander` without a range draws goals in 10 m × 10 m at the origin",
-        "the world's own extent",
-        "goals outside the world",
+        "it draws them in the extent of the world",
+        "goals could lie outside the world",
     ),
     "dynamics-18": Difference(
         "state rows beyond those of the drive are overwritten in each step",
         "they keep their value",
-        "a slip",
+        "an error in 2.12",
     ),
     "api-6": Difference(
-        "after `reset()` a wanderer heads for the configured goal", "it draws one again", "it is a wanderer"
+        "after `reset()`, a wandering robot heads for the configured goal",
+        "it draws a new goal",
+        "a wandering robot has random goals",
     ),
-    "api-7": Difference("`world_param.time` is stale after `reset()`", "it is 0", "a slip"),
+    "api-7": Difference("`world_param.time` is stale after `reset()`", "it is 0", "an error in 2.12"),
     "api-10": Difference(
-        "deleted objects stay in their behavior group, added ones join none", "groups follow the objects", "a slip"
+        "deleted objects stay in their behavior group, and added ones join none",
+        "groups follow the objects",
+        "an error in 2.12",
     ),
     "api-12": Difference(
-        "`random_obstacle_position` moves the map, `random_polygon_shape` fails with one obstacle",
-        "the map stays, one obstacle works",
-        "slips",
+        "`random_obstacle_position` moves the map, and `random_polygon_shape` fails with one obstacle",
+        "the map stays, and one obstacle works",
+        "errors in 2.12",
     ),
-    "api-13": Difference("`get_obstacle_info_list` fails with a map", "it works", "a slip"),
-    "api-15": Difference("`info.goal` is stale after `set_goal`", "it follows", "a slip"),
-    "api-18": Difference("A* gives a one-point path if there is none", "None", "as the other planners"),
+    "api-13": Difference("`get_obstacle_info_list` fails with a map", "it works", "an error in 2.12"),
+    "api-15": Difference("`info.goal` is stale after `set_goal`", "it follows", "an error in 2.12"),
+    "api-18": Difference(
+        "A* returns a path of one point if it finds no path", "it returns None", "as the other planners do"
+    ),
     "api-19": Difference(
-        "a saved frame lags by one render", "it shows the state it is saved at", "pictures one can trust"
+        "a saved frame lags by one render", "it shows the state at which it is saved", "pictures must be correct"
     ),
-    "api-22": Difference("the key `v` saves into the animation buffer", "into `figure`", "where figures go"),
-    "api-24": Difference("`render(show_goal=False)` hides nothing", "it hides the goal", "as written"),
-    "api-25": Difference("environments share one animation buffer", "each has its own", "frames do not mix"),
+    "api-22": Difference(
+        "the key `v` saves to the animation buffer", "it saves to `figure`", "figures belong in this folder"
+    ),
+    "api-24": Difference("`render(show_goal=False)` hides nothing", "it hides the goal", "as the option says"),
+    "api-25": Difference("environments share one animation buffer", "each has its own", "frames must not mix"),
 }
-"""Those with a D are general; the others name the surprise of the reference they settle."""
+"""Id -> difference. Ids with a D are general; the others name the part of IR-SIM 2.12 in which it was found."""
 
 KEY_DIFFERENCES: dict[str, str] = {
     "world.name": "D9",
@@ -203,22 +212,22 @@ KEY_DIFFERENCES: dict[str, str] = {
     "behavior.sfm": "D1, D6",
     "behavior.orca": "D6, D11",
 }
-"""By place: ``world.KEY``, ``entry.KEY`` of robots and obstacles, ``behavior.KEY``."""
+"""Key -> ids: ``world.KEY``, ``entry.KEY`` of robots and obstacles, ``behavior.KEY``."""
 
 EXTENSIONS: dict[str, str] = {
-    "world.boundary": "walls at the world's edge",
+    "world.boundary": "walls at the edge of the world",
     "world.seed": "default seed",
-    "world.time_limit": "horizon of a run",
-    "world.description": "free text",
-    "world.metadata": "free mapping",
-    "entry.tags": "free words; pedestrian is what metrics count as human",
-    "entry.waypoints": "goals one after the other, without the third bracket",
-    "entry.fov_occlusion": "what is hidden is not seen",
-    "behavior.follow": "plan a path, follow it with a local behavior",
+    "world.time_limit": "time horizon of a run",
+    "world.description": "any text",
+    "world.metadata": "any mapping",
+    "entry.tags": "any words; metrics count objects with the tag pedestrian as humans",
+    "entry.waypoints": "several goals in order, with fewer brackets than in `goal`",
+    "entry.fov_occlusion": "hidden objects are not seen",
+    "behavior.follow": "plan a path and follow it with a local behavior",
     "kinematics.acker.psi_max": "largest steering angle",
     "map.ros": "maps of ROS map_server",
 }
-"""Keys of irsim that 2.12 does not have; files without them mean the same."""
+"""Keys that only irsim has; the meaning of files without them does not change."""
 
 NAME_DIFFERENCES: dict[str, str] = {
     "EnvBase.step": "D1",
@@ -255,9 +264,9 @@ NAME_DIFFERENCES: dict[str, str] = {
     "PRMPlanner.planning": "D17",
     "Map.is_collision": "D15",
 }
-"""By ``Class.name``."""
+"""``Class.name`` -> ids."""
 
-_SEARCH = "the search runs in the engine: `planning` gives the path, `node_list` what was searched"
+_SEARCH = "the core searches: `planning` returns the path, `node_list` holds the visited nodes"
 _SEARCH_STEPS = {
     "AStarPlanner": "Node calc_final_path calc_grid_index calc_grid_position calc_heuristic calc_xy_index check_node "
     "get_motion_model verify_node",
@@ -269,7 +278,7 @@ _SEARCH_STEPS = {
     ),
 }
 
-_INSIDE = "a part of 2.12's inside that no script needs"
+_INTERNAL_REASON = "internal in 2.12; scripts do not need it"
 _INTERNAL = (
     "irsim.lib.path_planners.grid_planner_base",
     "irsim.util.decorator",
@@ -279,12 +288,12 @@ _INTERNAL = (
 )
 
 ABSENT: dict[str, str] = {
-    **dict.fromkeys(_INTERNAL, _INSIDE),
-    "irsim.lib.algorithm.contact": "contacts are found in the engine: `irsim.lib.contact_step`, `env.contacts`",
-    "irsim.env.env_logger:EnvLogger.CONSOLE_FORMAT": "lines are written without loguru, in this same format",
+    **dict.fromkeys(_INTERNAL, _INTERNAL_REASON),
+    "irsim.lib.algorithm.contact": "the core computes contacts: see `irsim.lib.contact_step`, `env.contacts`",
+    "irsim.env.env_logger:EnvLogger.CONSOLE_FORMAT": "lines have the same format, but are written without loguru",
     **dict.fromkeys(
         (f"irsim.world.sensors:Contact2D.{name}" for name in ("add", "add_force", "clear", "reset", "tick")),
-        "the step of the engine writes contacts; read `reports`, `records`, `force`",
+        "the core writes contacts in each step; read `reports`, `records`, `force`",
     ),
     **{
         f"irsim.lib.path_planners:{planner}.{name}": _SEARCH
@@ -292,4 +301,4 @@ ABSENT: dict[str, str] = {
         for name in names.split()
     },
 }
-"""Names of 2.12 that are not here, and the reason."""
+"""Name of 2.12 that irsim lacks -> reason."""

@@ -1,4 +1,4 @@
-"""The public names of IR-SIM 2.12, and which of them are missing here."""
+"""The public names of IR-SIM 2.12, and those among them that irsim lacks."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ __all__ = ["missing_names", "reference_names"]
 
 @cache
 def reference_names() -> dict[str, dict[str, list[str] | None]]:
-    """``module`` or ``module:Class`` → its public names, and for callables their parameters."""
+    """Return the public names of each ``module`` and ``module:Class``, and the parameters of callables."""
     text = Path(__file__).with_name("names.json").read_text(encoding="utf-8")
     names: dict[str, dict[str, list[str] | None]] = json.loads(text)
     return names
 
 
 def missing_names() -> list[str]:
-    """``module`` or ``module:Class``, with ``.name`` where only that is missing."""
+    """Return the names of 2.12 that irsim lacks: ``module``, ``module:Class``, or either followed by ``.name``."""
     missing = []
     for place, names in reference_names().items():
         module, _, owner = place.partition(":")
@@ -30,13 +30,13 @@ def missing_names() -> list[str]:
         except (ImportError, AttributeError):
             missing.append(place)
             continue
-        own = _assigned(home) if isinstance(home, type) else frozenset()
+        own = _instance_attributes(home) if isinstance(home, type) else frozenset()
         missing += [f"{place}.{name}" for name in names if not hasattr(home, name) and name not in own]
     return missing
 
 
-def _assigned(home: type) -> frozenset[str]:
-    """Attributes that instances have: fields that are declared, and what methods assign."""
+def _instance_attributes(home: type) -> frozenset[str]:
+    """Return the attributes of instances: declared fields, and attributes that methods assign."""
     found: set[str] = set()
     for base in home.__mro__:
         found |= set(vars(base).get("__annotations__", ()))

@@ -3,33 +3,34 @@
 
 #include <vector>
 
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 
-/// K objects of one world that share a behavior, its options and their group. Read only: the snapshot everybody sees.
+/// K objects of one world that share a behavior, its options and their group. All behaviors read the same snapshot.
 struct Decision {
   const World& world;
   const State& state;
-  int first_row;                    // row of object 0 of this world
-  const int* objects;               // (K,) ids within the world
-  int count;                        // K
-  const std::vector<int>& members;  // ids of all that share the behavior, or of the group; some may not decide now
-  bool grouped;                     // named under `group_behavior`: members know of each other
-  Workspace& work;                  // scratch memory
+  int first_row;       // row of object 0 of this world
+  const int* objects;  // (K,) ids within the world
+  int count;           // K
+  const std::vector<int>&
+      members;      // ids of all objects of the behavior, or of the group, including those that do not decide now
+  bool grouped;     // from `group_behavior`: members know each other
+  Workspace& work;  // scratch memory
 
   int w() const { return first_row / world.objects; }
   int row(int k) const { return first_row + objects[k]; }
 };
 
-/// What one object wants: a world-frame velocity, which its drive turns into controls, or controls.
+/// What an object wants: either a world-frame velocity, which its drive turns into controls, or controls.
 struct Intent {
   enum Kind { velocity_world, control_body } kind = velocity_world;
   Vec2 velocity;
   Turning turning;
   Vec3 control;
-  bool infeasible = false;  // no velocity avoided everything: this is the least bad
+  bool infeasible = false;  // whether no velocity avoids every collision; the intent is then the least bad one
 
   static Intent of_velocity(Vec2 v, const Turning& turning = {}) { return {velocity_world, v, turning, {}, false}; }
   static Intent of_control(Vec3 u) { return {control_body, {}, {}, u, false}; }

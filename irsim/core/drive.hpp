@@ -1,4 +1,4 @@
-// What every drive has to say about itself; each header in kinematics/ says it for one options struct, by overload.
+// What every drive defines. Each header in kinematics/ defines these functions for one options struct, by overload.
 //
 //   void    NAME(options, motion)        one period of motion (the function is named like the file)
 //   Vec3    deviation(options, control)  standard deviations of the motion noise
@@ -7,7 +7,7 @@
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
@@ -23,11 +23,11 @@ struct Motion {
 
 /// How sharply a drive that cannot move sideways turns toward a wanted velocity (reference: 5.4).
 struct Turning {
-  double min_speed = 0.02;         // slower wishes are a stop [m/s]
-  double tolerance = 0.1;          // heading errors that are left alone [rad]
-  double guarantee_time = 0.2;     // time in which an error should be gone [s]
-  double max_rate = 1.5;           // [rad/s]
-  double max_forward = kInfinity;  // no faster along the present heading [m/s]
+  double min_speed = 0.02;         // wanted velocities below this speed count as a stop [m/s]
+  double tolerance = 0.1;          // smaller heading errors are not corrected [rad]
+  double guarantee_time = 0.2;     // time in which a heading error is to be removed [s]
+  double max_rate = 1.5;           // largest turn rate [rad/s]
+  double max_forward = kInfinity;  // largest speed along the present heading [m/s]
 };
 
 /// A wanted world-frame velocity [m/s] and what a drive needs to know to realise it.
@@ -39,10 +39,10 @@ struct Wish {
   Turning turning;
 };
 
-/// Which components of a control are what.
+/// What the components of a control mean.
 struct Rows {
-  int travel;  // so many, the first, are translation: forward, then lateral speed
-  int yaw;     // the one that is a yaw rate, -1 none
+  int travel;  // number of leading components that are translation: forward, then lateral speed
+  int yaw;     // index of the component that is a yaw rate, -1 without one
 };
 
 template <class Options>
@@ -50,7 +50,7 @@ Vec3 constrain(const Options&, Vec3 control) {
   return control;
 }
 
-/// Body-frame translation of a holonomic drive.
+/// Translate by a body-frame velocity, and write the linear part of the twist.
 inline void translate(const Motion& m, Vec2 body_velocity) {
   const Vec2 v = rotate(body_velocity, m.direction);
   m.pose.x += v.x * m.dt;
@@ -58,7 +58,8 @@ inline void translate(const Motion& m, Vec2 body_velocity) {
   m.twist[0] = v.x, m.twist[1] = v.y;
 }
 
-/// Noise of a forward speed and a yaw (or steering) rate that grows with both (Thrun, Burgard, Fox 2005, 5.3).
+/// Standard deviations of forward speed and yaw (or steering) rate, which grow with both (Thrun, Burgard, Fox
+/// 2005, 5.3).
 template <class Alpha>
 Vec3 velocity_deviation(const Alpha& alpha, Vec3 u) {
   const double v2 = u[0] * u[0], w2 = u[1] * u[1];

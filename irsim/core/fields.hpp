@@ -1,4 +1,4 @@
-// How options structs name their fields. Bindings, comparison and the test against the Python models use the list.
+// How options structs list their fields: for the bindings, comparisons and the test against the Python models.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct Field {
   Value Owner::* member;
 };
 
-/// A field that Python writes as one of a few words; the enum counts them from 0 in this order.
+/// A field that Python gives as one of a few words; the enumerators have the same order, from 0.
 template <class Owner, class Enum, std::size_t N>
 struct Choice {
   const char* name;
@@ -33,13 +33,13 @@ constexpr Choice<Owner, Enum, sizeof...(Words)> choice(const char* name, Enum Ow
   return {name, member, {words...}};
 }
 
-/// Whether two options structs agree in every field.
+/// Whether two options structs are equal in every field.
 template <class Options>
 bool same(const Options& a, const Options& b) {
   return std::apply([&](const auto&... f) { return ((a.*(f.member) == b.*(f.member)) && ...); }, Options::fields());
 }
 
-/// Call `call` with the options a variant of features holds, if it holds any.
+/// Call `call` with the options that a variant of features holds; without options, do nothing.
 template <class Feature, class Call>
 void with(const Feature& feature, Call&& call) {
   std::visit(

@@ -1,38 +1,39 @@
 // The phases of one period of one world; `step` is their sequence.
 #pragma once
 
-#include "state.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 
 void decide(const World& world, State& state, int w, Workspace& work);
 void limit(const World& world, State& state, int w);
 void integrate(const World& world, State& state, int w);
-/// The bodies that overlap are pushed apart (`collision_mode: contact`).
+/// Push overlapping bodies apart (`collision_mode: contact`).
 void push_apart(const World& world, State& state, int w, Workspace& work);
 void finish(const World& world, State& state, int w);
 void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);
 void sense(const World& world, State& state, int w, Workspace& work);
 
-/// The geometry of the moving objects at their present poses.
+/// Place the geometry of the moving objects at their present poses.
 void place_moving(const World& world, State& state, int w);
-/// One period. `external`: the caller has moved the objects.
+/// One period. With `external` the caller has moved the objects already.
 void step(const World& world, State& state, int w, Workspace& work, bool external);
-/// Whether every robot of world w is stopped or has arrived; a world without robots never is done.
+/// Whether every robot of world w has stopped or arrived; always false for a world without robots.
 bool done(const World& world, const State& state, int w);
 
-/// The same for one object alone.
+/// The phases for a single object.
 void decide(const World& world, State& state, int w, Workspace& work, int object);
 void limit(const World& world, State& state, int w, int object);
 void integrate(const World& world, State& state, int w, int object);
-/// wander: a new random goal. loop: the initial goals again; a single goal alternates with the start.
-void renew(const World& world, State& state, int w, int object);
+/// Give a wandering object a new random goal and a looping one its initial goals; a single goal alternates with the
+/// start.
+void renew_goals(const World& world, State& state, int w, int object);
 /// Append the present pose of a row to its history.
 void remember(State& state, int row);
 
-/// The control of `object` that realises a world-frame velocity.
+/// The control with which `object` realises a world-frame velocity.
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning);
 
 }  // namespace irsim

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 #ifdef _MSC_VER
 #include <intrin.h>
 #endif
@@ -18,7 +18,7 @@ enum class Stream : std::uint64_t { placement, shape, goal, motion, sensor, beha
 constexpr std::array<const char*, 9> kStreamNames = {"placement", "shape",   "goal", "motion", "sensor",
                                                      "behavior",  "planner", "map",  "user"};
 
-/// The stream of the `index`-th sensor of an object.
+/// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {
   return static_cast<std::uint64_t>(Stream::sensor) + 16 * static_cast<std::uint64_t>(index);
 }
@@ -46,7 +46,7 @@ inline std::uint64_t multiply(std::uint64_t a, std::uint64_t b, std::uint64_t& h
 #endif
 }
 
-/// The block of a key and counter; numpy.random.Philox yields the same words (it counts before the first block).
+/// The block of a key and a counter. numpy.random.Philox yields the same words but increments its counter first.
 inline Block philox(Key key, Block counter) {
   for (int round = 0; round < 10; ++round) {
     std::uint64_t high0, high1;
@@ -59,7 +59,7 @@ inline Block philox(Key key, Block counter) {
   return counter;
 }
 
-/// The draws of one object in one stream. Each kind of draw has its own numbering: draw d sits in block d / 4.
+/// The draws of one object in one stream. Each kind of draw is numbered separately; draw d is in block d / 4.
 struct Draws {
   Key key;
   std::uint64_t stream, object;

@@ -1,13 +1,13 @@
-// What sensors read and write; each header in sensors/ defines, for one options struct,
+// What sensors read and write. Each header in sensors/ defines for one options struct:
 //
 //   void                 NAME(options, sensing)  one scan into sensing.ranges, hits, valid (and velocities)
 //   std::vector<double>  beams(options)          nominal beam angles, sensor frame
-//   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, else none
+//   int                  velocity_rows(options)  numbers per beam in sensing.velocities; optional, 0 by default
 #pragma once
 
-#include "state.hpp"
-#include "workspace.hpp"
-#include "world.hpp"
+#include "world/state.hpp"
+#include "world/workspace.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 
@@ -34,10 +34,10 @@ int velocity_rows(const Options&) {
   return 0;
 }
 
-/// One scan of one sensor of world w, its carrier at `pose`.
+/// Take one scan of a sensor of world w whose carrier is at `pose`.
 void scan(const World& world, State& state, int w, const Scan& sensor, const Pose& pose, Vec2 direction,
           Workspace& work);
-/// World-frame velocities of all objects of world w into `work.velocities`, where a sensor of the world needs them.
-void note_velocities(const World& world, const State& state, int w, Workspace& work);
+/// Write the world-frame velocities of all objects of world w to `work.velocities` if a sensor of the world needs them.
+void update_object_velocities(const World& world, const State& state, int w, Workspace& work);
 
 }  // namespace irsim

@@ -1,19 +1,19 @@
-// One period of one world. This page is the simulator; the rest is how.
+// One period of one world. This page is the simulator; all other files say how.
 #include "phases.hpp"
 
 namespace irsim {
 
 void step(const World& world, State& state, int w, Workspace& work, bool external) {
   if (!external) {
-    decide(world, state, w, work);  // goals renewed; behaviors -> wanted controls, all from one snapshot
+    decide(world, state, w, work);  // renew goals; behaviors -> wanted controls, all from the same snapshot
     limit(world, state, w);         // speed and acceleration limits -> executed controls
     integrate(world, state, w);     // kinematics, noise -> poses
     if (world.collision_mode == kContact) push_apart(world, state, w, work);
   }
-  finish(world, state, w);       // the step counts, the history grows
-  collide(world, state, w);      // broad phase, exact narrow phase, what the mode does about it
+  finish(world, state, w);       // count the step, extend the history
+  collide(world, state, w);      // broad phase, exact narrow phase, effects of the collision mode
   arrive(world, state, w);       // goals, waypoints
-  sense(world, state, w, work);  // lidars
+  sense(world, state, w, work);  // lidars, fog
 }
 
 bool done(const World& world, const State& state, int w) {

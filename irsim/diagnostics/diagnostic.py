@@ -67,7 +67,7 @@ class Diagnostic:
 
     def __post_init__(self) -> None:
         if self.code not in CODES:
-            raise ValueError(f"undocumented diagnostic code {self.code!r}: add it to irsim/diagnostics/codes.py")
+            raise ValueError(f"undocumented diagnostic code {self.code!r}: add it to irsim/diagnostics/codes/")
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON: stable keys, path as text."""

@@ -1,4 +1,4 @@
-"""Exceptions of irsim. Everything a user can mend derives from :class:`IrsimError` and says what to change."""
+"""Exceptions of irsim. Every error that a user can repair derives from :class:`IrsimError` and says how."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ArgumentError",
     "BehaviorError",
+    "CodedError",
     "IrsimError",
     "NotSimulatedError",
     "OverLimitError",
@@ -39,46 +40,62 @@ class ScenarioError(IrsimError, ValueError):
         super().__init__("\n" + format_diagnostics(self.diagnostics, source))
 
 
-class OverLimitError(IrsimError, ValueError):
-    """More work is asked for than the limits allow.
+class CodedError(IrsimError):
+    """An error with a code of the closed list; its text has code, message and fix.
 
     Attributes:
         code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is asked for and how much is allowed.
-        fix: What to ask for instead.
+        message: What is wrong, without the code.
+        fix: What to do instead, or None.
+        where: Argument that is wrong, or None.
     """
+
+    code: str
+    where: str | None = None
+
+    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
+        self.code, self.message, self.fix = code, message, fix
+        if where is not None:
+            self.where = where
+        super().__init__(self._text())
+
+    def _text(self) -> str:
+        return (
+            f"{self.code}: {_sentence(self.message)} Fix: {_sentence(self.fix)}"
+            if self.fix
+            else f"{self.code}: {self.message}"
+        )
+
+
+def _sentence(text: str) -> str:
+    return text if text.endswith((".", "?", "!")) else f"{text}."
+
+
+class OverLimitError(CodedError, ValueError):
+    """A request asks for more work than the limits allow."""
 
     code = "over-limit"
 
     def __init__(self, message: str, fix: str) -> None:
-        self.message, self.fix = message, fix
-        super().__init__(f"{self.code}: {message}. Fix: {fix}.")
+        super().__init__(self.code, message, fix)
 
 
-class ArgumentError(IrsimError, ValueError):
-    """Something was given to a function or a command that it cannot be.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to give instead.
-    """
+class ArgumentError(CodedError, ValueError):
+    """An argument of a function or a command has an invalid value."""
 
     code = "bad-argument"
 
     def __init__(self, message: str, fix: str) -> None:
-        self.message, self.fix = message, fix
-        super().__init__(f"{self.code}: {message}. Fix: {fix}.")
+        super().__init__(self.code, message, fix)
 
 
-class BehaviorError(IrsimError, ValueError):
-    """A behavior written in Python raised an error or returned something that is no control.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-    """
+class BehaviorError(CodedError, ValueError):
+    """A behavior or a drive written in Python raised an error or returned an invalid value."""
 
     code = "behavior-failed"
+
+    def __init__(self, message: str) -> None:
+        super().__init__(self.code, message.removeprefix(f"{self.code}: "))
 
 
 class NotSimulatedError(ScenarioError):
@@ -86,8 +103,8 @@ class NotSimulatedError(ScenarioError):
 
 
 class PlacementError(ScenarioError):
-    """Random placement found no room for an object."""
+    """Random placement found no free place for an object."""
 
 
 class ScenarioNotFoundError(IrsimError, FileNotFoundError):
-    """No scenario file of that name; the message names the places searched and near matches."""
+    """No scenario file has that name; the message names the places searched and near matches."""

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.objects.extensions.attach import attach_python
+from irsim.objects.views import make_view
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.random_streams import check_seed, fresh_seed
@@ -55,6 +56,7 @@ class Batch:
         self.scenario = scenario
         self.seeds = [check_seed(seed) for seed in seeds]
         self._simulation = Simulation(scenario, self.seeds, threads=threads)
+        self._simulation.make_view = make_view
         attach_python(self._simulation)
         simulation, n, objects = self._simulation, len(self.seeds), self._simulation.objects
         self.n = n

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
 from irsim.env.parameters import WorldView
-from irsim.objects.lifecycle import alone
-from irsim.objects.view import ObjectView, set_views
+from irsim.objects.lifecycle import alone, set_views
+from irsim.objects.view import ObjectView
 from irsim.scenario.model.scenario import Scenario, WorldModel
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from irsim.env.env_base import Env
 from irsim.env.parameters import WorldView
@@ -35,11 +36,9 @@ class EnvBase3D(Env):
     """An environment with ``projection="3d"``: objects stand on the ground of a view in space."""
 
     _world: World3D
+    _world_class = World3D
 
-    def _view_of_world(self, simulation: Simulation) -> World3D:
-        return World3D(simulation)
-
-    def _new_plot(self) -> EnvPlot:
+    def _make_plot(self, attach: Callable[[Any], None]) -> EnvPlot:
         from irsim.rendering.env_plot3d import EnvPlot3D
 
-        return EnvPlot3D(self, depth=self._world.depth, display=self.display, full=self.full, attach=self._attach)
+        return EnvPlot3D(self, depth=self._world.depth, display=self.display, full=self.full, attach=attach)

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import count
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from irsim.env import queries
 from irsim.env.construct import ObjectBase, ObjectGroup
 from irsim.objects.lifecycle import alone
-from irsim.objects.view import ObjectView, views
+from irsim.objects.view import ObjectView
+from irsim.objects.views import views
 from irsim.scenario.open import open_scenario, or_raise
 from irsim.scenario.read import read
 from irsim.simulation.active_env import last_used
 from irsim.simulation.occupancy import OCCUPIED
 from irsim.simulation.simulation import Simulation
-
-if TYPE_CHECKING:
-    from irsim.env import Env
 
 __all__ = ["EnvConfig", "ObjectFactory"]
 
@@ -145,14 +144,14 @@ class EnvConfig:
         env: Whose.
     """
 
-    def __init__(self, env: Env) -> None:
+    def __init__(self, env: Any) -> None:
         self._env = env
         self.object_factory = ObjectFactory(env._world)
 
     @property
     def parse(self) -> dict[str, Any]:
         """Sections of the file: ``world``, ``gui``, ``robot``, ``obstacle``, ``custom``; see ``env.config``."""
-        return self._env.config
+        return queries.config(self._env)
 
     @property
     def world_name(self) -> str:
@@ -163,7 +162,8 @@ class EnvConfig:
     @property
     def world_file_path(self) -> str | None:
         """Path of the file."""
-        return self._env.scenario.source
+        source: str | None = self._env.scenario.source
+        return source
 
     @property
     def logger(self) -> Any:
@@ -197,9 +197,9 @@ class EnvConfig:
     def reload_objects(self) -> list[ObjectView]:
         """Begin the next scene with the objects of the file; returns them."""
         self._env.reset(random=True)
-        return self._env.objects
+        return queries.objects(self._env)
 
     def reload_yaml_objects(self, world_name: str | None = None) -> list[ObjectView]:
         """Read the scenario again, or another one, and begin it; returns its objects."""
         self._env.reload(world_name)
-        return self._env.objects
+        return queries.objects(self._env)

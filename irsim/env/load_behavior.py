@@ -1,4 +1,4 @@
-"""What environments do with code of their users."""
+"""Behaviors that a module of a script registers."""
 
 from __future__ import annotations
 
@@ -6,33 +6,26 @@ import importlib
 import sys
 from pathlib import Path
 
-from irsim.common.log import Logger
+from irsim.env.state import EnvState
 from irsim.objects.extensions.behaviors import attach_python_behaviors
-from irsim.simulation.simulation import Simulation
 
-__all__ = ["EnvCustom"]
+__all__ = ["load_behavior"]
 
 
-class EnvCustom:
-    """Mixin of :class:`irsim.env.Env`."""
+def load_behavior(env: EnvState, behaviors: str = "behavior_methods") -> None:
+    """Import a module for the behaviors it registers; those that are classes are then constructed anew.
 
-    _simulation: Simulation
-    logger: Logger
+    A module is executed once per process, however often it is loaded. One that cannot be found is logged.
 
-    def load_behavior(self, behaviors: str = "behavior_methods") -> None:
-        """Import a module for the behaviors it registers; those that are classes are then constructed anew.
-
-        A module is executed once per process, however often it is loaded. One that cannot be found is logged.
-
-        Args:
-            behaviors: Name of a module beside the running script, or anywhere Python finds it.
-        """
-        folder = str(Path(sys.argv[0]).resolve().parent) if sys.argv and sys.argv[0] else str(Path.cwd())
-        if folder not in sys.path:
-            sys.path.append(folder)
-        try:
-            importlib.import_module(behaviors)
-        except ImportError as error:
-            self.logger.error(f"module {behaviors!r} could not be loaded: {error}")
-            return
-        attach_python_behaviors(self._simulation, anew=True)
+    Args:
+        behaviors: Name of a module beside the running script, or anywhere Python finds it.
+    """
+    folder = str(Path(sys.argv[0]).resolve().parent) if sys.argv and sys.argv[0] else str(Path.cwd())
+    if folder not in sys.path:
+        sys.path.append(folder)
+    try:
+        importlib.import_module(behaviors)
+    except ImportError as error:
+        env.logger.error(f"module {behaviors!r} could not be loaded: {error}")
+        return
+    attach_python_behaviors(env._simulation, anew=True)

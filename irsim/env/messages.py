@@ -6,51 +6,50 @@ from collections.abc import Sequence
 from typing import Any
 
 from irsim import msg
-from irsim.env.access import EnvAccess
-from irsim.msg.reading import numbers_of
+from irsim.env.queries import robot
+from irsim.env.state import EnvState
+from irsim.msg.messages import state_and_control
 
-__all__ = ["EnvMessages", "resolve_message_targets"]
+__all__ = ["get_msg", "receive_msg", "resolve_message_targets"]
 
 
-class EnvMessages(EnvAccess):
-    """``get_msg`` and ``receive_msg`` of an environment."""
+def get_msg(env: EnvState, use_inf: bool = False) -> msg.WorldState:
+    """Everything as it is now.
 
-    def get_msg(self, use_inf: bool = False) -> msg.WorldState:
-        """Everything as it is now.
+    Args:
+        use_inf: Ranges of beams that hit nothing are +inf, of hits nearer than ``range_min`` -inf.
+    """
+    return msg.WorldState.from_env(env, use_inf=use_inf)
 
-        Args:
-            use_inf: Ranges of beams that hit nothing are +inf, of hits nearer than ``range_min`` -inf.
-        """
-        return msg.WorldState.from_env(self, use_inf=use_inf)
 
-    def receive_msg(
-        self, msg: Any, *, object_name: str | None = None, object_id: int | None = None, refresh: bool = True
-    ) -> int:
-        """Put objects where a message says they are, moving as it says.
+def receive_msg(
+    env: EnvState, msg: Any, *, object_name: str | None = None, object_id: int | None = None, refresh: bool = True
+) -> int:
+    """Put objects where a message says they are, moving as it says.
 
-        Args:
-            msg: A ``WorldState``, an ``ObjectState``, or odometry: anything with ``pose.pose`` and ``twist.twist``, a
-                native ROS message too.
-            object_name: Whose state it is; default: the name and id in the message, for odometry the first robot.
-            object_id: The same by id.
-            refresh: Then evaluate collisions and sensors anew.
+    Args:
+        msg: A ``WorldState``, an ``ObjectState``, or odometry: anything with ``pose.pose`` and ``twist.twist``, a
+            native ROS message too.
+        object_name: Whose state it is; default: the name and id in the message, for odometry the first robot.
+        object_id: The same by id.
+        refresh: Then evaluate collisions and sensors anew.
 
-        Returns:
-            How many objects were put.
+    Returns:
+        How many objects were put.
 
-        Raises:
-            ValueError: No such object, or numbers that are not finite; nothing has been changed then.
-            TypeError: Not such a message.
-        """
-        pairs = resolve_message_targets(self._objects, msg, object_name, object_id, default_target=lambda: self.robot)
-        changes = [(view, *numbers_of(view, odometry)) for view, odometry in pairs]
-        for view, state, velocity in changes:
-            view.set_state(state)
-            if velocity is not None:
-                view.set_velocity(velocity)
-        if refresh:
-            self._simulation.refresh()
-        return len(changes)
+    Raises:
+        ValueError: No such object, or numbers that are not finite; nothing has been changed then.
+        TypeError: Not such a message.
+    """
+    pairs = resolve_message_targets(env._objects, msg, object_name, object_id, default_target=lambda: robot(env))
+    changes = [(view, *state_and_control(view, odometry)) for view, odometry in pairs]
+    for view, state, velocity in changes:
+        view.set_state(state)
+        if velocity is not None:
+            view.set_velocity(velocity)
+    if refresh:
+        env._simulation.refresh()
+    return len(changes)
 
 
 def resolve_message_targets(

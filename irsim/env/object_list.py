@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
-if TYPE_CHECKING:
-    from irsim.env.objects import EnvObjects
-    from irsim.objects.view import ObjectView
+from irsim.env.objects import add_objects, delete_objects
+from irsim.env.state import EnvState
+from irsim.objects.view import ObjectView
 
 __all__ = ["ObjectList"]
 
 
-class ObjectList(list["ObjectView"]):
+class ObjectList(list[ObjectView]):
     """All objects of an environment now; ``append`` and ``remove`` are ``env.add_object`` and ``env.delete_object``.
 
     Args:
         env: The environment.
-        objects: Its objects.
     """
 
-    def __init__(self, env: EnvObjects, objects: Iterable[ObjectView]) -> None:
-        super().__init__(objects)
+    def __init__(self, env: EnvState) -> None:
+        super().__init__(env._objects)
         self._env = env
 
     def _look(self) -> None:
@@ -33,7 +32,7 @@ class ObjectList(list["ObjectView"]):
 
     def extend(self, objs: Iterable[ObjectView]) -> None:
         """Put objects into the world; all or none."""
-        self._env.add_objects(objs)
+        add_objects(self._env, objs)
         self._look()
 
     def __iadd__(self, objs: Iterable[ObjectView]) -> ObjectList:  # type: ignore[misc,override]
@@ -60,7 +59,7 @@ class ObjectList(list["ObjectView"]):
 
     def __delitem__(self, index: Any) -> None:
         chosen = self[index] if isinstance(index, slice) else [self[index]]
-        self._env.delete_objects([view.id for view in chosen])
+        delete_objects(self._env, [view.id for view in chosen])
         self._look()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:

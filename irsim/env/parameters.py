@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.objects.geometry import column
+from irsim.objects.base import column
 from irsim.objects.obstacle_map import grid_values
 from irsim.objects.setters import refuse
 from irsim.simulation.active_env import last_used

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from irsim.objects.lifecycle import alone
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.options.registry import SENSORS
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read

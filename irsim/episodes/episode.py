@@ -1,4 +1,4 @@
-"""One episode: from a scenario to an environment, how long it goes on, and letting time pass."""
+"""One episode: read its scenario, choose its seed and horizon, and advance its environment."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, Edit, format_path
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.env import Env
-from irsim.results.results import Edit as EditRecord
-from irsim.results.results import Finding, HorizonSource
+from irsim.results.findings import Edit as EditRecord
+from irsim.results.findings import Finding
+from irsim.results.run import HorizonSource
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.locate import locate
 from irsim.scenario.open import or_raise
@@ -28,7 +29,7 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
 if TYPE_CHECKING:
-    from irsim.runs.recorder import Recorder
+    from irsim.simulation.episode_recorder import EpisodeRecorder
 
 __all__ = [
     "HORIZON_FACTOR",
@@ -45,23 +46,29 @@ __all__ = [
 ]
 
 Progress = Callable[[int, int], None]
-"""Told (steps done, steps at most) now and then."""
+"""Callback ``(steps_done, steps_total)``, called every few steps."""
 
 MIN_HORIZON = 30.0
+"""Shortest default time limit of an episode [s]."""
 HORIZON_FACTOR = 4.0
+"""The default time limit is this many times the time of the longest straight route at top speed."""
 _CHUNK_STEPS = 50
-_LONGEST_GIVEN = 200
+"""Number of steps between two calls of the progress callback."""
+_MAX_GIVEN_LENGTH = 200
+"""Number of characters of the JSON of a wrong value that a finding keeps."""
 
 
 def import_modules(names: Iterable[str]) -> None:
-    """Import user modules (from the current directory too), for what they register.
+    """Import user modules (also from the current directory), so that they register their behaviors.
 
     Raises:
-        ImportError: With the module's name.
-        ArgumentError: A name instead of a list.
+        ImportError: A module cannot be imported; the error has its name.
+        ArgumentError: ``names`` is a string instead of a list.
     """
     if isinstance(names, str):
-        raise ArgumentError(f"imports is {as_given(names)}", f"give a list: imports=[{as_given(names)}]")
+        raise ArgumentError(
+            f"imports must be a list, got {as_given(names)}", f"give a list: imports=[{as_given(names)}]"
+        )
     for name in names:
         if "" not in sys.path and str(Path.cwd()) not in sys.path:
             sys.path.insert(0, str(Path.cwd()))
@@ -76,19 +83,22 @@ def read_scenario(
     limits: Limits | None = None,
     behavior: str | None = None,
 ) -> tuple[ResolvedScenario, list[Finding]]:
-    """A scenario ready to build, with what is odd about it; from a file or a text.
+    """Read a scenario from a file or a text.
 
     Args:
-        path: The file.
-        text: Or the text.
+        path: Path of the file.
+        text: Text of the scenario, instead of ``path``.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader.
         behavior: Replaces every robot's own behavior; see :func:`irsim.scenario.behavior_override.parse_behavior`.
 
+    Returns:
+        The scenario, ready to build, and the warnings and hints about it.
+
     Raises:
-        ScenarioError: It cannot be used.
-        BenchmarkError: There is no such behavior.
-        ValueError: Neither or both of ``path`` and ``text``.
+        ScenarioError: The scenario has errors.
+        BenchmarkError: ``behavior`` is not a valid behavior.
+        ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     source = source_of(path, text, limits)
     if behavior is not None:
@@ -106,14 +116,14 @@ def read_scenario(
         except BenchmarkError as error:
             error.where = "behavior"
             raise
-        scenario.text = document.text  # what was given, for the record of a run
+        scenario.text = document.text  # a recorded run keeps the text of the user, not the one with the other behavior
         return scenario, [as_finding(d) for d in diagnostics]
     scenario, diagnostics = or_raise(read(source, strict=strict, limits=limits or DEFAULT_LIMITS))
     return scenario, [as_finding(d) for d in diagnostics]
 
 
 def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
-    """The seed to run with: the one given, the scenario's, 0 where it decides nothing; else None, one is drawn."""
+    """The given seed, else that of the scenario, else 0 if nothing is random; None if a seed must be drawn."""
     chosen = scenario.world.seed if seed is None else seed
     return 0 if chosen is None and not random_parts(scenario) else chosen
 
@@ -130,28 +140,31 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
 
 
 def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:
-    """What to read: a file found by its name, or a text.
+    """The path of a scenario file, found by its name, or the document of a text.
 
     Raises:
-        ScenarioNotFoundError: No such file.
-        ValueError: Neither or both are given.
-        ArgumentError: It is no path, or no text.
+        ScenarioNotFoundError: There is no such file.
+        ValueError: Neither or both of ``path`` and ``text`` are given.
+        ArgumentError: ``path`` is not a path, or ``text`` is not a string.
     """
     if (path is None) == (text is None):
         raise ValueError("give either a path or a text")
     if path is not None:
         if not isinstance(path, (str, os.PathLike)):
-            raise ArgumentError(f"the path is {as_given(path)}", "give the path of a file, or its content as text")
+            raise ArgumentError(
+                f"path must be the path of a file, got {as_given(path)}",
+                "give the path of a file, or its content as text",
+            )
         return locate(path)
     given: Any = text
     if not isinstance(given, str):
         fix = "decode it: text.decode()" if isinstance(given, bytes) else "give the YAML text of a scenario"
-        raise ArgumentError(f"the text is {as_given(given)}", fix)
+        raise ArgumentError(f"text must be a string, got {as_given(given)}", fix)
     return load_text(given, limits=limits or DEFAULT_LIMITS)
 
 
 def as_finding(diagnostic: Diagnostic) -> Finding:
-    """A diagnostic as part of a result."""
+    """Convert a diagnostic to a finding, as results have it."""
     allowed = diagnostic.allowed
     return Finding(
         code=diagnostic.code,
@@ -170,27 +183,29 @@ def as_finding(diagnostic: Diagnostic) -> Finding:
 
 
 def _short(given: Any) -> Any:
-    """A value as written; the beginning of its JSON where that is long."""
+    """A value as written, or the beginning of its JSON if that is long."""
     try:
         text = json.dumps(given, default=str)
-    except (ValueError, RecursionError):  # it holds itself
+    except (ValueError, RecursionError):  # the value contains itself
         return clean(type(given).__name__)
-    return given if len(text) <= _LONGEST_GIVEN else clean(text, _LONGEST_GIVEN)
+    return given if len(text) <= _MAX_GIVEN_LENGTH else clean(text, _MAX_GIVEN_LENGTH)
 
 
 def _edit(edit: Edit | None) -> EditRecord | None:
-    """Only what is safe to do is offered."""
+    """The edit of a finding; None for an edit that could change what the scenario means."""
     if edit is None or not edit.safe:
         return None
     return EditRecord(action=edit.action, path=format_path(edit.path), value=edit.value)
 
 
 def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: Limits) -> tuple[int, HorizonSource]:
-    """Steps at most, and who says so. What is asked for must be within the limits, what is derived is cut to them.
+    """Greatest number of steps of an episode, and what determines it.
+
+    A horizon that is derived from the scenario is cut to the limits; one that was asked for must be within them.
 
     Raises:
-        OverLimitError: More is asked for.
-        ArgumentError: The steps are no whole number, or negative.
+        OverLimitError: ``steps`` exceeds the limits.
+        ArgumentError: ``steps`` is not a whole number, or negative.
     """
     most, what = _most_steps(len(scenario.objects), limits)
     if steps is not None:
@@ -207,7 +222,7 @@ def horizon_of(scenario: ResolvedScenario, env: Env, steps: int | None, limits: 
 
 
 def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
-    """Most steps of one run, and the limit behind it in words."""
+    """Greatest number of steps that the limits allow in one run, and the reason in words."""
     bounds: list[tuple[int, str]] = []
     if limits.steps is not None:
         bounds.append((limits.steps, f"{limits.steps:,} are run at once"))
@@ -218,9 +233,17 @@ def _most_steps(objects: int, limits: Limits) -> tuple[int | None, str]:
 
 
 def advance(
-    env: Env, steps: int, progress: Progress | None, *, until_done: bool = True, recorder: Recorder | None = None
+    env: Env, steps: int, progress: Progress | None, *, until_done: bool = True, recorder: EpisodeRecorder | None = None
 ) -> None:
-    """Let time pass, by default until every robot has arrived or stopped; a recorder keeps what happens."""
+    """Advance an environment, by default until every robot has arrived or stopped.
+
+    Args:
+        env: The environment.
+        steps: Greatest number of steps.
+        progress: Callback ``(steps_done, steps_total)``.
+        until_done: End as soon as every robot has arrived or stopped.
+        recorder: Records the steps.
+    """
     done = 0
     while done < steps and not (until_done and env.done()):
         done += max(1, env.advance(min(_CHUNK_STEPS, steps - done), until_done=until_done, recorder=recorder))

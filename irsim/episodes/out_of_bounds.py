@@ -1,4 +1,4 @@
-"""Who leaves the world: nothing stops at its edge, unless walls stand there."""
+"""Objects that leave the world, whose edge stops nothing unless ``world.boundary`` is ``walls``."""
 
 from __future__ import annotations
 
@@ -8,28 +8,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.common.text import clean, seconds
-from irsim.results.results import Left
+from irsim.common.text import quoted, seconds
+from irsim.results.run import Left
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["MOST_LEFT", "left_told", "left_world"]
+__all__ = ["MAX_LISTED_EXITS", "exits_message", "find_exits"]
 
-MOST_LEFT = 10
-"""Listed one by one."""
-_LONGEST_NAME = 40
+MAX_LISTED_EXITS = 10
+"""Number of exits that a result lists one by one."""
 
 Floats = NDArray[np.float64]
 
 
-def left_world(scenario: ResolvedScenario, track: Callable[[int], Floats], steps: int) -> list[Left]:
-    """Moving objects that were in the world at the start and whose position left it, in order of time.
+def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps: int) -> list[Left]:
+    """Find moving objects that start in the world and leave it, in order of time.
 
     Args:
-        scenario: Whose objects.
-        track: Positions (K, >= 2) of the object of a row, world frame, one per step up to the end of the run [m].
-        steps: Executed until then.
+        scenario: The scenario that was simulated.
+        track: Row of an object -> its (K, >= 2) positions [m], world frame, one per step up to the end of the run.
+        steps: Number of steps executed by the end of the run.
     """
     found = []
     x, y, right, top = scenario.world.bounds
@@ -47,12 +46,12 @@ def left_world(scenario: ResolvedScenario, track: Callable[[int], Floats], steps
     return sorted(found, key=lambda item: item.time)
 
 
-def left_told(scenario: ResolvedScenario, left: Sequence[Left]) -> str | None:
-    """Who left the world, in words, and what would keep it in; None if nobody did."""
+def exits_message(scenario: ResolvedScenario, left: Sequence[Left]) -> str | None:
+    """Which object left the world first, and what would keep it in; None if none did."""
     if not left:
         return None
     first, others = left[0], len(left) - 1
     more = f" and {others} more after it" if others else ""
     open_edge = scenario.world.boundary == "none"
     advice = f" ('world.boundary: walls' would keep {'them' if others else 'it'} in)" if open_edge else ""
-    return f"'{clean(first.name, _LONGEST_NAME)}' left the world at {seconds(first.time)}{more}{advice}"
+    return f"{quoted(first.name)} left the world at {seconds(first.time)}{more}{advice}"

@@ -1,4 +1,4 @@
-"""What a scenario holds, counted and in words: ``2 robots, 6 obstacles and the boundary``."""
+"""Summary of a scene in numbers and words: ``2 robots, 6 obstacles and the boundary``."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from irsim.scenario.resolve.resolved import ResolvedScenario
 __all__ = ["MAP_OR_WALLS", "counts_of", "in_words"]
 
 MAP_OR_WALLS = (MapCells, Walls)
-"""Shapes of objects that no entry made."""
+"""Shapes of objects that ``world`` options create, not an entry under ``robot`` or ``obstacle``."""
 
 
 def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
-    """How many ``robots``, ``obstacles`` (those of entries) and ``sensors`` there are.
+    """Numbers of ``robots``, ``obstacles`` (without map and boundary walls) and ``sensors``.
 
-    Where there is one also ``boundary`` (1) for walls round the world, and of a map ``map_columns``, ``map_rows`` and
-    ``map_occupied``, cells that are occupied; the latter only if they are the same with every seed.
+    With boundary walls there is also ``boundary`` (1), and with a map ``map_columns``, ``map_rows`` and
+    ``map_occupied``, the number of occupied cells; the last only if it is the same for every seed.
     """
     robots = len(scenario.robots())
     scenery = [record for record in scenario.objects if isinstance(record.shape, MAP_OR_WALLS)]
@@ -34,7 +34,7 @@ def counts_of(scenario: ResolvedScenario) -> dict[str, int]:
 
 
 def in_words(counts: dict[str, int], *, robots: bool = True, sensors: bool = True) -> str:
-    """The counts as one would say them: ``1 robot, no obstacles, a map of 125 x 125 cells (25 % occupied)``.
+    """The counts in words: ``1 robot, no obstacles, a map of 125 x 125 cells (25 % occupied)``.
 
     Args:
         counts: From :func:`counts_of`.
@@ -42,19 +42,19 @@ def in_words(counts: dict[str, int], *, robots: bool = True, sensors: bool = Tru
         sensors: Name the sensors.
     """
     walls = " and the boundary" if "boundary" in counts else ""
-    parts = [_some(counts["robots"], "robot")] if robots else []
-    parts.append(_some(counts["obstacles"], "obstacle") + walls)
+    parts = [_count_of(counts["robots"], "robot")] if robots else []
+    parts.append(_count_of(counts["obstacles"], "obstacle") + walls)
     if "map_columns" in counts:
         columns, rows = counts["map_columns"], counts["map_rows"]
         occupied = counts.get("map_occupied")
         share = "" if occupied is None else f" ({_percent(occupied, columns * rows)} occupied)"
         parts.append(f"a map of {columns} x {rows} cells{share}")
     if sensors and counts["sensors"]:
-        parts.append(_some(counts["sensors"], "sensor"))
+        parts.append(_count_of(counts["sensors"], "sensor"))
     return ", ".join(parts)
 
 
-def _some(count: int, noun: str) -> str:
+def _count_of(count: int, noun: str) -> str:
     return f"{count or 'no'} {noun}{'s' * (count != 1)}"
 
 

@@ -1,1 +1,1 @@
-"""The laws of the engine as functions of NumPy arrays."""
+"""Motion and avoidance laws as functions of NumPy arrays; most of them call the core."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,10 +19,7 @@ from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.build import build_world
 
-if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
-
-__all__ = ["Agent", "behavior_options", "dash", "decide", "decide_among"]
+__all__ = ["Agent", "behavior_options", "dash", "decide"]
 
 Floats = NDArray[np.float64]
 PADDING = 0.1
@@ -31,7 +28,6 @@ _FAR = 100.0
 _SMALLEST = 1e-9
 _STEP_TIME = 0.1
 _TOLERANCE = 0.1
-_GROUP = -1
 
 
 @cache
@@ -175,56 +171,3 @@ def dash(
     made = core.State(world, np.zeros(1, dtype=np.uint64), False)
     core.decide_row(world, made, 0)
     return made.command[0, : len(top), None].copy()
-
-
-def decide_among(
-    deciding: Sequence[ObjectView], others: Sequence[ObjectView], options: BaseModel, *, grouped: bool = False
-) -> list[Floats]:
-    """Controls, (vel_dim, 1) each, that a behavior chooses for objects if there were no others but these.
-
-    Args:
-        deciding: Objects of one simulation.
-        others: What they see besides each other.
-        options: Of the behavior.
-        grouped: They are one group.
-    """
-    simulation = deciding[0]._simulation
-    own, common = (None, options) if grouped else (options, None)
-    records = [
-        replace(
-            view.record,
-            group=_GROUP,
-            joined=grouped,
-            wander=False,
-            target_roles="all",
-            behavior=own,
-            group_behavior=common,
-        )
-        for view in deciding
-    ]
-    records += [replace(v.record, joined=False, behavior=None, group_behavior=None) for v in others]
-    shown = [*deciding, *others]
-    world = build_world(replace(simulation.scenario, objects=records, placements=[]))
-    if simulation.copies == 1:
-        state = core.State(world, simulation.state, [(view._simulation.state, view.row) for view in shown])
-    else:
-        state = core.State(world, simulation.state.seed[:1], False)
-        for row, view in enumerate(shown):
-            state.pose[row], state.control[row] = simulation.pose[view.row], simulation.control[view.row]
-            state.extra[row, : view.state_dim - 3] = simulation.extra[view.row, : view.state_dim - 3]
-            state.set_goals(row, simulation.state.goals(view.row), False)
-            state.moved(row)
-    controls = []
-    for row, view in enumerate(deciding):
-        core.decide_row(world, state, row)
-        controls.append(_control(view, state.command[row].copy()))
-    return controls
-
-
-def _control(view: ObjectView, command: Floats) -> Floats:
-    handler = view._handler
-    if handler is None:
-        return command[: view.vel_dim, None]
-    from irsim.objects.extensions.drives import control_from
-
-    return control_from(handler, np.array(view.state), command[:2, None])[:, None]

@@ -1,4 +1,4 @@
-"""One period of each drive, for columns of NumPy; the engine computes it."""
+"""Motion of each drive over one period, for NumPy columns; the core computes it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.functions._random import current_rng
+from irsim.simulation.active_env import current_rng
 
 __all__ = [
     "ackermann_kinematics",
@@ -20,30 +20,32 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-_ALPHA = [0.03, 0.0, 0.0, 0.03]
+_DEFAULT_ALPHA = [0.03, 0.0, 0.0, 0.03]
+"""Default noise coefficients of differential and Ackermann drives."""
 
 
 def differential_kinematics(
     state: Floats, velocity: Floats, step_time: float, noise: bool = False, alpha: Sequence[float] | None = None
 ) -> Floats:
-    """Move a differential drive.
+    """Move a differential drive by one period.
 
     Args:
-        state: (3 or more, 1) x, y [m], heading [rad]; surplus rows are ignored.
+        state: (3 or more, 1) x, y [m], heading [rad]; further rows are ignored.
         velocity: (2 or more, 1) forward speed [m/s], yaw rate [rad/s].
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
-        alpha: Four coefficients of its variances.
+        alpha: Four coefficients of the variances of the noise.
 
     Returns:
-        (3, 1) the next state, heading in [-pi, pi).
+        (3, 1) next state, heading in [-pi, pi).
 
     Raises:
-        TypeError: Not arrays. ValueError: Too few rows.
+        TypeError: An argument is not an array.
+        ValueError: An array has too few rows.
     """
     _check(state=(state, 3), velocity=(velocity, 2))
-    drive = core.DiffOptions(noise=False, alpha=_alpha(alpha, _ALPHA, noise))
-    return _moved(drive, state[:3], velocity[:2], step_time, noise)
+    drive = core.DiffOptions(noise=False, alpha=_alpha(alpha, _DEFAULT_ALPHA, noise))
+    return _move(drive, state[:3], velocity[:2], step_time, noise)
 
 
 def ackermann_kinematics(
@@ -55,96 +57,99 @@ def ackermann_kinematics(
     mode: str = "steer",
     wheelbase: float = 1,
 ) -> Floats:
-    """Move a car.
+    """Move a car-like (Ackermann) drive by one period.
 
     Args:
         state: (4 or more, 1) x, y [m] of the rear axle, heading [rad], steering angle [rad].
         velocity: (2 or more, 1) forward speed [m/s] and steering angle [rad], or its rate [rad/s].
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
-        alpha: Four coefficients of its variances.
-        mode: ``steer``: the second control is the angle; ``angular``: its rate.
-        wheelbase: Distance of the axles [m].
+        alpha: Four coefficients of the variances of the noise.
+        mode: ``steer`` takes a steering angle as the second control, ``angular`` its rate.
+        wheelbase: Distance between the axles [m].
 
     Returns:
-        (4, 1) the next state.
+        (4, 1) next state.
 
     Raises:
-        TypeError: Not arrays. ValueError: Too few rows, or an unknown mode.
+        TypeError: An argument is not an array.
+        ValueError: An array has too few rows, or the mode is unknown.
     """
     _check(state=(state, 4), velocity=(velocity, 2))
     if mode not in ("steer", "angular"):
         raise ValueError(f"unknown mode {mode!r}: choose steer or angular")
-    coefficients = _alpha(alpha, _ALPHA, noise)
+    coefficients = _alpha(alpha, _DEFAULT_ALPHA, noise)
     drive = core.AckerOptions(
         noise=False, alpha=coefficients, mode=mode, wheelbase=float(wheelbase), psi_max=float("inf")
     )
-    return _moved(drive, state[:4], velocity[:2], step_time, noise)
+    return _move(drive, state[:4], velocity[:2], step_time, noise)
 
 
 def omni_kinematics(
     state: Floats, velocity: Floats, step_time: float, noise: bool = False, alpha: Sequence[float] | None = None
 ) -> Floats:
-    """Move a holonomic drive of fixed heading.
+    """Move a holonomic drive with a fixed heading by one period.
 
     Args:
         state: (3 or more, 1) x, y [m], heading [rad].
         velocity: (2 or more, 1) forward and lateral speed [m/s], body frame.
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
-        alpha: Two variances.
+        alpha: Variance of the noise of each of the two velocities.
 
     Returns:
-        (3, 1) the next state.
+        (3, 1) next state.
 
     Raises:
-        TypeError: Not arrays. ValueError: Too few rows.
+        TypeError: An argument is not an array.
+        ValueError: An array has too few rows.
     """
     _check(state=(state, 3), velocity=(velocity, 2))
     drive = core.OmniOptions(noise=False, alpha=_alpha(alpha, [0.03] * 2, noise))
-    return _moved(drive, state[:3], velocity[:2], step_time, noise)
+    return _move(drive, state[:3], velocity[:2], step_time, noise)
 
 
 def omni_angular_kinematics(
     state: Floats, velocity: Floats, step_time: float, noise: bool = False, alpha: Sequence[float] | None = None
 ) -> Floats:
-    """Move a holonomic drive that turns, too.
+    """Move a holonomic drive that can also turn by one period.
 
     Args:
         state: (3 or more, 1) x, y [m], heading [rad].
         velocity: (3 or more, 1) forward and lateral speed [m/s], body frame, and yaw rate [rad/s].
         step_time: Period [s].
         noise: Add Gaussian noise to the velocity.
-        alpha: Three variances.
+        alpha: Variance of the noise of each of the three velocities.
 
     Returns:
-        (3, 1) the next state.
+        (3, 1) next state.
 
     Raises:
-        TypeError: Not arrays. ValueError: Too few rows.
+        TypeError: An argument is not an array.
+        ValueError: An array has too few rows.
     """
     _check(state=(state, 3), velocity=(velocity, 3))
     drive = core.OmniAngularOptions(noise=False, alpha=_alpha(alpha, [0.03] * 3, noise))
-    return _moved(drive, state[:3], velocity[:3], step_time, noise)
+    return _move(drive, state[:3], velocity[:3], step_time, noise)
 
 
 def _check(**arrays: tuple[Any, int]) -> None:
     for name, (array, rows) in arrays.items():
         if not isinstance(array, np.ndarray):
-            raise TypeError(f"{name} is an array, not {type(array).__name__}")
+            raise TypeError(f"{name} must be an array, got {type(array).__name__}")
         if array.shape[0] < rows:
-            raise ValueError(f"{name} has at least {rows} rows, not {array.shape[0]}")
+            raise ValueError(f"{name} must have at least {rows} rows, got {array.shape[0]}")
 
 
 def _alpha(given: Sequence[float] | None, default: list[float], noise: bool) -> list[float]:
     if given is None or not noise:
         return default
     if len(given) < len(default):
-        raise ValueError(f"alpha has at least {len(default)} numbers when there is noise, not {len(given)}")
+        raise ValueError(f"with noise, alpha must have at least {len(default)} numbers, got {len(given)}")
     return [float(value) for value in given[: len(default)]]
 
 
-def _moved(drive: Any, state: Floats, velocity: Floats, step_time: float, noise: bool) -> Floats:
+def _move(drive: Any, state: Floats, velocity: Floats, step_time: float, noise: bool) -> Floats:
     control = np.asarray(velocity, dtype=np.float64).reshape(-1)
     if noise:
         sigma = np.array(core.drive_deviation(drive, control.tolist()))[: control.size]
@@ -160,4 +165,4 @@ kinematics_factory: dict[str, Any] = {
     "acker": ackermann_kinematics,
     "omni": omni_kinematics,
 }
-"""Drive -> its function."""
+"""Name of a drive -> its function."""

@@ -1,4 +1,4 @@
-"""Angles, velocities and frames, as scripts of IR-SIM call them."""
+"""Angles, distances, velocities and frames, with the function names of IR-SIM 2.12."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from irsim.common.angles import FULL_TURN, wrap
 
 __all__ = [
     "ClipTo2Pi",
@@ -29,7 +31,6 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
-_TURN = 2 * math.pi
 
 
 def _flat(values: Any) -> Floats:
@@ -37,49 +38,52 @@ def _flat(values: Any) -> Floats:
 
 
 def WrapToPi(rad: float, positive: bool = False) -> float:
-    """An angle in [-pi, pi); ``positive``: its absolute value. What is not finite becomes 0."""
+    """Wrap an angle to [-pi, pi); ``positive`` returns its absolute value. A value that is not finite becomes 0."""
     if not math.isfinite(rad):
         return 0.0
-    wrapped = (float(rad) + math.pi) % _TURN - math.pi
+    wrapped = wrap(float(rad))
     return abs(wrapped) if positive else wrapped
 
 
 def WrapTo2Pi(rad: float) -> float:
-    """An angle in [0, 2 pi). What is not finite becomes 0."""
-    return float(rad) % _TURN if math.isfinite(rad) else 0.0
+    """Wrap an angle to [0, 2 pi). A value that is not finite becomes 0."""
+    return wrap(float(rad), 0.0) if math.isfinite(rad) else 0.0
 
 
 def ClipTo2Pi(rad: float) -> float:
-    """A number cut to [0, 2 pi]. NaN becomes 0."""
-    return 0.0 if math.isnan(rad) else min(max(float(rad), 0.0), _TURN)
+    """Clip a number to [0, 2 pi]. NaN becomes 0."""
+    return 0.0 if math.isnan(rad) else min(max(float(rad), 0.0), FULL_TURN)
 
 
 def WrapToRegion(rad: float, range: list[float]) -> float:
-    """An angle in an interval of one turn.
+    """Wrap an angle to an interval whose width is one full turn.
 
     Raises:
-        AssertionError: ``range`` is not one turn wide.
+        AssertionError: The width of ``range`` is not 2 pi.
     """
     low, high = range
-    assert math.isclose(high - low, _TURN), f"an interval of angles is 2 pi wide, not {high - low}"
-    return (float(rad) - low) % _TURN + low
+    assert math.isclose(high - low, FULL_TURN), f"an interval of angles must be 2 pi wide, got {high - low}"
+    return wrap(float(rad), low)
 
 
 def relative_position(position1: Any, position2: Any, topi: bool = True) -> tuple[float, float]:
-    """Distance [m] and bearing [rad] of the second point from the first; ``topi``: in [-pi, pi)."""
+    """Return distance [m] and bearing [rad] of the second point as seen from the first.
+
+    ``topi`` wraps the bearing to [-pi, pi); without it, pi itself is possible.
+    """
     dx, dy = (_flat(position2)[:2] - _flat(position1)[:2]).tolist()
     bearing = math.atan2(dy, dx)
     return math.hypot(dx, dy), WrapToPi(bearing) if topi else bearing
 
 
 def distance(point1: Any, point2: Any) -> float:
-    """Distance of two points in the plane [m]."""
+    """Return the distance between two points in the plane [m]."""
     a, b = _flat(point1), _flat(point2)
     return math.hypot(a[0] - b[0], a[1] - b[1])
 
 
 def dist_hypot(x1: float, y1: float, x2: float, y2: float) -> float:
-    """Distance of two points in the plane [m]."""
+    """Return the distance between two points in the plane, given by their coordinates [m]."""
     return math.hypot(x1 - x2, y1 - y2)
 
 
@@ -91,15 +95,17 @@ def vel_world2diff(
     tolerance: float = 0.1,
     mini_speed: float = 0.02,
 ) -> Floats:
-    """The control with which a differential drive follows a world velocity: turn to it, go as far as it points ahead.
+    """Return the control with which a differential drive follows a world-frame velocity.
+
+    The drive turns towards the velocity and moves with its forward component, never backwards.
 
     Args:
         state_ori: Heading [rad].
         vel_omni: vx, vy [m/s], world frame.
         w_max: Highest yaw rate [rad/s].
-        guarantee_time: The turn is planned to take this long [s].
-        tolerance: Turns smaller than this [rad] are left out.
-        mini_speed: Slower than this [m/s] counts as standing.
+        guarantee_time: Time that the turn takes unless ``w_max`` limits it [s].
+        tolerance: Smaller differences of heading [rad] are ignored.
+        mini_speed: A lower wanted speed [m/s] gives a control of zero.
 
     Returns:
         (2, 1) forward speed [m/s] and yaw rate [rad/s].
@@ -117,7 +123,7 @@ omni_to_diff = vel_world2diff
 
 
 def vel_diff2world(state_ori: float, vel_diff: Any) -> Floats:
-    """(2, 1) world velocity [m/s] of a forward speed at a heading [rad]."""
+    """Return the (2, 1) world-frame velocity [m/s] of a forward speed at a heading [rad]."""
     speed = float(_flat(vel_diff)[0])
     return np.array([[speed * math.cos(state_ori)], [speed * math.sin(state_ori)]])
 
@@ -126,12 +132,12 @@ diff_to_omni = vel_diff2world
 
 
 def vel_world2omni(state_ori: float, vel_world: Any) -> Floats:
-    """(2, 1) forward and lateral velocity [m/s] of a world velocity at a heading [rad]."""
+    """Return the (2, 1) forward and lateral velocity [m/s] of a world-frame velocity at a heading [rad]."""
     return _rotation(-state_ori) @ _flat(vel_world)[:2, None]
 
 
 def vel_omni2world(state_ori: float, vel_body: Any) -> Floats:
-    """(2, 1) world velocity [m/s] of a forward and lateral velocity at a heading [rad]."""
+    """Return the (2, 1) world-frame velocity [m/s] of a forward and lateral velocity at a heading [rad]."""
     return _rotation(state_ori) @ _flat(vel_body)[:2, None]
 
 
@@ -141,19 +147,19 @@ def _rotation(angle: float) -> Floats:
 
 
 def get_transform(state: Any) -> tuple[Floats, Floats]:
-    """Translation (2, 1) and rotation (2, 2) of a pose; without a heading no rotation."""
+    """Return the translation (2, 1) and rotation (2, 2) of a pose; a pose without a heading is not rotated."""
     pose = _flat(state)
     return pose[:2, None], _rotation(pose[2]) if pose.size > 2 else np.eye(2)
 
 
 def get_affine_transform(state: Any) -> list[float]:
-    """A pose as [a, b, d, e, x, y] of :func:`shapely.affinity.affine_transform`."""
+    """Return a pose as the list [a, b, d, e, x, y] of :func:`shapely.affinity.affine_transform`."""
     (x, y), rotation = _flat(state)[:2].tolist(), get_transform(state)[1]
     return [*rotation.reshape(-1).tolist(), x, y]
 
 
 def transform_point_with_state(point: Any, state: Any) -> Floats:
-    """(3, 1) pose in the world frame of a pose ``point`` in the frame of ``state``; the heading wrapped."""
+    """Transform a pose from the frame of ``state`` to the world frame: (3, 1), heading in [-pi, pi)."""
     inner, outer = _flat(point), _flat(state)
     translation, rotation = get_transform(outer)
     x, y = (rotation @ inner[:2, None] + translation)[:, 0].tolist()
@@ -161,7 +167,7 @@ def transform_point_with_state(point: Any, state: Any) -> Floats:
 
 
 def vertices_transform(vertices: Any, state: Any) -> Floats | None:
-    """(2, N) body-frame points at a pose, world frame; None stays None."""
+    """Transform (2, N) points from the body frame at a pose to the world frame; None stays None."""
     if vertices is None:
         return None
     translation, rotation = get_transform(state)

@@ -1,7 +1,7 @@
 """Random polygons: star-shaped, counter-clockwise.
 
-The vertices go once round a centre, with random angular steps (more or less equal) and random distances (more or less
-the mean), as in M. Ounsworth's well-known recipe for random polygons.
+The vertices follow each other around a centre, with random angular steps and random distances from the centre, as in
+M. Ounsworth's well-known recipe for random polygons.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.functions._random import current_rng
+from irsim.simulation.active_env import current_rng
 
 __all__ = ["generate_polygon", "random_generate_polygon"]
 
@@ -23,24 +23,24 @@ Floats = NDArray[np.float64]
 def generate_polygon(
     center: Sequence[float], avg_radius: float, irregularity: float, spikeyness: float, num_vertices: int
 ) -> Floats:
-    """One random polygon.
+    """Generate a random polygon.
 
     Args:
-        center: x, y [m].
-        avg_radius: Mean distance of the vertices [m].
-        irregularity: 0 to 1: spread of the angular steps.
-        spikeyness: 0 to 1: spread of the distances.
-        num_vertices: How many, at least 3.
+        center: x, y of the centre [m].
+        avg_radius: Mean distance of the vertices from the centre [m].
+        irregularity: Spread of the angular steps, 0 to 1.
+        spikeyness: Spread of the distances from the centre, 0 to 1.
+        num_vertices: Number of vertices, at least 3.
 
     Returns:
-        (num_vertices, 2) counter-clockwise.
+        (num_vertices, 2) vertices, counter-clockwise.
 
     Raises:
         ValueError: A spread is not between 0 and 1.
     """
     for name, value in (("irregularity", irregularity), ("spikeyness", spikeyness)):
         if not 0 <= value <= 1:
-            raise ValueError(f"{name} is between 0 and 1, not {value}")
+            raise ValueError(f"{name} must be between 0 and 1, got {value}")
     rng = current_rng()
     mean = 2 * math.pi / num_vertices
     steps = [float(rng.uniform(mean * (1 - irregularity), mean * (1 + irregularity))) for _ in range(num_vertices)]
@@ -63,18 +63,18 @@ def random_generate_polygon(
     num_vertices_range: Sequence[int] | None = None,
     **_: Any,
 ) -> Floats | list[Floats]:
-    """Random polygons with random parameters.
+    """Generate random polygons with random parameters.
 
     Args:
-        number: How many.
-        center_range: [xmin, ymin, xmax, ymax] of centres [m]; by default the origin.
-        avg_radius_range: Of mean distances [m]; by default [0.1, 1].
-        irregularity_range: By default [0, 1].
-        spikeyness_range: By default [0, 1].
-        num_vertices_range: Upper end excluded; by default [4, 10].
+        number: Number of polygons.
+        center_range: [xmin, ymin, xmax, ymax] of the centres [m]; default: the origin.
+        avg_radius_range: Range of the mean distance of the vertices [m]; default [0.1, 1].
+        irregularity_range: Range of the spread of the angular steps; default [0, 1].
+        spikeyness_range: Range of the spread of the distances; default [0, 1].
+        num_vertices_range: Range of the number of vertices, upper end excluded; default [4, 10].
 
     Returns:
-        The (M, 2) vertices of one, or a list of such.
+        The (M, 2) vertices of the polygon, or a list of them if ``number`` is not 1.
     """
     centers = [0.0] * 4 if center_range is None else list(center_range)
     radii = [0.1, 1.0] if avg_radius_range is None else list(avg_radius_range)

@@ -1,4 +1,4 @@
-"""Beams against shapely geometries, for scripts that have no environment; lidars are cast by the engine."""
+"""Ray casting against shapely geometries, for scripts without an environment; the core casts the beams of lidars."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 __all__ = ["cast_ray_segments", "cast_rays"]
 
 Floats = NDArray[np.float64]
-_NEAREST = 1e-9
+MIN_RANGE_M = 1e-9
 """Hits nearer than this do not count [m]."""
 
 
@@ -22,12 +22,12 @@ def cast_rays(
 
     Args:
         lidar_geometry: MultiLineString of the beams, each from the sensor outwards.
-        detected_objects: Things with a shapely ``geometry``.
-        max_range: Reach, and what misses read [m].
+        detected_objects: Objects with an attribute ``geometry``.
+        max_range: Length of the beams, and the range of a beam that hits nothing [m].
 
     Returns:
-        (ranges, hits, origin, directions): (N,) [m]; (N,) index of the object hit, -1 for none; (2,) [m]; (N, 2) from
-        the origin to the ends of the beams, divided by ``max_range``.
+        A tuple (ranges, hits, origin, directions): (N,) ranges [m]; (N,) index of the object that each beam hits, or
+        -1; (2,) origin [m]; (N, 2) vectors from the origin to the ends of the beams, divided by ``max_range``.
     """
     import shapely
 
@@ -56,17 +56,18 @@ def cast_rays(
 def cast_ray_segments(
     origin: Floats, directions: Floats, seg_start: Floats, seg_end: Floats, max_range: float
 ) -> tuple[Floats, NDArray[np.int64]]:
-    """Nearest hits of beams from one point on segments.
+    """Find the nearest segment that each beam from one point hits.
 
     Args:
-        origin: (2,) [m].
-        directions: (N, 2).
-        seg_start: (S, 2) [m].
-        seg_end: (S, 2) [m].
-        max_range: Reach [m].
+        origin: (2,) start of all beams [m].
+        directions: (N, 2) directions of the beams.
+        seg_start: (S, 2) first ends of the segments [m].
+        seg_end: (S, 2) second ends of the segments [m].
+        max_range: Length of the beams [m].
 
     Returns:
-        (N,) ranges, ``max_range`` for misses; (N,) index of the segment hit, -1 for none; of equal hits the first.
+        (N,) ranges, ``max_range`` for a beam that hits nothing; (N,) index of the segment hit, or -1. Of several
+        equally near segments the first counts.
     """
     edge = seg_end - seg_start
     away = seg_start - np.asarray(origin)
@@ -77,14 +78,14 @@ def cast_ray_segments(
     divisor = np.where(parallel, 1.0, cross)
     distance, share = along[None, :] / divisor, beside / divisor
     hit = ~parallel & (share >= 0) & (share <= 1)
-    # beams along a segment reach its nearer end
+    # a beam along a segment hits its nearer end
     size = np.maximum((directions**2).sum(axis=1), np.finfo(float).tiny)[:, None]
     ends = [(directions @ (point - np.asarray(origin)).T) / size for point in (seg_start, seg_end)]
-    ends = [np.where(end > _NEAREST, end, np.inf) for end in ends]
+    ends = [np.where(end > MIN_RANGE_M, end, np.inf) for end in ends]
     collinear = parallel & (beside == 0.0)
     distance = np.where(collinear, np.minimum(*ends), distance)
     hit |= collinear
-    distance = np.where(hit & (distance > _NEAREST) & (distance <= max_range), distance, np.inf)
+    distance = np.where(hit & (distance > MIN_RANGE_M) & (distance <= max_range), distance, np.inf)
     nearest = distance.argmin(axis=1)
     ranges = distance[np.arange(len(directions)), nearest]
     found = np.isfinite(ranges)

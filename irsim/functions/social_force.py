@@ -1,4 +1,4 @@
-"""Social forces for arrays; the engine computes them."""
+"""The social force model for lists of pedestrians; the core computes it."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ from irsim.functions._decide import behavior_options, decide
 __all__ = ["SocialForceModelBatch", "social_force_model"]
 
 Floats = NDArray[np.float64]
-_UNCAPPED = 1e9
-_PERIOD = 1e-3
+_UNLIMITED_SPEED_M_S = 1e9
+_FORCE_PERIOD_S = 1e-3
+"""Period [s] over which a force is measured as a change of velocity."""
 
 
 class SocialForceModelBatch:
-    """Pedestrians that decide at once, together with those they walk with.
+    """Pedestrians that decide at the same time, some of them in social groups.
 
     Args:
-        states: [x, y, vx, vy, radius, wanted vx, wanted vy, theta] of each, world frame.
-        neighbor_states: [x, y, vx, vy, radius] of others.
-        line_obs_list: [x1, y1, x2, y2] of lines.
-        social_groups: Lists of indices of those who walk together.
-        vmax: Speed cap [m/s].
+        states: [x, y, vx, vy, radius, wanted vx, wanted vy, theta] of each pedestrian, world frame.
+        neighbor_states: [x, y, vx, vy, radius] of each other moving object.
+        line_obs_list: [x1, y1, x2, y2] of each line obstacle.
+        social_groups: For each group, the list of indices of the pedestrians that walk together.
+        vmax: Highest speed [m/s].
         step_time: Period [s].
-        neighbor_range: Others farther away are ignored [m].
+        neighbor_range: Neighbors farther away are ignored [m].
         **parameters: Other options of ``sfm``: relaxation_time, force_factor_desired, …
 
     Raises:
-        ValidationError: A parameter does not fit.
+        ValidationError: A parameter is not valid.
     """
 
     def __init__(
@@ -88,7 +89,7 @@ class SocialForceModelBatch:
         line_obs_list: Any = None,
         social_groups: list[list[int]] | None = None,
     ) -> None:
-        """Another moment: arguments as of the constructor."""
+        """Replace the states; the arguments are those of the constructor."""
         self.states = [list(map(float, state)) for state in states]
         self.neighbor_states = [
             list(map(float, state)) for state in ([] if neighbor_states is None else neighbor_states)
@@ -98,10 +99,10 @@ class SocialForceModelBatch:
 
     @property
     def n(self) -> int:
-        """How many decide."""
+        """Number of pedestrians."""
         return len(self.states)
 
-    def _decided(self, step_time: float, **parameters: Any) -> Floats:
+    def _next_velocities(self, step_time: float, **parameters: Any) -> Floats:
         keys = {**self.parameters, "social_groups": self.social_groups, **parameters}
         options = behavior_options("sfm", keys)
         grouped = self.social_groups is not None or self.n > 1
@@ -109,8 +110,8 @@ class SocialForceModelBatch:
         return decide(options, agents, others, lines, grouped=grouped, step_time=step_time)
 
     def cal_vel(self) -> Floats:
-        """(n, 2) velocities at the end of the period [m/s], world frame."""
-        pushed = self._decided(self.step_time, force_factor_desired=0.0, vmax=_UNCAPPED)
+        """Return the (n, 2) velocities at the end of the period [m/s], world frame."""
+        pushed = self._next_velocities(self.step_time, force_factor_desired=0.0, vmax=_UNLIMITED_SPEED_M_S)
         free = pushed + self.step_time * self.parameters["force_factor_desired"] * self.desired_force()
         speed = np.linalg.norm(free, axis=1, keepdims=True)
         vmax = float(self.parameters["vmax"])
@@ -118,57 +119,58 @@ class SocialForceModelBatch:
         return capped
 
     def _force(self, factor: str) -> Floats:
-        """(n, 2) one force alone, its weight left out."""
+        """Return the (n, 2) accelerations of a single force, computed with a weight of 1."""
         factors = ("desired", "social", "obstacle", "coherence", "group_repulsion", "gaze")
-        alone = {f"force_factor_{name}": float(name == factor) for name in factors}
-        now = np.array([state[2:4] for state in self.states])
-        force: Floats = (self._decided(_PERIOD, **alone, vmax=_UNCAPPED) - now) / _PERIOD
+        weights = {f"force_factor_{name}": float(name == factor) for name in factors}
+        before = np.array([state[2:4] for state in self.states])
+        after = self._next_velocities(_FORCE_PERIOD_S, **weights, vmax=_UNLIMITED_SPEED_M_S)
+        force: Floats = (after - before) / _FORCE_PERIOD_S
         return force
 
     def desired_force(self) -> Floats:
-        """(n, 2) pull to the wanted velocity [m/s^2]."""
+        """Return the (n, 2) attraction to the wanted velocity [m/s^2]."""
         change = np.array([[state[5] - state[2], state[6] - state[3]] for state in self.states])
         return np.asarray(change / self.parameters["relaxation_time"])
 
     def social_force(self) -> Floats:
-        """(n, 2) push away from others [m/s^2]."""
+        """Return the (n, 2) repulsion by neighbors [m/s^2]."""
         return self._force("social")
 
     def obstacle_force(self) -> Floats:
-        """(n, 2) push away from lines [m/s^2]."""
+        """Return the (n, 2) repulsion by line obstacles [m/s^2]."""
         return self._force("obstacle")
 
     def coherence_force(self) -> Floats:
-        """(n, 2) pull to the middle of one's social group [m/s^2]."""
+        """Return the (n, 2) attraction to the centre of the social group [m/s^2]."""
         return self._force("coherence")
 
     def group_repulsive_force(self) -> Floats:
-        """(n, 2) push away from too close members of one's social group [m/s^2]."""
+        """Return the (n, 2) repulsion by members of the social group that are too close [m/s^2]."""
         return self._force("group_repulsion")
 
     def gaze_force(self) -> Floats:
-        """(n, 2) slowing down to see one's social group [m/s^2]."""
+        """Return the (n, 2) deceleration that keeps the social group in view [m/s^2]."""
         return self._force("gaze")
 
 
 class social_force_model:
-    """One pedestrian.
+    """A single pedestrian.
 
     Args:
         state: [x, y, vx, vy, radius, wanted vx, wanted vy, theta], world frame.
-        neighbor_list: [x, y, vx, vy, radius] of others.
-        line_obs_list: [x1, y1, x2, y2] of lines.
-        vmax: Speed cap [m/s].
+        neighbor_list: [x, y, vx, vy, radius] of each other moving object.
+        line_obs_list: [x1, y1, x2, y2] of each line obstacle.
+        vmax: Highest speed [m/s].
         step_time: Period [s].
         relaxation_time: Time to reach the wanted velocity [s].
-        force_factor_desired, force_factor_social, force_factor_obstacle: Weights.
-        sigma_obstacle: Reach of lines [m].
-        lambda_importance, gamma, n_angular, n_velocity: Of the push away from others, see ``sfm``.
-        neighbor_range: Others farther away are ignored [m].
-        safety_radius: Distance kept round each of two [m].
+        force_factor_desired, force_factor_social, force_factor_obstacle: Weights of the forces.
+        sigma_obstacle: Decay length of the repulsion by line obstacles [m].
+        lambda_importance, gamma, n_angular, n_velocity: Parameters of the repulsion by neighbors, see ``sfm``.
+        neighbor_range: Neighbors farther away are ignored [m].
+        safety_radius: Distance added to the radius of both pedestrians of a pair [m].
 
     Raises:
-        ValidationError: A parameter does not fit.
+        ValidationError: A parameter is not valid.
     """
 
     def __init__(
@@ -216,21 +218,21 @@ class social_force_model:
         neighbor_list: Sequence[Sequence[float]],
         line_obs_list: Sequence[Sequence[float]] | None = None,
     ) -> None:
-        """Another moment: arguments as of the constructor."""
+        """Replace the states; the arguments are those of the constructor."""
         self._model.update([state], neighbor_list, line_obs_list)
 
     def cal_vel(self) -> list[float]:
-        """[vx, vy] at the end of the period [m/s], world frame."""
+        """Return [vx, vy] at the end of the period [m/s], world frame."""
         return [float(value) for value in self._model.cal_vel()[0]]
 
     def desired_force(self) -> list[float]:
-        """[x, y] pull to the wanted velocity [m/s^2]."""
+        """Return the [x, y] attraction to the wanted velocity [m/s^2]."""
         return [float(value) for value in self._model.desired_force()[0]]
 
     def social_force(self) -> list[float]:
-        """[x, y] push away from others [m/s^2]."""
+        """Return the [x, y] repulsion by neighbors [m/s^2]."""
         return [float(value) for value in self._model.social_force()[0]]
 
     def obstacle_force(self) -> list[float]:
-        """[x, y] push away from lines [m/s^2]."""
+        """Return the [x, y] repulsion by line obstacles [m/s^2]."""
         return [float(value) for value in self._model.obstacle_force()[0]]

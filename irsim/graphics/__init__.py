@@ -1,1 +1,1 @@
-"""From scene data to pixels and files; it knows no simulation."""
+"""Turns scene data into pixels and files; independent of the simulation."""

@@ -1,4 +1,4 @@
-"""Live control: keyboard and mouse."""
+"""Control of a running environment: keyboard and mouse."""
 
 from irsim.gui.keyboard_control import KeyboardControl
 from irsim.gui.mouse_control import MouseControl

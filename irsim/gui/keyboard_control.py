@@ -1,4 +1,7 @@
-"""Driving a robot and steering a run with keys, from the figure's window or a global listener (package ``pynput``)."""
+"""Keyboard control: keys drive a robot and pause, step or end a run.
+
+Key events come from the window of the figure or from a global listener (package ``pynput``).
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,11 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from irsim.common.log import Logger
-    from irsim.env.parameters import WorldParam
 
 __all__ = ["KEY_TABLE", "KeyboardControl"]
 
-_STEP = 0.2
-"""Change of a top speed per key press [m/s or rad/s]."""
+_TOP_SPEED_STEP = 0.2
+"""Change of the top speed [m/s] or top turn rate [rad/s] per key press."""
 _AXES = {
     "w": ("linear", 1),
     "s": ("linear", -1),
@@ -24,6 +26,7 @@ _AXES = {
     "q": ("yaw", 1),
     "e": ("yaw", -1),
 }
+"""Key -> (axis of the command, sign)."""
 KEY_TABLE = (
     ("w / s", "forwards / backwards"),
     ("a / d", "turn left / right; sideways for omni drives"),
@@ -33,21 +36,26 @@ KEY_TABLE = (
     ("alt + digit", "drive another robot"),
     ("r", "reset"),
     ("l", "reload the file"),
-    ("space", "pause and go on"),
-    ("F5", "one step at a time"),
-    ("x", "keyboard or behaviors"),
+    ("space", "pause or resume"),
+    ("F5", "run a single step"),
+    ("x", "switch between keyboard and behaviors"),
     ("v", "save the figure"),
-    ("y", "stop and start refreshing the window"),
+    ("y", "stop or resume refreshing the window"),
     ("esc", "quit"),
 )
 """Keys and what they do."""
 
 
+class HasControlMode(Protocol):
+    """The world parameter that keys read and switch."""
+
+    control_mode: str
+
+
 class Controlled(Protocol):
-    """What keys act on: an environment."""
+    """What keys act on: the part of an environment that the keyboard needs."""
 
     logger: Logger
-    world_param: WorldParam
     display: bool
     pause_flag: bool
     quit_flag: bool
@@ -57,25 +65,29 @@ class Controlled(Protocol):
     reload_flag: bool
     save_figure_flag: bool
 
+    @property
+    def world_param(self) -> HasControlMode:
+        """World parameters."""
+
     def pause(self) -> None:
-        """Hold."""
+        """Pause the run."""
 
     def resume(self) -> None:
-        """Go on."""
+        """Resume the run."""
 
 
 class KeyboardControl:
-    """Keys of one environment.
+    """Keyboard control of one environment.
 
     Args:
         env_ref: The environment.
-        backend: ``mpl`` takes the key events of the figure; ``pynput`` listens globally, where that package is
-            installed and there is a screen, and falls back to ``mpl`` with a warning elsewhere.
-        global_hook: ``pynput``: react even if the mouse is outside the figure.
+        backend: ``mpl`` uses the key events of the figure. ``pynput`` listens globally; without that package or
+            without a screen it falls back to ``mpl`` with a warning.
+        global_hook: With ``pynput``, react even while the mouse is outside the figure.
         key_lv_max: Linear speed while a key is held [m/s].
         key_ang_max: Turn rate while a key is held [rad/s].
-        key_lv, key_ang, key_rot: Commands at the start.
-        key_id: Index of the robot that is driven.
+        key_lv, key_ang, key_rot: Initial linear, turn and yaw command.
+        key_id: Index of the robot that the keys drive.
 
     Attributes:
         key_vel: (3, 1) linear, turn (or lateral) and yaw command.
@@ -109,12 +121,12 @@ class KeyboardControl:
             for keys, what in KEY_TABLE:
                 env_ref.logger.info(f"{keys:<14} {what}")
 
-    # where keys come from --------------------------------------------------------------------------------------------
+    # sources of key events --------------------------------------------------------------------------------------------
     def attach(self, canvas: Any) -> None:
-        """Take the key events of a figure, and start the global listener if that is the backend."""
+        """Connect to the key events of a figure; with the backend ``pynput``, start the global listener."""
         manager = getattr(canvas, "manager", None)
         handler = getattr(manager, "key_press_handler_id", None)
-        if handler is not None:  # Matplotlib's own shortcuts: s saves, q closes, …
+        if handler is not None:  # Matplotlib's own shortcuts would interfere: s saves, q closes, …
             canvas.mpl_disconnect(handler)
         if self.backend == "pynput" and not self._listen():
             self.backend = "mpl"
@@ -127,25 +139,29 @@ class KeyboardControl:
         self._connections = [(canvas, canvas.mpl_connect(name, call)) for name, call in events.items()]
 
     def _listen(self) -> bool:
+        """Start the global listener, if possible, and return whether it runs."""
         if not self.env_ref.display:
             return False
         try:
             from pynput import keyboard
-        except Exception as error:  # pynput fails in its own ways where there is no screen
+        except Exception as error:  # without a screen, pynput raises errors of several types
             reason = "not installed" if isinstance(error, ImportError) else str(error)
             if self.env_ref.world_param.control_mode == "keyboard":
-                self.env_ref.logger.warning(f"keyboard backend pynput: {reason}; the figure's key events are used")
+                self.env_ref.logger.warning(
+                    f"keyboard backend pynput is unavailable ({reason}); using the key events of the figure"
+                )
             return False
         self.listener = keyboard.Listener(
-            on_press=lambda key: self._heard(key, self.press), on_release=lambda key: self._heard(key, self.release)
+            on_press=lambda key: self._forward(key, self.press),
+            on_release=lambda key: self._forward(key, self.release),
         )
         self.listener.start()
         return True
 
-    def _heard(self, key: Any, act: Any) -> None:
-        name = _name_of(key)
+    def _forward(self, key: Any, handler: Callable[[str], None]) -> None:
+        name = _matplotlib_name(key)
         if name is not None and (self.global_hook or self.in_figure):
-            act(name)
+            handler(name)
 
     def _enter(self, _: Any) -> None:
         self.in_figure = True
@@ -162,7 +178,7 @@ class KeyboardControl:
             self.release(event.key)
 
     def stop(self) -> None:
-        """Let go of the figure and of the listener."""
+        """Disconnect from the figure and stop the listener."""
         for canvas, number in self._connections:
             canvas.mpl_disconnect(number)
         self._connections = []
@@ -177,29 +193,31 @@ class KeyboardControl:
         """The logger of the environment."""
         return self.env_ref.logger
 
-    # what keys do ----------------------------------------------------------------------------------------------------
+    # effects of keys ------------------------------------------------------------------------------------------------
     def press(self, key: str) -> None:
-        """A key goes down; names are those of Matplotlib: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""
+        """Handle a key press; keys have Matplotlib's names: ``w``, ``Z``, ``alt+1``, ``f5``, ``escape``."""
         plain = _without_modifiers(key)
         if plain in _AXES:
             self._held.add(plain)
-            self._command()
+            self._update_command()
         elif key.startswith("alt+") and plain.isdigit():
             self.key_id = int(plain)
             self.env_ref.logger.info(f"the keyboard drives robot {self.key_id}")
         elif plain in ("z", "c"):
-            self._change_top_speed(-_STEP if plain == "z" else _STEP, linear=key.startswith("shift+") or key.isupper())
+            change = -_TOP_SPEED_STEP if plain == "z" else _TOP_SPEED_STEP
+            self._change_top_speed(change, linear=key.startswith("shift+") or key.isupper())
         else:
-            self._switch(plain)
+            self._act_on_environment(plain)
 
     def release(self, key: str) -> None:
-        """A key goes up."""
+        """Handle a key release."""
         plain = _without_modifiers(key)
         if plain in self._held:
             self._held.discard(plain)
-            self._command()
+            self._update_command()
 
-    def _command(self) -> None:
+    def _update_command(self) -> None:
+        """Recompute the command from the keys that are held."""
         sums = {"linear": 0, "turn": 0, "yaw": 0}
         for key in self._held:
             axis, sign = _AXES[key]
@@ -215,9 +233,10 @@ class KeyboardControl:
         else:
             self.key_ang_max = max(0.0, self.key_ang_max + change)
         self.env_ref.logger.info(f"top speed {self.key_lv_max:.1f} m/s, turn rate {self.key_ang_max:.1f} rad/s")
-        self._command()
+        self._update_command()
 
-    def _switch(self, key: str) -> None:
+    def _act_on_environment(self, key: str) -> None:
+        """Set the flag or change the setting of the environment that a key stands for."""
         env = self.env_ref
         if key == "r":
             env.reset_flag = True
@@ -236,18 +255,19 @@ class KeyboardControl:
             env.pause_flag, env.debug_flag = False, True
             env.debug_count += 1
         elif key == "x":
-            driven = env.world_param.control_mode == "keyboard"
-            env.world_param.control_mode = "auto" if driven else "keyboard"
-            env.logger.info(f"control mode: {env.world_param.control_mode}")
+            world = env.world_param
+            world.control_mode = "auto" if world.control_mode == "keyboard" else "keyboard"
+            env.logger.info(f"control mode: {world.control_mode}")
         elif key == "y":
             env.display = not env.display
 
     def control(self, drive: str | None, size: int) -> NDArray[np.float64]:
-        """The present command as controls of a drive.
+        """Convert the present command to the controls of a drive.
 
         Args:
-            drive: Name of the kinematics; omni drives take the turn command sideways, scaled by the top speeds.
-            size: How many controls it has.
+            drive: Name of the kinematics. For omni drives the turn command is a lateral speed: it is scaled by the
+                ratio of the top speeds.
+            size: Number of controls of the drive.
 
         Returns:
             (size,) controls.
@@ -256,18 +276,18 @@ class KeyboardControl:
         if drive in ("omni", "omni_angular"):
             turn = turn * self.key_lv_max / self.key_ang_max if self.key_ang_max > 0 else 0.0
         command = np.zeros(size)
-        given = np.array([linear, turn, yaw])[:size]
-        command[: len(given)] = given
+        values = np.array([linear, turn, yaw])[:size]
+        command[: len(values)] = values
         return command
 
 
 def _without_modifiers(key: str) -> str:
-    """``shift+W`` is the key ``w``."""
+    """Return the bare key: ``w`` for ``shift+W``."""
     return key.rpartition("+")[2].lower() if key != "+" else key
 
 
-def _name_of(key: Any) -> str | None:
-    """Matplotlib's name of a key of ``pynput``."""
+def _matplotlib_name(key: Any) -> str | None:
+    """Return Matplotlib's name of a ``pynput`` key, or None for a key without a name."""
     character = getattr(key, "char", None)
     if character:
         return str(character)

@@ -1,4 +1,4 @@
-"""The mouse over a figure: where it points, clicks, and zooming with the wheel."""
+"""Mouse control: pointer position, clicks, and zooming with the wheel."""
 
 from __future__ import annotations
 
@@ -9,23 +9,26 @@ from numpy.typing import NDArray
 
 __all__ = ["MouseControl"]
 
-_LEAST_ZOOM = 1.1
-_LEFT, _MIDDLE, _RIGHT = 1, 2, 3
+MIN_ZOOM_FACTOR = 1.1
+"""Smallest ratio of one wheel step."""
+_LEFT = 1
+_MIDDLE = 2
+_RIGHT = 3
 
 
 class MouseControl:
-    """Follows the mouse over one pair of axes.
+    """Tracks the mouse over one pair of axes.
 
     Args:
         ax: Matplotlib axes in world coordinates [m].
-        zoom_factor: Ratio of one step of the wheel, at least 1.1.
+        zoom_factor: Ratio by which one wheel step zooms, at least 1.1.
 
     Attributes:
         mouse_pos: (x, y) under the pointer, rounded to 0.01 m; None outside the axes.
-        left_click_pos, right_click_pos: (2,) where that button is held down, else None.
+        left_click_pos, right_click_pos: (2,) position at which that button was pressed; None while it is up.
     """
 
-    def __init__(self, ax: Any, zoom_factor: float = _LEAST_ZOOM) -> None:
+    def __init__(self, ax: Any, zoom_factor: float = MIN_ZOOM_FACTOR) -> None:
         self.ax = ax
         self.mouse_pos: tuple[float, float] | None = None
         self.left_click_pos: NDArray[np.float64] | None = None
@@ -43,59 +46,60 @@ class MouseControl:
         self._connections = [(canvas, canvas.mpl_connect(name, call)) for name, call in events.items()]
 
     def set_zoom_factor(self, zoom_factor: float) -> None:
-        """Ratio of one step of the wheel; less than 1.1 counts as 1.1."""
-        self.zoom_factor = max(_LEAST_ZOOM, float(zoom_factor))
+        """Set the ratio by which one wheel step zooms; less than 1.1 counts as 1.1."""
+        self.zoom_factor = max(MIN_ZOOM_FACTOR, float(zoom_factor))
 
     def reset_zoom(self) -> None:
-        """Back to the view before the first zoom."""
+        """Return to the view before the first zoom."""
         if self._home is not None:
             self.ax.set_xlim(*self._home[0])
             self.ax.set_ylim(*self._home[1])
             self._home = None
 
     def forget_zoom(self) -> None:
-        """The view was made anew."""
+        """Forget the view before the first zoom, because the axes have been drawn again."""
         self._home = None
 
     def stop(self) -> None:
-        """Let go of the figure."""
+        """Disconnect from the figure."""
         for canvas, number in self._connections:
             canvas.mpl_disconnect(number)
         self._connections = []
 
-    def _place(self, event: Any) -> tuple[float, float] | None:
+    def _position(self, event: Any) -> tuple[float, float] | None:
+        """Return the position of an event in world coordinates [m], or None outside the axes."""
         if event.inaxes is not self.ax or event.xdata is None:
             return None
         return round(float(event.xdata), 2), round(float(event.ydata), 2)
 
     def on_move(self, event: Any) -> None:
-        """The pointer has moved."""
-        self.mouse_pos = self._place(event)
+        """Handle a movement of the pointer."""
+        self.mouse_pos = self._position(event)
 
     def _leave(self, _: Any) -> None:
         self.mouse_pos = None
 
     def on_click(self, event: Any) -> None:
-        """A button goes down."""
-        place = self._place(event)
-        if place is None:
+        """Handle a button press."""
+        position = self._position(event)
+        if position is None:
             return
         if event.button == _LEFT:
-            self.left_click_pos = np.array(place)
+            self.left_click_pos = np.array(position)
         elif event.button == _RIGHT:
-            self.right_click_pos = np.array(place)
+            self.right_click_pos = np.array(position)
         elif event.button == _MIDDLE:
             self.reset_zoom()
 
     def on_release(self, event: Any) -> None:
-        """A button goes up."""
+        """Handle a button release."""
         if event.button == _LEFT:
             self.left_click_pos = None
         elif event.button == _RIGHT:
             self.right_click_pos = None
 
     def on_scroll(self, event: Any) -> None:
-        """Zoom about the point under the pointer, which stays where it is."""
+        """Zoom about the point under the pointer, which keeps its position on the screen."""
         if event.inaxes is not self.ax or event.xdata is None:
             return
         limits = self.ax.get_xlim(), self.ax.get_ylim()

@@ -1,6 +1,7 @@
-"""Answers about the language, its components, the templates and the codes, for ``irsim describe`` and the MCP server.
+"""Answers about the scenario language, components, templates and codes, for ``irsim describe`` and the MCP server.
 
-Everything comes from the registries, the models' schema, the templates and the list of codes: nothing is said twice.
+The answers are generated from the registries, the schema of the models, the templates and the list of codes, so they
+cannot contradict them.
 """
 
 from irsim.lookup.answer import Answer, Key, TopicError

@@ -1,4 +1,4 @@
-"""What a lookup returns."""
+"""The answer that a lookup returns, and the error for an unknown topic."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 from irsim.common.text import clean
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
@@ -23,56 +23,54 @@ class Key(_Data):
     """One key of a mapping, or one line of a list of topics."""
 
     name: str
-    """The key; in an index the topic to ask for next."""
+    """Name of the key; in an index, the topic to look up next."""
     type: str = ""
-    """What it takes, in words."""
+    """Type of the value, in words."""
     unit: str | None = None
     """Unit of the number or numbers."""
     default: str | None = None
-    """Value without it, as YAML; None when there is none or it is null."""
+    """Default value as YAML; None if there is no default or it is null."""
     required: bool = False
-    """Whether it must be given."""
+    """Whether the key must be given."""
     allowed: str | None = None
-    """Names or range it is limited to."""
+    """Allowed names or range."""
     per_object: bool = False
     """Whether a list gives one value to each object of an entry."""
     text: str = ""
-    """What it means."""
+    """Meaning of the key."""
 
 
 class Answer(_Data):
-    """All there is to say about a topic."""
+    """The description of a topic."""
 
     topic: str
-    """Its full name."""
+    """Full name of the topic."""
     kind: Kind
-    """What it is."""
+    """Kind of topic."""
     title: str
-    """One line."""
+    """Title, one line."""
     text: str = ""
-    """More about it."""
+    """Explanation."""
     about: Key | None = None
-    """The facts, if it is a key."""
+    """Type, unit, default and range, if the topic is a key."""
     groups: dict[str, list[Key]] = {}
-    """What is in it, under headings: keys, components, templates …"""
+    """Content of the topic under headings: keys, components, templates …"""
     example: str | None = None
     """YAML or a command to start from."""
     see: list[str] = []
     """Related topics."""
 
 
-class TopicError(IrsimError, LookupError):
-    """Nothing is known under that name.
+class TopicError(CodedError, LookupError):
+    """No topic has that name.
 
     Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
         near: Topics with similar names.
     """
 
     code = "unknown-topic"
 
     def __init__(self, topic: str, near: Sequence[str]) -> None:
-        hint = f" Did you mean {' or '.join(near)}?" if near else " irsim describe lists what there is."
-        self.message, self.near = f"nothing is called {clean(topic)!r}", list(near)
-        super().__init__(f"{self.code}: {self.message}.{hint}")
+        self.near = list(near)
+        fix = f"did you mean {' or '.join(near)}?" if near else "irsim describe lists all topics"
+        super().__init__(self.code, f"{clean(topic)!r} is not a topic", fix)

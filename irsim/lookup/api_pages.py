@@ -1,4 +1,4 @@
-"""References of the skills about programs, comparisons and contributing, read off the code itself."""
+"""Makes the reference pages of the skills about programs, benchmarks and contributing from the docstrings."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 
 from pydantic import BaseModel
 
-import irsim
+from irsim.api.public import PUBLIC_HOMES
 from irsim.common import data_files as resources
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.options.base import field_docs
 from irsim.options.registry import REGISTRIES
 
-__all__ = ["PACKS", "written"]
+__all__ = ["PACKS", "make_page"]
 
 Pages = dict[str, str]
 NOTE = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->"
@@ -33,13 +33,13 @@ _FOLDERS = {
 }
 
 
-def written(title: str, *parts: str) -> str:
-    """A page with its note."""
+def make_page(title: str, *parts: str) -> str:
+    """Return a page with a title, the note that it is generated, and its parts."""
     return "\n\n".join((f"# {title}", NOTE, *(part.strip() for part in parts if part))) + "\n"
 
 
 def runner() -> Pages:
-    """Pages of ``irsim-runner``."""
+    """Return the pages of the skill ``irsim-runner``."""
     from irsim.env import Env
     from irsim.env.batch import Batch
     from irsim.objects.view import ObjectView
@@ -50,58 +50,62 @@ def runner() -> Pages:
         *("irsim.lib.register_group_behavior", "irsim.lib.register_group_behavior_class"),
     )
     return {
-        "functions": written(
-            "Functions", "What a program calls first.", *(_function(*_find(name)) for name in functions), _options(Env)
+        "functions": make_page(
+            "Functions",
+            "The functions that a program calls first.",
+            *(_function(*_find(name)) for name in functions),
+            _options(Env),
         ),
-        "environment": written(
-            "The environment", "What `irsim.make` returns. `x ->`: a property.", _members(Env), _attributes(Env)
+        "environment": make_page(
+            "The environment", "`irsim.make` returns it. `x ->` marks a property.", _members(Env), _attributes(Env)
         ),
-        "objects": written(
+        "objects": make_page(
             "Objects",
-            "What `env.robot`, `env.robot_list`, `env.get_object_by_name(…)` and the arguments of your behaviors are. "
-            "Arrays are columns, (n, 1), unless it says otherwise, and read-only: change an object with `set_…`.",
+            "`env.robot`, `env.robot_list`, `env.get_object_by_name(…)` and the arguments of your behaviors are such "
+            "objects. Arrays are columns, (n, 1), unless stated otherwise, and read-only: use `set_…` to change an "
+            "object.",
             _members(ObjectView),
         ),
-        "batch": written("Batches", "What `irsim.batch` returns.", _attributes(Batch), _members(Batch)),
+        "batch": make_page("Batches", "`irsim.batch` returns a batch of worlds.", _attributes(Batch), _members(Batch)),
     }
 
 
 def comparisons() -> Pages:
-    """Pages of ``irsim-benchmark``."""
-    from irsim.results import results
+    """Return the pages of the skill ``irsim-benchmark``."""
+    from irsim.results import benchmark
 
     canonical = [metric for metric in METRICS if metric.canonical]
     extra = [metric for metric in METRICS if not metric.canonical]
-    heads = ("key", "unit", "what it is, per robot", "over robots", "better")
+    heads = ("key", "unit", "meaning, per robot", "over robots", "better")
 
     def table(metrics: list[Any]) -> str:
         return plain_table(heads, [(f"`{m.key}`", m.unit, m.text, m.robots, m.better or "") for m in metrics])
 
     return {
-        "metrics": written(
+        "metrics": make_page(
             "Metrics",
-            "A value belongs to a robot; over the robots of an episode it is combined as told: `mean`, `min`, `max`, "
-            "or `all` (1 if all have 1). Episodes then give mean, spread and a 95 % interval. A value that has no "
-            "meaning in an episode (a time to the goal where nobody arrived, a distance to humans where there are "
-            "none) is left out there, and `n` says how many are in.",
+            "Each robot has a value. The column `over robots` says how the values of the robots are combined to the "
+            "value of an episode: `mean`, `min`, `max`, or `all` (1 if all have 1). A benchmark gives mean, spread and "
+            "a 95 % interval over episodes. An episode in which a value has no meaning (time to goal if no robot "
+            "arrived, distance to humans without humans) is left out, and `n` is the number of episodes that count.",
             "## Canonical",
             table(canonical),
             "## Widely used extras",
             table(extra),
-            "## Of episodes only",
+            "## Metrics of whole episodes",
             table(list(EPISODE_METRICS)),
         ),
-        "result": written(
+        "result": make_page(
             "The result",
-            "What `irsim benchmark --json`, `irsim.benchmark` and the tools `benchmark` and `get_job` give.",
+            "`irsim benchmark --json`, `irsim.benchmark` and the tools `benchmark` and `get_job` return this result.",
             *(
                 f"## {name}\n\n{_one_line(model.__doc__)}\n\n{_fields(model)}"
                 for name, model in (
-                    ("BenchmarkResult", results.BenchmarkResult),
-                    ("BenchmarkRow", results.BenchmarkRow),
-                    ("Proportion", results.Proportion),
-                    ("Estimate", results.Estimate),
-                    ("EpisodeRow", results.EpisodeRow),
+                    ("BenchmarkResult", benchmark.BenchmarkResult),
+                    ("BenchmarkRow", benchmark.BenchmarkRow),
+                    ("Proportion", benchmark.Proportion),
+                    ("Estimate", benchmark.Estimate),
+                    ("EpisodeRow", benchmark.EpisodeRow),
                 )
             ),
         ),
@@ -109,12 +113,12 @@ def comparisons() -> Pages:
 
 
 def contributing() -> Pages:
-    """Pages of ``irsim-dev``."""
+    """Return the pages of the skill ``irsim-dev``."""
     rows, root = [], resources.checkout() or Path()
     for kind, registry in REGISTRIES.items():
         for feature in registry.features():
             if feature.origin == "built-in":
-                model = f"irsim/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
+                model = f"irsim/components/{_FOLDERS[kind]}/{feature.options.__module__.rpartition('.')[2]}.py"
                 header = ""
                 if feature.kernel is not None:
                     stem = re.sub(r"(?<!^)(?=[A-Z])", "_", feature.kernel.__name__.removesuffix("Options")).lower()
@@ -122,10 +126,11 @@ def contributing() -> Pages:
                     header = f"`{path}`" if (root / path).is_file() else ""
                 rows.append((kind, f"`{feature.name}`", f"`{model}`", header))
     return {
-        "features": written(
+        "features": make_page(
             "Features and their files",
-            "One declaration each; what computes it is a header of the core, or the Python function in the same file.",
-            plain_table(("kind", "name", "what users see", "how it is computed"), rows),
+            "Each feature is declared in one file. A header of the core computes it, or a Python function in the same "
+            "file.",
+            plain_table(("kind", "name", "declaration", "computation"), rows),
         ),
     }
 
@@ -135,23 +140,23 @@ PACKS: dict[str, Callable[[], Pages]] = {
     "irsim-benchmark": comparisons,
     "irsim-dev": contributing,
 }
-"""Pages of each skill but ``irsim-scenario``, whose pages are made of the language."""
+"""Skill -> function that returns its pages; those of ``irsim-scenario`` are made from the schema of the language."""
 
 
 def _find(name: str) -> tuple[str, Any]:
-    """A function by its name below ``irsim`` or in full."""
+    """Return full name and function for a public name of ``irsim`` or a full name."""
     if not name.startswith("irsim."):
-        return f"irsim.{name}", getattr(importlib.import_module(irsim._HOMES[name]), name)
+        return f"irsim.{name}", getattr(importlib.import_module(PUBLIC_HOMES[name]), name)
     module, _, name_there = name.rpartition(".")
     return name, getattr(importlib.import_module(module), name_there)
 
 
 def _signature(member: Any) -> str:
-    """Parameters with defaults, types and ``self`` left out."""
+    """Return the parameters with their defaults, without types and ``self``."""
     shown = []
     starred = False
     for parameter in inspect.signature(member).parameters.values():
-        if parameter.name == "self":
+        if parameter.name in ("self", "env"):
             continue
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:
             shown.append("*")
@@ -177,7 +182,7 @@ def _options(cls: type) -> str:
 
 
 def _docstring(thing: Any) -> tuple[str, list[tuple[str, str]]]:
-    """The text before the sections, and the entries of ``Args``."""
+    """Return the text of a docstring before its sections, and the entries of ``Args``."""
     doc = inspect.cleandoc(thing.__doc__ or "")
     text = re.split(r"\n\n(?:Args|Returns|Raises|Yields|Attributes):", doc)[0]
     return _markup(" ".join(text.split())), _section(doc, "Args")
@@ -213,7 +218,7 @@ def _members(cls: type) -> str:
             rows.append((f"`{name}` ->", _one_line(member.__doc__)))
         else:
             rows.append((f"`{name}{_signature(member)}`", _one_line(member.__doc__)))
-    return plain_table(("name", "what it is"), [row for row in rows if row[1]])
+    return plain_table(("name", "meaning"), [row for row in rows if row[1]])
 
 
 def _public(cls: type) -> Iterator[tuple[str, Any]]:
@@ -226,10 +231,10 @@ def _public(cls: type) -> Iterator[tuple[str, Any]]:
 
 def _attributes(cls: type) -> str:
     rows = [(f"`{name}`", about) for name, about in _section(inspect.cleandoc(cls.__doc__ or ""), "Attributes")]
-    return plain_table(("attribute", "what it is"), rows) if rows else ""
+    return plain_table(("attribute", "meaning"), rows) if rows else ""
 
 
 def _fields(model: type[BaseModel]) -> str:
     docs = field_docs(model)
     rows = [(f"`{name}`", _markup(" ".join(docs.get(name, "").split()))) for name in model.model_fields]
-    return plain_table(("field", "what it is"), rows)
+    return plain_table(("field", "meaning"), rows)

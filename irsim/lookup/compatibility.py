@@ -1,4 +1,4 @@
-"""The published page about IR-SIM 2.12, ``irsim/compat/README.md``: one row per key and per public name."""
+"""Makes the published page about IR-SIM 2.12, ``irsim/compat/README.md``: one row per key and per public name."""
 
 from __future__ import annotations
 
@@ -13,16 +13,17 @@ from irsim.options.registry import REGISTRIES
 __all__ = ["page"]
 
 _INTRO = (
-    "Files and Python loops of IR-SIM 2.12 run unmodified. *same* means: same meaning, defaults, units and shapes. "
-    "An id names an intended difference, explained in the first table; *added* is optional and changes no old file."
+    "Scenario files and Python programs for IR-SIM 2.12 run without changes. *same* means the same meaning, defaults, "
+    "units and array shapes. An id refers to an intended difference in the first table. *added* marks optional keys "
+    "of irsim, which do not change the meaning of existing files."
 )
 
 
 def page(schema: Node) -> str:
-    """The page as Markdown.
+    """Return the page as Markdown.
 
     Args:
-        schema: The JSON Schema of the language.
+        schema: JSON Schema of the language.
     """
     ids = [(f"`{name}`", one.theirs, one.ours, one.why) for name, one in DIFFERENCES.items()]
     parts = [
@@ -68,8 +69,8 @@ def _names() -> Iterator[tuple[str, list[tuple[str, str]]]]:
         owner = place.partition(":")[2] or place
         rows = []
         for name in names:
-            told = NAME_DIFFERENCES.get(f"{owner}.{name}", "same")
+            difference = NAME_DIFFERENCES.get(f"{owner}.{name}", "same")
             absent = ABSENT.get(f"{place}.{name}") or ABSENT.get(place)
-            rows.append((f"`{name}`", f"missing: {absent}" if absent else told))
+            rows.append((f"`{name}`", f"missing: {absent}" if absent else difference))
         if rows:
             yield place, rows

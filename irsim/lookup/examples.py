@@ -1,4 +1,4 @@
-"""Examples for a topic, taken from the bundled templates: they are known to work."""
+"""Finds examples for a topic in the bundled templates, whose scenarios are tested."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from irsim.lookup.schema_walk import yaml_text
 
 __all__ = ["example_of"]
 
-_LONGEST_LINE = 90
+MAX_LINE_LENGTH = 90
+"""Longer values are written on several lines."""
 
 
 def example_of(path: tuple[str, ...], component: str | None = None) -> str | None:
-    """YAML for a path of the language, as some template has it; None if none does.
+    """Return YAML for a path of the language from a template, or None if no template uses the path.
 
     Args:
-        path: Such as ``("robot", "vel_max")``.
-        component: The name of the component that the path ends with, if it does.
+        path: Words of the path, such as ``("robot", "vel_max")``.
+        component: Name of the component at the end of the path, if it ends with a component.
     """
     names = path[:-1] if component is not None else path
     for section in dict.fromkeys((path[0], "robot" if path[0] == "obstacle" else path[0], "obstacle")):
@@ -30,25 +31,25 @@ def example_of(path: tuple[str, ...], component: str | None = None) -> str | Non
         values = [value for data in _scenarios() for value in _values(data, words)]
         lines = {yaml_text(value): value for value in values if value not in (None, {}, [])}
         if lines:
-            fitting = [line for line in lines if len(line) <= _LONGEST_LINE] or [min(lines, key=len)]
+            fitting = [line for line in lines if len(line) <= MAX_LINE_LENGTH] or [min(lines, key=len)]
             best = lines[
                 max(fitting, key=len)
                 if component is not None
                 else next((line for line in fitting if isinstance(lines[line], dict)), fitting[0])
             ]
-            return _written(names[-1], best, component)
+            return _example_text(names[-1], best, component)
     return None
 
 
 @cache
 def _scenarios() -> tuple[Any, ...]:
-    """The bundled scenarios, read once: a server and the reference pages ask for hundreds of examples."""
+    """Read the scenarios of all templates; cached, because the reference pages ask for hundreds of examples."""
     texts = (templates.scenario_file(name).read_text(encoding="utf-8") for name in templates.names())
     return tuple(read_yaml(text) for text in texts)
 
 
 def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
-    """What stands at a path; lists are looked through, names of components select mappings."""
+    """Iterate over the values at a path; lists are searched, and names of components select mappings."""
     if isinstance(data, list):
         if not words and not any(isinstance(item, dict) for item in data):
             yield data
@@ -63,10 +64,10 @@ def _values(data: Any, words: tuple[str, ...]) -> Iterator[Any]:
             yield from _values(data, words[1:])
 
 
-def _written(name: str, value: Any, component: str | None) -> str:
+def _example_text(name: str, value: Any, component: str | None) -> str:
     one = [value] if name == "sensors" and isinstance(value, dict) else value
     line = f"{name}: {yaml_text(one)}"
-    if len(line) <= _LONGEST_LINE + len(name) or not isinstance(value, dict):
+    if len(line) <= MAX_LINE_LENGTH + len(name) or not isinstance(value, dict):
         return line
     whole = {name: [value] if name in ("robot", "obstacle", "sensors") else value}
-    return yaml.safe_dump(whole, sort_keys=False, default_flow_style=None, width=_LONGEST_LINE).rstrip()
+    return yaml.safe_dump(whole, sort_keys=False, default_flow_style=None, width=MAX_LINE_LENGTH).rstrip()

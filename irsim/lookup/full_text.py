@@ -1,4 +1,4 @@
-"""Full-text search: which documents fit some words best."""
+"""Full-text search: ranks documents by how well they match the words of a query."""
 
 from __future__ import annotations
 
@@ -10,76 +10,84 @@ from typing import NamedTuple
 
 __all__ = ["Document", "best", "words_of"]
 
-_MOST = 5
-_LEAST_SHARE = 0.4
-"""Documents that fit less than this share of the best one are not shown."""
-_HEAD = 3
-"""How many times a word in the heads counts."""
-_PREFIX = 0.5
-"""How much a word counts that only begins with the one wanted."""
-_SHORTEST = 4
-"""Letters that a beginning of words has."""
-_SATURATION, _LENGTH = 1.2, 0.75
-_EMPTY = re.compile(
+MAX_RESULTS = 5
+"""Largest number of documents in a result."""
+MIN_SCORE_SHARE = 0.4
+"""Documents with a lower score than this share of the best score are left out."""
+_HEAD_WEIGHT = 3
+"""Number of times that a word in the heads of a document counts."""
+_PREFIX_WEIGHT = 0.5
+"""Weight of a word that only begins with a word of the query."""
+MIN_PREFIX_LETTERS = 4
+"""Shorter words of a query match whole words only."""
+_SATURATION = 1.2
+"""Parameter k1 of Okapi BM25."""
+_LENGTH_WEIGHT = 0.75
+"""Parameter b of Okapi BM25."""
+MIN_PLURAL_LETTERS = 4
+"""Shorter words keep a final s."""
+_STOP_WORDS = re.compile(
     "a|about|an|and|any|are|as|at|be|by|can|cannot|do|does|for|from|get|has|have|how|i|if|in|into|is|it|its|make|me|my|"
     "no|not|of|on|or|should|so|something|than|that|the|their|them|there|this|to|use|using|want|what|when|where|which|"
     "who|why|will|with|without"
 )
-"""Words that say nothing."""
+"""Words of a query that are ignored, because they do not identify a topic."""
 
 
 class Document(NamedTuple):
-    """Something that can be found."""
+    """A document that the search can find."""
 
     name: str
     heads: str
-    """Names, titles and key words, which count more."""
+    """Names, titles and keywords, which count more than the text."""
     text: str
 
 
 def best(documents: Sequence[Document], query: str) -> tuple[list[str], list[str]]:
-    """The few documents that fit a query best, ranked by Okapi BM25 (Robertson, Zaragoza 2009).
+    """Find the documents that match a query best, ranked by Okapi BM25 (Robertson, Zaragoza 2009).
 
-    A word of the query also fits words that begin with it. Documents with more of the words come first.
+    A word of the query also matches words that begin with it. Documents that match more words of the query come first.
 
     Returns:
-        Names, best first, and the words of the query that are in no document.
+        Names of the documents, best first, and the words of the query that occur in no document.
     """
-    wanted = list(dict.fromkeys(word for word in words_of(query) if not _EMPTY.fullmatch(word))) or words_of(query)
+    meaningful = list(dict.fromkeys(word for word in words_of(query) if not _STOP_WORDS.fullmatch(word)))
+    wanted = meaningful or words_of(query)
     counts = [Counter(words_of(document.text)) for document in documents]
     for document, count in zip(documents, counts, strict=True):
         for word in words_of(document.heads):
-            count[word] += _HEAD
+            count[word] += _HEAD_WEIGHT
     mean = sum(count.total() for count in counts) / max(len(counts), 1)
     scores, matched = [0.0] * len(counts), [0] * len(counts)
     unknown = []
     for word in wanted:
-        often = [_times(word, count) for count in counts]
-        holding = sum(times > 0 for times in often)
-        if not holding:
+        frequencies = [_frequency(word, count) for count in counts]
+        matching = sum(times > 0 for times in frequencies)
+        if not matching:
             unknown.append(word)
-        rarity = math.log(1 + (len(counts) - holding + 0.5) / (holding + 0.5))
-        for k, times in enumerate(often):
+        rarity = math.log(1 + (len(counts) - matching + 0.5) / (matching + 0.5))
+        for k, times in enumerate(frequencies):
             if times:
-                size = 1 - _LENGTH + _LENGTH * counts[k].total() / mean
+                size = 1 - _LENGTH_WEIGHT + _LENGTH_WEIGHT * counts[k].total() / mean
                 scores[k] += rarity * times * (_SATURATION + 1) / (times + _SATURATION * size)
                 matched[k] += 1
     scores = [score * found / max(len(wanted), 1) for score, found in zip(scores, matched, strict=True)]
-    order = sorted(range(len(scores)), key=lambda k: -scores[k])[:_MOST]
-    return [documents[k].name for k in order if scores[k] > 0 and scores[k] >= _LEAST_SHARE * scores[order[0]]], unknown
+    order = sorted(range(len(scores)), key=lambda k: -scores[k])[:MAX_RESULTS]
+    shown = [k for k in order if scores[k] > 0 and scores[k] >= MIN_SCORE_SHARE * scores[order[0]]]
+    return [documents[k].name for k in shown], unknown
 
 
 def words_of(text: str) -> list[str]:
-    """Lower case, without the s of the plural; parts of names with _ and - are words of their own."""
+    """Split a text into words: lower case, without the s of a plural, names split at _ and -."""
     return [
-        word[:-1] if len(word) > 3 and word.endswith("s") and not word.endswith("ss") else word
+        word[:-1] if len(word) >= MIN_PLURAL_LETTERS and word.endswith("s") and not word.endswith("ss") else word
         for word in re.findall(r"[^\W_]+(?:'[^\W_]+)*", text.lower())
     ]
 
 
-def _times(word: str, count: Counter[str]) -> float:
+def _frequency(word: str, count: Counter[str]) -> float:
     if word in count:
         return float(count[word])
-    if len(word) < _SHORTEST:
+    if len(word) < MIN_PREFIX_LETTERS:
         return 0.0
-    return _PREFIX * sum(times for other, times in count.items() if other.startswith(word))
+    return _PREFIX_WEIGHT * sum(times for other, times in count.items() if other.startswith(word))

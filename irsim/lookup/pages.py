@@ -1,4 +1,4 @@
-"""The references of the agent skill ``irsim-scenario``: one Markdown page per part of the language."""
+"""Makes the reference pages of the agent skill ``irsim-scenario``: one Markdown page per part of the language."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOT_SIMULATED = " (not simulated by this version)"
 
 
 class _Source:
-    """The language, made and asked once."""
+    """Schema and gaps of the language, computed once for all pages."""
 
     def __init__(self, schema: Node) -> None:
         self.schema, self.gaps = schema, find_gaps(schema)
@@ -32,7 +32,7 @@ class _Source:
 
 
 def pages() -> dict[str, str]:
-    """Name of each page without the suffix, and its text."""
+    """Return the text of each page by its file name without suffix."""
     source = _Source(json_schema())
     note = "<!-- Written by `python -m irsim.lookup.reference`: do not edit. -->\n"
     return {name: f"# {title}\n\n{note}\n{make(source).strip()}\n" for name, (title, make) in PAGES.items()}
@@ -73,7 +73,8 @@ def _kinematics(source: _Source) -> str:
         rows.append((f"`{feature.name}`", controls or "none: it never moves", state))
     orders = plain_table(("name", "controls, in this order", "rows of `state`"), rows)
     intro = (
-        "`vel_min`, `vel_max`, `acce` and `velocity` have one number per control, and so has an action of a program."
+        "`vel_min`, `vel_max`, `acce` and `velocity` have one number per control, as do the actions that a program "
+        "passes to `env.step`."
     )
     return (
         f"`kinematics: {{name: …}}`, how an object moves.\n\n{orders}\n{intro}\n\n{_components(source, 'kinematics')}"
@@ -82,8 +83,8 @@ def _kinematics(source: _Source) -> str:
 
 def _behaviors(source: _Source) -> str:
     return (
-        "`behavior: {name: …}`, what an object does when no program commands it. All of them need `kinematics`.\n\n"
-        f"{_components(source, 'behavior')}\n\n## Planners\n\nFor the key `planner` of `follow`.\n\n"
+        "`behavior: {name: …}`, what an object does when no program commands it. All behaviors need `kinematics`.\n\n"
+        f"{_components(source, 'behavior')}\n\n## Planners\n\nValues of the key `planner` of `follow`.\n\n"
         + _components(source, "planner", "###")
     )
 
@@ -97,7 +98,7 @@ def _shapes(source: _Source) -> str:
 
 def _sensors(source: _Source) -> str:
     return (
-        "`sensors: [{name: …}, …]`, a list. Lidars see what is not `unobstructed`, robots and obstacles alike.\n\n"
+        "`sensors: [{name: …}, …]`, a list. Lidars see all robots and obstacles that are not `unobstructed`.\n\n"
         + _components(source, "sensor")
         + f"\n\n{COLOR}"
     )
@@ -122,27 +123,27 @@ def _plot(source: _Source) -> str:
 
 def _templates(source: _Source) -> str:
     intro = (
-        "Scenarios to start from; each runs as it is. `irsim new NAME --set KEY=VALUE` writes one to a file. How a run "
-        "ends is told for the default parameters. After a parameter: what it takes; its default."
+        "Scenarios to start from; each runs without changes. `irsim new NAME --set KEY=VALUE` writes one to a file. "
+        "The outcome is that with default parameters. Each parameter is followed by its values and its default."
     )
     parts = [intro]
     for template in templates.load_all():
         answer = source.about(template.name)
-        about = f"{template.purpose} Ends in {' or '.join(template.outcomes)}."
-        words = f"About: {', '.join(template.tags)}."
+        about = f"{template.purpose} Outcome: {' or '.join(template.outcomes)}."
+        words = f"Tags: {', '.join(template.tags)}."
         parts.append(f"## {template.name}\n\n{about}\n{words}\n\n{key_list(_all_keys(answer))}")
     return "\n\n".join(parts)
 
 
 def _diagnostics(source: _Source) -> str:
     intro = (
-        "Every finding has a code, a path, a line, a reason and mostly a fix; the fix in the finding knows more than "
-        "this table. `irsim describe CODE`, or the tool `lookup` with the code, explains one."
+        "Every finding has a code, a path, a line, a reason and in most cases a fix, which is more specific than this "
+        "table. `irsim describe CODE`, or the tool `lookup` with the code, explains a code."
     )
     parts = [intro]
     for title, codes in (("Findings about a scenario", CODES), ("Errors of commands and tools", TOOL_CODES)):
         rows = [(f"`{name}`", code.title) for name, code in codes.items()]
-        parts.append(f"## {title}\n\n{plain_table(('code', 'what it is'), rows)}")
+        parts.append(f"## {title}\n\n{plain_table(('code', 'meaning'), rows)}")
     return "\n\n".join(parts)
 
 
@@ -154,18 +155,18 @@ def _not_simulated(source: _Source) -> str:
     ]
     table = plain_table(("section", "for example", "what the validator says"), rows)
     language = (
-        "Valid language that this version does not compute. It never runs a scenario without it: validating, drawing "
-        "and running all refuse with the code `not-yet-simulated`. The list was made by asking the validator about "
-        "each key and component alone; about combinations, and if the two differ, the validator is right.\n\n" + table
+        "Keys and values that are valid but that this version does not simulate. They are never ignored: validating, "
+        "drawing and running fail with the code `not-yet-simulated`. The list is the result of validating each key and "
+        "component alone; for combinations, ask the validator, which is always right.\n\n" + table
         if rows
         else "Every key and component is simulated at present. One that is not would be refused with the code "
         "`not-yet-simulated`."
     )
-    return f"{language}\n\n## No key at all: {guide.title}\n\n{guide.text}"
+    return f"{language}\n\n## Beyond the language: {guide.title}\n\n{guide.text}"
 
 
 def _keys(source: _Source, topic: str) -> str:
-    """The table of a mapping's keys."""
+    """Return the table of the keys of a mapping."""
     answer = source.about(topic)
     missing: dict[str, list[str]] = {}
     for gap in source.gaps:
@@ -175,16 +176,14 @@ def _keys(source: _Source, topic: str) -> str:
 
 
 def _components(source: _Source, kind: str, level: str = "##") -> str:
-    """A section for each component of a kind, after the keys that mean the same in all of them."""
+    """Return a section for each component of a kind, after a table of the keys that all of them have."""
     features = REGISTRIES[kind].features()
     answers = {feature.name: source.about(f"{kind}.{feature.name}") for feature in features}
-    everyones = [
-        key for key in _all_keys(answers[features[0].name]) if all(key in _all_keys(a) for a in answers.values())
-    ]
-    parts = [f"All of them also take:\n\n{key_table(everyones)}"] if everyones else []
+    common = [key for key in _all_keys(answers[features[0].name]) if all(key in _all_keys(a) for a in answers.values())]
+    parts = [f"Keys that all of them have:\n\n{key_table(common)}"] if common else []
     for feature in features:
         mark = "" if feature.simulated else _NOT_SIMULATED
-        own = [key for key in _all_keys(answers[feature.name]) if key not in everyones]
+        own = [key for key in _all_keys(answers[feature.name]) if key not in common]
         example = answers[feature.name].example or ""
         body = [
             " ".join((feature.options.__doc__ or "").split()),
@@ -212,4 +211,4 @@ PAGES: dict[str, tuple[str, Callable[[_Source], str]]] = {
     "diagnostics": ("Diagnostics", _diagnostics),
     "not-simulated": ("Not simulated by this version", _not_simulated),
 }
-"""Title and maker of each page."""
+"""File name without suffix -> title of the page, and the function that returns its text."""

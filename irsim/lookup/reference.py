@@ -1,6 +1,7 @@
-"""Writes the references of the agent skills and the page on IR-SIM: ``python -m irsim.lookup.reference [--check]``.
+"""Writes the reference pages of the skills and the page about IR-SIM: ``python -m irsim.lookup.reference [--check]``.
 
-They are generated from the models, registries, templates and codes, as the answers of :func:`irsim.lookup.lookup` are.
+The pages are generated from the models, registries, templates and codes, like the answers of
+:func:`irsim.lookup.lookup`.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ __all__ = ["SKILLS", "compatibility", "main", "out_of_date"]
 
 SCENARIO = "irsim-scenario"
 SKILLS: dict[str, Callable[[], dict[str, str]]] = {SCENARIO: pages, **PACKS}
-"""What makes the pages of each skill."""
+"""Skill -> function that returns its pages."""
 
 
 def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
-    """Pages that are missing, differ from what would be written, or should not be there.
+    """Return the pages that are missing, outdated or superfluous.
 
     Args:
-        folder: Where the pages are.
-        skill: Of which skill.
+        folder: Folder of the pages.
+        skill: Name of the skill.
     """
     wanted = {folder / f"{name}.md": text for name, text in SKILLS[skill]().items()}
     stale = [path for path, text in wanted.items() if not path.is_file() or path.read_text(encoding="utf-8") != text]
@@ -38,7 +39,7 @@ def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
 
 
 def compatibility() -> dict[Path, str]:
-    """Where the page about IR-SIM 2.12 is, and what it should say."""
+    """Return path and text of the page about IR-SIM 2.12."""
     return {Path(irsim.compat.__file__).with_name("README.md"): page(json_schema())}
 
 
@@ -46,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Write the pages, or check them.
 
     Returns:
-        0, or 1 if ``--check`` found some out of date.
+        Exit code: 1 if ``--check`` has found outdated pages, else 0.
     """
     parser = argparse.ArgumentParser(prog="python -m irsim.lookup.reference", description=__doc__.partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="write nothing; exit with 1 if pages are out of date")
@@ -56,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             path for path, text in compatibility().items() if not path.is_file() or path.read_text("utf-8") != text
         ]
         for path in stale:
-            print(f"{path} is out of date; python -m irsim.lookup.reference writes it again", file=sys.stderr)
+            print(f"{path} is out of date: run python -m irsim.lookup.reference to update it", file=sys.stderr)
         return 1 if stale else 0
     for skill, folder in folders.items():
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Walking the JSON Schema of the language by the words of a path, and saying in words what a node accepts."""
+"""Finds nodes in the JSON Schema of the language by the words of a path, and describes in words what they accept."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.text import listed
 from irsim.lookup.answer import Key
 
 __all__ = [
@@ -33,9 +34,11 @@ _NUMBER_BOUNDS = {
     "exclusiveMaximum": "less than",
 }
 COLOR = "A color is a name, `'#3366cc'`, a grey level as text (`'0.5'`), or `[r, g, b]` from 0 to 1."
-_NO_BOUND = 2.0**53  # bounds beyond are those of the number's storage
-_MOST_NAMES = 24
-_PLAIN = {
+MAX_MEANINGFUL_BOUND = 2.0**53
+"""Larger bounds only say how the number is stored, so they are not shown."""
+MAX_NAMES = 24
+"""Longer lists of allowed names are cut off."""
+_TYPE_WORDS = {
     "number": "a number",
     "integer": "an integer",
     "boolean": "true or false",
@@ -45,7 +48,7 @@ _PLAIN = {
 
 
 def alternatives(root: Node, node: Node) -> Iterator[Node]:
-    """The node without references and unions: one node per thing it accepts."""
+    """Resolve references and unions: return one node for each alternative that a node accepts."""
     while "$ref" in node:
         target: Node = root
         for part in node["$ref"].removeprefix("#/").split("/"):
@@ -67,7 +70,7 @@ def alternatives(root: Node, node: Node) -> Iterator[Node]:
 
 
 def mappings(root: Node, node: Node) -> list[Node]:
-    """The mappings a node accepts, also as elements of lists."""
+    """Return the mappings that a node accepts, including those in lists."""
     found: list[Node] = []
     for option in alternatives(root, node):
         if "properties" in option:
@@ -79,7 +82,7 @@ def mappings(root: Node, node: Node) -> list[Node]:
 
 
 def component_name(mapping: Node) -> str | None:
-    """The name that picks this mapping among others: ``rvo``."""
+    """Return the name that selects this mapping among others, such as ``rvo``."""
     name = mapping["properties"].get("name", {})
     name = name["anyOf"][0] if "anyOf" in name else name
     names = [value for option in [name, *name.get("anyOf", [])] for value in _values(option)]
@@ -87,12 +90,12 @@ def component_name(mapping: Node) -> str | None:
 
 
 def components(root: Node, node: Node) -> dict[str, Node]:
-    """The mappings one chooses among by name, if there are several."""
+    """Return the mappings that are selected by their name."""
     return {name: option for option in mappings(root, node) if (name := component_name(option)) is not None}
 
 
 def step(root: Node, nodes: list[Node], word: str) -> list[Node]:
-    """Where one word of a path leads: a key, or the name of a component."""
+    """Follow one word of a path, a key or the name of a component, and return the nodes that it leads to."""
     options = [option for node in nodes for option in mappings(root, node)]
     named = [option for option in options if component_name(option) == word]
     return named or [option["properties"][word] for option in options if word in option["properties"]]
@@ -101,7 +104,7 @@ def step(root: Node, nodes: list[Node], word: str) -> list[Node]:
 def paths(
     root: Node, prefix: tuple[str, ...] = (), node: Node | None = None, depth: int = 6
 ) -> Iterator[tuple[tuple[str, ...], Node]]:
-    """All paths of the language, components included, and where they lead."""
+    """Iterate over all paths of the language, including components, and the nodes that they lead to."""
     if depth == 0:
         return
     for option in mappings(root, root if node is None else node):
@@ -115,7 +118,7 @@ def paths(
 
 
 def definitions_of(root: Node, node: Any) -> dict[str, Node]:
-    """The definitions that a node refers to, those that they refer to, and so on; by name, sorted."""
+    """Return all definitions that a node refers to, directly or through others, sorted by name."""
     found: dict[str, Node] = {}
     waiting = [node]
     while waiting:
@@ -132,7 +135,7 @@ def definitions_of(root: Node, node: Any) -> dict[str, Node]:
 
 
 def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
-    """A key in words."""
+    """Describe a key in words."""
     options = list(alternatives(root, node))
     units = [unit for option in options if (unit := _unit(root, option))]
     default = node.get("default")
@@ -140,7 +143,7 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
     ranges = [text for option in options if (text := _range(option))]
     texts = [str(option["description"]) for option in [node, *options] if option.get("description")]
     kind, per_object = _type(root, options)
-    if len(allowed) > _MOST_NAMES and name.endswith("color"):
+    if len(allowed) > MAX_NAMES and name.endswith("color"):
         kind, allowed = "a color" + (" or cycle" if "cycle" in allowed else ""), []
     return Key(
         name=name,
@@ -148,14 +151,14 @@ def key(root: Node, name: str, node: Node, required: bool = False) -> Key:
         unit=units[0] if units and units[0] != "1" else None,
         default=None if default is None or default == {} else yaml_text(default),
         required=required,
-        allowed=_shortened(list(dict.fromkeys(allowed))) or "; ".join(dict.fromkeys(ranges)) or None,
+        allowed=listed(list(dict.fromkeys(allowed)), MAX_NAMES) or "; ".join(dict.fromkeys(ranges)) or None,
         per_object=per_object,
         text=" ".join(texts[0].split()) if texts else "",
     )
 
 
 def yaml_text(value: Any) -> str:
-    """A value as one line of YAML."""
+    """Write a value as one line of YAML."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{name}: {yaml_text(item)}" for name, item in value.items()) + "}"
     if isinstance(value, list):
@@ -168,13 +171,8 @@ def yaml_text(value: Any) -> str:
     return str(value) if plain else json.dumps(value, ensure_ascii=False)
 
 
-def _shortened(names: list[str]) -> str:
-    more = len(names) - _MOST_NAMES
-    return ", ".join(names[:_MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
-
-
 def _type(root: Node, options: list[Node]) -> tuple[str, bool]:
-    """What the options take, in words, and whether a list of that is one per object."""
+    """Return the type that the options accept, in words, and whether a list gives one such value to each object."""
     words = []
     per_object = False
     plain = {_digest(option) for option in options}
@@ -192,10 +190,10 @@ def _type(root: Node, options: list[Node]) -> tuple[str, bool]:
             continue
         elif _values(option):
             words.append("a name" if isinstance(_values(option)[0], str) else "a value")
-        elif kind in _PLAIN:
-            words.append(_PLAIN[kind])
+        elif kind in _TYPE_WORDS:
+            words.append(_TYPE_WORDS[kind])
         elif isinstance(kind, list):
-            words += [_PLAIN.get(str(each), str(each)) for each in kind]
+            words += [_TYPE_WORDS.get(str(each), str(each)) for each in kind]
     return " or ".join(dict.fromkeys(words)) or "anything", per_object
 
 
@@ -229,7 +227,7 @@ def _values(option: Node) -> list[Any]:
 
 def _range(option: Node) -> str:
     bounds = [(words, option[bound]) for bound, words in _NUMBER_BOUNDS.items() if bound in option]
-    return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) < _NO_BOUND)
+    return ", ".join(f"{words} {bound:g}" for words, bound in bounds if abs(bound) < MAX_MEANINGFUL_BOUND)
 
 
 def _digest(node: Node) -> str:

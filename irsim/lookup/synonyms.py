@@ -1,4 +1,4 @@
-"""Everyday words for the parts of the language: what people call things, and the topic that is about them."""
+"""Everyday words for the parts of the language, and the topics that they stand for."""
 
 from __future__ import annotations
 
@@ -77,14 +77,14 @@ EVERYDAY: dict[str, str] = {
     "gui.keyboard": "keyboard, teleop, manual control, joystick",
     "dead-ends": "deadlock, stuck, trap",
 }
-"""Topics and what they are called, separated by commas; names of the language itself need not be here."""
+"""Topic -> its everyday names, separated by commas; the names of the language itself are not repeated here."""
 
 
 def named(query: str) -> list[str]:
-    """Topics that words of a query name, those named by more words first.
+    """Return the topics whose everyday names occur in a query; longer names come first.
 
-    ``360 degree lidar`` names the lidars: a name counts wherever it stands in the query. One within a longer name that
-    fits (``drive`` in ``differential drive``) does not.
+    A name counts at any position: ``360 degree lidar`` names the lidars. It does not count inside a longer name that
+    also occurs, such as ``drive`` in ``differential drive``.
     """
     words = words_of(query.replace("*", " star"))
     found: list[tuple[int, int, str]] = []  # (words, first word, topic)

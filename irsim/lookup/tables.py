@@ -11,11 +11,11 @@ __all__ = ["key_list", "key_table", "plain_table"]
 
 
 def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = None) -> str:
-    """One row per key: name, what it takes, default, meaning.
+    """Return a table with one row per key: name, accepted values, default, meaning.
 
     Args:
-        keys: The keys. Those that take one value per object get a star.
-        gaps: Values of a key that are not simulated; its row says so.
+        keys: The keys. A star marks those that accept one value per object.
+        gaps: Key -> values that are not simulated, which its row lists.
     """
     rows = []
     for key in keys:
@@ -27,12 +27,12 @@ def key_table(keys: Iterable[Key], gaps: Mapping[str, Iterable[str]] | None = No
 
 
 def key_list(keys: Iterable[Key]) -> str:
-    """One line per key: name, what it takes, default, meaning; shorter than a table."""
+    """Return one line per key: name, accepted values, default, meaning; this is shorter than a table."""
     return "\n".join(f"- `{key.name}` ({_takes(key)}; {key.default}): {key.text}" for key in keys)
 
 
 def plain_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A Markdown table."""
+    """Return a Markdown table."""
     lines = [_row(heads)]
     lines.append(_row("---" for _ in lines[0].split("|")[1:-1]))
     lines += [_row(row) for row in rows]
@@ -44,7 +44,7 @@ def _row(cells: Iterable[str]) -> str:
 
 
 def _takes(key: Key) -> str:
-    """Type, unit and range in a few words."""
+    """Describe type, unit and range in a few words."""
     if key.type in ("a name", "a value"):
         return ", ".join(f"`{name}`" for name in (key.allowed or "").split(", "))
     if not key.type:  # a parameter of a template: the range names the unit

@@ -1,4 +1,4 @@
-"""Answers as plain text, for readers without a terminal."""
+"""Answers as plain text, for readers that do not use a terminal."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ __all__ = ["as_text", "facts"]
 
 
 def as_text(answer: Answer) -> str:
-    """All of an answer but its example, which is a command for some topics: ``answer.example`` has it."""
+    """Return an answer as text, without its example: for some topics ``answer.example`` is a command."""
     lines = [answer.title]
     if answer.text:
         lines.append(answer.text)
@@ -23,12 +23,12 @@ def as_text(answer: Answer) -> str:
 
 
 def _line(key: Key) -> str:
-    told = [part for part in (facts(key), key.text) if part]
-    return f"- {key.name}" + (f": {'. '.join(told)}" if told else "")
+    parts = [part for part in (facts(key), key.text) if part]
+    return f"- {key.name}" + (f": {'. '.join(parts)}" if parts else "")
 
 
 def facts(key: Key) -> str:
-    """Type, unit, range and default in one line."""
+    """Return type, unit, range and default of a key in one line."""
     unit = "" if not key.unit else f" {key.unit}" if key.unit.startswith("[") else f" [{key.unit}]"
     if key.type in ("a name", "a value"):
         facts = [f"one of {key.allowed}"]

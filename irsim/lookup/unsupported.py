@@ -1,4 +1,4 @@
-"""What the language has and this version does not simulate, found by asking the validator, not by a list."""
+"""Finds the parts of the language that this version does not simulate, by validating each key and component."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _ROBOT: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Gap:
-    """A key with a value that the validator refuses as not simulated yet.
+    """A key with a value that the validator rejects as not simulated yet.
 
     Attributes:
         section: ``world``, or ``robot`` (obstacles have the same keys).
         key: Key of that section.
         value: The value, or the name of the component.
         example: Key and value as YAML.
-        message: What the validator says.
+        message: Message of the validator.
     """
 
     section: str
@@ -41,12 +41,12 @@ class Gap:
 
 
 def find_gaps(schema: Node) -> list[Gap]:
-    """Every key and value of ``world``, ``robot`` and ``obstacle`` that is language only, in the order of the schema.
+    """Return the keys and values of ``world``, ``robot`` and ``obstacle`` that are not simulated, in schema order.
 
-    Each word, switch and component is tried in a small scenario of its own; combinations are not.
+    Each word, switch and component is validated in a small scenario of its own; combinations are not tried.
 
     Args:
-        schema: That of the language.
+        schema: JSON Schema of the language.
     """
     language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))["properties"]
     found = []
@@ -54,14 +54,14 @@ def find_gaps(schema: Node) -> list[Gap]:
         [keys] = [option["properties"] for option in mappings(schema, language[section])]
         for key, node in keys.items():
             for name, value in _values(schema, key, node):
-                message = _refusal({"world": _WORLD, "robot": _ROBOT, section: {**base, key: value}})
+                message = _find_refusal({"world": _WORLD, "robot": _ROBOT, section: {**base, key: value}})
                 if message is not None:
                     found.append(Gap(section, key, name, f"{key}: {yaml_text(_name_first(value))}", message))
     return found
 
 
 def _values(schema: Node, key: str, node: Node) -> Iterator[tuple[str, Any]]:
-    """Values to try: every component, every word, a switch turned on."""
+    """Iterate over the values to try: each component, each word, and true for a switch."""
     for name, option in components(schema, node).items():
         value = option.get("examples", [{"name": name}])[0]
         yield name, [value] if key == "sensors" else value
@@ -79,8 +79,8 @@ def _name_first(value: Any) -> Any:
     return {"name": value["name"], **value} if isinstance(value, dict) else value
 
 
-def _refusal(data: dict[str, Any]) -> str | None:
-    """What the validator says about something that is not simulated yet, if it says so."""
+def _find_refusal(data: dict[str, Any]) -> str | None:
+    """Return the message of the validator about something that is not simulated yet, or None."""
     for item in read(data, strict=True).diagnostics:
         if item.code == "not-yet-simulated":
             return item.message

@@ -1,12 +1,16 @@
-"""Metrics of navigation: what a recorded episode was worth.
+"""Navigation metrics of a simulated episode; distances are between footprints, undefined values are NaN."""
 
-Distances are between true footprints, never centres; what is undefined is NaN, never 0 or the horizon.
-"""
+from __future__ import annotations
 
-from irsim.metrics.clearance import Approach, Clearance, approaches, clearance, closest, least
-from irsim.metrics.definitions import EPISODE_METRICS, METRICS, Metric
-from irsim.metrics.episode import EpisodeMetrics, episode_metrics, robot_metrics
-from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
+from typing import TYPE_CHECKING
+
+from irsim.common.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from irsim.metrics.clearances import Approach, Clearance, approaches, clearance, closest, least
+    from irsim.metrics.definitions import EPISODE_METRICS, METRICS, Metric
+    from irsim.metrics.episode import EpisodeMetrics, episode_metrics, robot_metrics
+    from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
 
 __all__ = [
     "EPISODE_METRICS",
@@ -26,3 +30,15 @@ __all__ = [
     "spread",
     "wilson",
 ]
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        **dict.fromkeys(("EPISODE_METRICS", "METRICS", "Metric"), "irsim.metrics.definitions"),
+        **dict.fromkeys(
+            ("Approach", "Clearance", "approaches", "clearance", "closest", "least"), "irsim.metrics.clearances"
+        ),
+        **dict.fromkeys(("EpisodeMetrics", "episode_metrics", "robot_metrics"), "irsim.metrics.episode"),
+        **dict.fromkeys(("bootstrap", "newcombe", "spread", "wilson"), "irsim.metrics.statistics"),
+    },
+)

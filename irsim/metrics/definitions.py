@@ -1,4 +1,4 @@
-"""The keys, what they mean, their units, and how robots of an episode combine."""
+"""Definitions of all metrics: key, unit, meaning, and how the values of several robots combine."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ class Metric:
     """One metric of a robot.
 
     Attributes:
-        key: Its name in results.
-        unit: Of the value; ``0/1`` for a proportion.
-        text: What it is.
-        robots: How the robots of an episode give the value of the episode.
-        canonical: Of the canonical set; else a widely used extra.
-        better: Which way is better, None if that depends.
+        key: Name of the metric in results.
+        unit: Unit of the value; ``0/1`` for a proportion.
+        text: Meaning of the metric.
+        robots: How the values of all robots combine to that of the episode.
+        canonical: Whether it belongs to the canonical set; otherwise it is a widely used extra.
+        better: Whether more or less is better, None if that depends.
     """
 
     key: str
@@ -149,4 +149,4 @@ EPISODE_METRICS: tuple[Metric, ...] = (
         better="less",
     ),
 )
-"""What only an episode has."""
+"""Metrics that only a whole episode has."""

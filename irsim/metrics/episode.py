@@ -1,4 +1,4 @@
-"""The metrics of one episode: of each robot, and of all together."""
+"""The metrics of one episode: of each robot, and of all robots together."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.metrics.clearance import Clearance, clearance
+from irsim.metrics.clearances import Clearance, clearance
 from irsim.metrics.definitions import METRICS
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
-from irsim.metrics.motion import motion
-from irsim.metrics.outcome import outcome
-from irsim.metrics.progress import progress
-from irsim.metrics.proximity import space
-from irsim.metrics.social import social
+from irsim.metrics.motion import motion_metrics
+from irsim.metrics.outcome import outcome_metrics
+from irsim.metrics.progress import progress_metrics
+from irsim.metrics.proximity import proximity_metrics
+from irsim.metrics.social import social_metrics
 from irsim.metrics.trajectory import HOLONOMIC, Track, tracks
 from irsim.simulation.events import partner_of
 from irsim.simulation.simulation import Simulation
@@ -33,16 +33,16 @@ _TINY = 1e-12
 
 @dataclass(frozen=True)
 class EpisodeMetrics:
-    """What an episode came to.
+    """The metrics of an episode.
 
     Attributes:
-        robots: For each robot its metrics by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
-        flags: For each robot what is odd: ``unreachable`` (no way to a goal was found), ``no_approach`` (there are
-            humans, but contact with one never lay ahead: no ``time_to_collision_min``).
+        robots: Metrics of each robot by key (:data:`irsim.metrics.definitions.METRICS`); NaN where undefined.
+        flags: Flags of each robot: ``unreachable`` (no path to a goal was found), ``no_approach`` (never on a collision
+            course with a human, so ``time_to_collision_min`` is undefined).
         episode: The same keys for the episode, and those of :data:`irsim.metrics.definitions.EPISODE_METRICS`.
         names: Names of the robots.
-        hits: For each robot the name of what it touched first before it arrived, None if nothing.
-        clearance: Distances of the robots.
+        hits: Name of the first object that each robot touched before it arrived, None without a contact.
+        clearance: Clearances of the robots.
     """
 
     robots: list[dict[str, float]]
@@ -70,14 +70,14 @@ def episode_metrics(
 ) -> EpisodeMetrics:
     """The metrics of an episode, sampled at every step.
 
-    Each robot is measured until it first arrived: what happens afterwards is not its doing.
+    Each robot is measured until its first arrival: what happens afterwards is not caused by it.
 
     Args:
-        trace: From the start of the episode.
-        scenario: What was simulated, or the simulation in the scene of the trace.
-        events: What happened.
+        trace: Trace from the start of the episode.
+        scenario: The scenario that was simulated, or the simulation with the scene of the trace.
+        events: Events of the episode.
         seed: With a scenario: the seed of the run.
-        ways: Shortest ways in a world in which the same things stand in the same places.
+        ways: Shortest paths in a world with the same static objects.
     """
     simulation = scenario if isinstance(scenario, Simulation) else Simulation(scenario, [seed])
     records = simulation.scenario.objects
@@ -95,10 +95,10 @@ def episode_metrics(
     order = [metric.key for metric in METRICS]
     values, flags = [], []
     for track in cut:
-        made, odd = progress(track, geodesics, inscribed_radius(simulation, track.index))
-        near, apart = space(track)
-        found = outcome(track) | motion(track) | near | social(track) | made
-        values.append({key: _settled(found[key]) for key in order})
+        made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
+        near, apart = proximity_metrics(track)
+        found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made
+        values.append({key: _without_rounding_error(found[key]) for key in order})
         flags.append(odd + apart)
     names = [track.name for track in cut]
     hits = [_partner(track) for track in cut]
@@ -106,9 +106,9 @@ def episode_metrics(
 
 
 def episode_value(key: str, values: Sequence[float]) -> float:
-    """The value of an episode from those of its robots: all of them, the least, the greatest, or their mean.
+    """Combine the values of the robots to that of the episode: whether all have it, the least, greatest or mean value.
 
-    Robots for which it is undefined are left out.
+    Robots for which the value is undefined are left out.
     """
     known = [value for value in values if not math.isnan(value)]
     if not known:
@@ -131,14 +131,14 @@ def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     collided = any(not robot["success"] and not robot["timeout"] for robot in robots)
     found["timeout"] = float(not collided and not found["success"]) if robots else math.nan
     found["collision"] = float(collided) if robots else math.nan
-    found["pedestrian_delay"] = math.nan  # takes a second run: irsim.benchmark makes it
+    found["pedestrian_delay"] = math.nan  # needs a second run without robots, which irsim.benchmark makes
     times = [robot["time_to_goal"] for robot in robots]
     found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
     return found
 
 
-def _settled(value: float) -> float:
-    """Without the dust of rounding."""
+def _without_rounding_error(value: float) -> float:
+    """The value, or 0 if it is so small that it is a rounding error."""
     return 0.0 if abs(value) < _TINY else value
 
 
@@ -146,4 +146,6 @@ def _top_speed(vel_max: Sequence[float], kinematics: object) -> float:
     name = getattr(kinematics, "name", None)
     if name is None:
         return 0.0
-    return float(max(vel_max[:2]) if name in HOLONOMIC else vel_max[0])  # not both at once: most behaviors never do
+    return float(
+        max(vel_max[:2]) if name in HOLONOMIC else vel_max[0]
+    )  # not their norm: most behaviors never use both at once

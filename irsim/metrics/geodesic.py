@@ -1,4 +1,4 @@
-"""The shortest way round what stands still."""
+"""Shortest paths around static obstacles."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.metrics.roles import STATIC, company_of
+from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
@@ -18,28 +18,33 @@ if TYPE_CHECKING:
 __all__ = ["Geodesics", "inscribed_radius"]
 
 Floats = NDArray[np.float64]
-_FINE = 0.05  # cells at most [m]; half the radius where that is less
-_MOST_CELLS = 250_000
-_COARSER = 4.0
-_SLACK = 1e-3  # the disc is that much smaller than the body, which may touch
-_SMALLEST = 0.01  # radius [m]
+_MAX_CELL_M = 0.05
+"""Largest cell [m]; cells are half the radius of the disc where that is less."""
+_MAX_CELLS = 250_000
+"""Number of cells beyond which larger cells are used."""
+_COARSE_FACTOR = 4.0
+"""Factor by which coarse cells are larger."""
+_SLACK_M = 1e-3
+"""Length [m] by which the disc is smaller than the body, which may touch obstacles."""
+_MIN_RADIUS_M = 0.01
+"""Smallest radius of the disc [m]."""
 
 
 class Geodesics:
-    """Shortest ways of a disc among the static things of one world: any-angle smoothed A* on the inflated map.
+    """Shortest paths of a disc among the static objects of one world: any-angle smoothed A* on the inflated map.
 
-    Cells are 0.05 m or half the radius, whichever is less, coarser in worlds of more than 250,000 such cells. The
-    straight line is the way where it is free.
+    Cells are 0.05 m or half the radius, whichever is less, and larger in worlds of more than 250,000 such cells. A
+    free straight line is always the shortest path.
 
     Args:
-        simulation: What stands where.
-        world: Which of its worlds.
+        simulation: The simulation, whose static objects are the obstacles.
+        world: Index of one of its worlds.
     """
 
     def __init__(self, simulation: Simulation, world: int = 0) -> None:
         first = world * simulation.objects
         records = simulation.scenario.objects
-        standing = [first + int(i) for i in np.flatnonzero(company_of(records) == STATIC) if records[i].static]
+        standing = [first + int(i) for i in np.flatnonzero(kinds_of(records) == STATIC) if records[i].static]
         parts = [part for row in standing for part in placed_parts(simulation.state, row, world_frame=True)]
         self._bounds = simulation.scenario.world.bounds
         self._empty = not parts
@@ -48,33 +53,33 @@ class Geodesics:
         self._known: dict[Any, Floats | None] = {}
 
     def way(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> Floats | None:
-        """Shortest way of a disc.
+        """Find the shortest path of a disc.
 
         Args:
-            start: (2,) [m].
-            goal: (2,) [m].
-            radius: Of the disc [m].
-            coarse: On cells four times as large, if that finds one; much faster.
+            start: (2,) start [m].
+            goal: (2,) goal [m].
+            radius: Radius of the disc [m].
+            coarse: Search on cells four times as large first, which is much faster; on fine cells if that fails.
 
         Returns:
-            (K, 2) corners from start to goal [m]; None if there is no way.
+            (K, 2) corners of the path from start to goal [m]; None if there is no path.
         """
         line = np.array([start[:2], goal[:2]], dtype=np.float64)
         if self._empty:
             return line
         key = (line.tobytes(), radius, coarse)
         if key not in self._known:
-            size = max(radius - _SLACK, _SMALLEST)
-            found = self._searched(line, size, _COARSER) if coarse else None
-            self._known[key] = self._searched(line, size) if found is None else found
+            size = max(radius - _SLACK_M, _MIN_RADIUS_M)
+            found = self._search(line, size, _COARSE_FACTOR) if coarse else None
+            self._known[key] = self._search(line, size) if found is None else found
         return self._known[key]
 
     def length(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> float:
-        """Length of :meth:`way` [m]; NaN if there is none."""
+        """Length of :meth:`way` [m]; NaN if there is no path."""
         way = self.way(start, goal, radius, coarse=coarse)
         return math.nan if way is None else float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
-    def _searched(self, line: Floats, radius: float, larger: float = 1.0) -> Floats | None:
+    def _search(self, line: Floats, radius: float, larger: float = 1.0) -> Floats | None:
         x0, y0, x1, y1 = self._bounds
         low, high = line.min(axis=0) - radius, line.max(axis=0) + radius
         bounds = (min(x0, low[0]), min(y0, low[1]), max(x1, high[0]), max(y1, high[1]))
@@ -86,7 +91,7 @@ class Geodesics:
         if terrain.clear(body, 0.0, start, goal):
             return line
         width, height = bounds[2] - bounds[0], bounds[3] - bounds[1]
-        size = larger * max(min(_FINE, radius / 2), math.sqrt(width * height / _MOST_CELLS))
+        size = larger * max(min(_MAX_CELL_M, radius / 2), math.sqrt(width * height / _MAX_CELLS))
         nx, ny = max(1, round(width / size)), max(1, round(height / size))
         path, *_ = terrain.plan(
             core.AstarOptions(resolution=0.0),
@@ -104,19 +109,19 @@ class Geodesics:
 
 
 def inscribed_radius(simulation: Simulation, row: int) -> float:
-    """Radius [m] of the largest disc about the origin of a body that one of its parts contains; 0 without any."""
+    """Radius [m] of the largest disc about the origin of a body inside one of its parts; 0 if the origin is outside."""
     state, best = simulation.state, 0.0
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":
             x, y, radius = state.circle(row, part, False)
             best = max(best, radius - math.hypot(x, y))
         elif kind == "polygon":
-            best = max(best, _inside(np.asarray(state.vertices(row, part, False))))
+            best = max(best, _depth_of_origin(np.asarray(state.vertices(row, part, False))))
     return best
 
 
-def _inside(corners: Floats) -> float:
-    """How deep the origin is inside a polygon; 0 outside."""
+def _depth_of_origin(corners: Floats) -> float:
+    """Distance of the origin to the boundary of a polygon [m]; 0 outside the polygon."""
     a, b = corners, np.roll(corners, -1, axis=0)
     along = b - a
     length2 = np.maximum((along**2).sum(axis=1), 1e-300)

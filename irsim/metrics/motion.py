@@ -1,20 +1,24 @@
-"""How it moved: Francis et al. (arXiv 2306.16740), ST, PL, V, A, J; HuNavSim; Arena; SocNavBench."""
+"""Metrics of motion: Francis et al. (arXiv 2306.16740), ST, PL, V, A, J; HuNavSim; Arena; SocNavBench."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.metrics.trajectory import Track, spaced
+from irsim.metrics.trajectory import Track, thin_path
 
-__all__ = ["curvatures", "motion", "runs_of"]
+__all__ = ["curvatures", "motion_metrics", "runs_of"]
 
-_STILL, _UNTURNED = 0.05, 0.05  # m/s, rad/s: slower in both is stalled
-_FREEZE = 2.0  # a stall of as long is freezing [s]
+_STALL_SPEED = 0.05
+"""Speed [m/s] below which a robot is stalled, if it also turns slowly."""
+_STALL_TURN_RATE = 0.05
+"""Turn rate [rad/s] below which a robot is stalled, if it also moves slowly."""
+_FREEZE_S = 2.0
+"""Duration [s] from which on a stall counts as freezing."""
 
 
-def motion(track: Track) -> dict[str, float]:
-    """Speed, its derivatives and the shape of the path, until it arrived.
+def motion_metrics(track: Track) -> dict[str, float]:
+    """Speed, its derivatives and the shape of the path of a robot, until it arrived.
 
     - ``stalled_time`` [s]: speed < 0.05 m/s and yaw rate < 0.05 rad/s. ``freezing_count``, ``freezing_time``: stalls of
       at least 2 s.
@@ -28,11 +32,11 @@ def motion(track: Track) -> dict[str, float]:
     - ``motion_energy`` [m^2/s]: sum of squared speed times dt (unit mass).
     - ``control_effort`` [s]: sum over steps and controls of (executed control / its greatest magnitude)^2 times dt, of
       the controls that have a finite limit above 0; NaN without any.
-    - ``left_world``: its position was outside the world.
+    - ``left_world``: whether its position ever was outside the world, 0 or 1.
     """
     dt, speed = track.step_time, track.speed
-    stalled = (speed < _STILL) & (np.abs(track.turning) < _UNTURNED * dt)
-    long = [run for run in runs_of(stalled) if (run[1] - run[0]) * dt >= _FREEZE - 1e-9]
+    stalled = (speed < _STALL_SPEED) & (np.abs(track.turning) < _STALL_TURN_RATE * dt)
+    long = [run for run in runs_of(stalled) if (run[1] - run[0]) * dt >= _FREEZE_S - 1e-9]
     turned = float(np.abs(track.bends).sum())
     length = track.path_length
     bends = curvatures(track.position)
@@ -72,12 +76,11 @@ def _effort(track: Track) -> float:
 
 
 def curvatures(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Menger curvature [1/m] of each three successive points of a path, (K - 2,) of the K kept.
+    """(K - 2,) Menger curvature [1/m] of three successive points of a path, thinned to K points 0.05 m apart.
 
-    A point is kept once it is 0.05 m from the last that was. Curvature of three points: 4 x area of their triangle /
-    product of its sides.
+    The curvature of three points is 4 x area of their triangle / product of its sides.
     """
-    kept = spaced(points)
+    kept = thin_path(points)
     if len(kept) < 3:
         return np.zeros(0)
     a, b, c = kept[:-2], kept[1:-1], kept[2:]
@@ -89,7 +92,7 @@ def curvatures(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def runs_of(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """(first, one past the last) of each run of flags that are set."""
+    """(first, one past the last) row of each run of set flags."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 

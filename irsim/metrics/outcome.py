@@ -1,23 +1,23 @@
-"""Success, collisions, time-out: Francis et al. (arXiv 2306.16740), S, C, WC, AC, HC, TO, T."""
+"""Metrics of the outcome: success, collisions, time-out; Francis et al. (arXiv 2306.16740), S, C, WC, AC, HC, TO, T."""
 
 from __future__ import annotations
 
 from irsim.metrics.roles import HUMAN, ROBOT
 from irsim.metrics.trajectory import Track
 
-__all__ = ["outcome"]
+__all__ = ["outcome_metrics"]
 
 
-def outcome(track: Track) -> dict[str, float]:
-    """How it ended. Exactly one of success, collision (stopped by one, or arrived after one) and time-out holds.
+def outcome_metrics(track: Track) -> dict[str, float]:
+    """Outcome of a robot: exactly one of success, collision (stopped by one, or arrived after one) and time-out.
 
     - ``success``: arrived within the horizon, and no contact began before or at that step; ``goal_reached`` ignores
       contacts.
     - ``collision_count``: contacts that began (at least one step without before), per unordered pair, until it arrived;
       ``wall_``, ``agent_``, ``human_collisions`` of them by partner. ``collision_steps``: steps in contact.
-    - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which it drove on is counted,
-      but does not end it (``world.collision_mode``).
-    - ``time_to_goal`` [s]: of the first arrival; NaN without.
+    - ``timeout``: neither arrived nor stopped by a collision at the end; a contact after which the robot drives on
+      (``world.collision_mode``) counts as a contact, not as the end.
+    - ``time_to_goal`` [s]: time of the first arrival; NaN without one.
     """
     kinds = [kind for _, kind in track.collisions]
     agents, humans = kinds.count(ROBOT), kinds.count(HUMAN)

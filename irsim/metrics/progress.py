@@ -1,4 +1,4 @@
-"""How well it made its way: Francis et al. (arXiv 2306.16740), FP, SPL; SEAN; SocNavGym; BARN."""
+"""Metrics of progress towards the goals: Francis et al. (arXiv 2306.16740), FP, SPL; SEAN; SocNavGym; BARN."""
 
 from __future__ import annotations
 
@@ -7,33 +7,37 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.angles import wrap
 from irsim.metrics.geodesic import Geodesics
-from irsim.metrics.trajectory import Track, wrapped
+from irsim.metrics.trajectory import Track
 
-__all__ = ["UNREACHABLE", "progress"]
+__all__ = ["UNREACHABLE", "progress_metrics"]
 
 UNREACHABLE = "unreachable"
-"""Flag of a robot: no way to a goal of its was found, so that what needs the shortest way is NaN."""
-_WINDOW, _LEAST = 5.0, 0.1  # [s], [m]
+"""Flag of a robot to one of whose goals no path was found; metrics that need the shortest path are NaN."""
+_WINDOW_S = 5.0
+"""Length of the windows of ``failure_to_progress`` [s]."""
+_MIN_PROGRESS_M = 0.1
+"""Length [m] by which the path to the goal must become shorter in a window."""
 
 
-def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[str, float], list[str]]:
-    """What compares with the shortest way L*, over the goals in turn; and what is odd.
+def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[str, float], list[str]]:
+    """Metrics of a robot that refer to the shortest path L* over its goals in turn, and its flags.
 
-    - ``failure_to_progress``: windows of 5 s, one after the other, in which the shortest way to the present goal became
-      less than 0.1 m shorter (where there is none, the straight line); a window in which the goal changed is progress.
+    - ``failure_to_progress``: number of successive windows of 5 s in which the shortest path to the present goal (the
+      straight line if there is no path) became less than 0.1 m shorter; a window in which the goal changes is progress.
     - ``spl``: success x L*/max(path length, L*) (Anderson et al., arXiv 1807.06757). ``path_efficiency``: path length /
       L*, of robots that arrived. ``stl``: success x T*/max(T, T*), T* = L*/top speed, the greatest of its
       limits forward and sideways. ``barn_score``: success x
-      T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5). All NaN where there is no way to a goal.
-    - ``path_irregularity`` [rad]: absolute heading changes minus those of the shortest way, of robots that arrived.
-      Where the body has to turn to move, the shortest way begins with the turn towards it.
-    - ``min_distance_to_goal``, ``final_distance_to_goal`` [m]: to the present goal, straight.
+      T*/clip(T, 2 T*, 8 T*), T* = L*/2 (Perille et al. 2020; at most 0.5). All NaN without a path to a goal.
+    - ``path_irregularity`` [rad]: absolute heading changes minus those of the shortest path, of robots that arrived.
+      For a drive that must turn to move, those of the shortest path include the first turn towards it.
+    - ``min_distance_to_goal``, ``final_distance_to_goal`` [m]: straight-line distance to the present goal.
 
     Args:
         track: The robot.
-        geodesics: Shortest ways in its world.
-        radius: Of the disc that goes them [m].
+        geodesics: Shortest paths in its world.
+        radius: Radius of the disc for which the shortest paths are computed [m].
     """
     nan = math.nan
     straight = np.linalg.norm(track.goal[:, :2] - track.position, axis=1)
@@ -71,7 +75,7 @@ def progress(track: Track, geodesics: Geodesics, radius: float) -> tuple[dict[st
 
 
 def _goals(track: Track) -> list[NDArray[np.float64]]:
-    """The goals it had, in turn."""
+    """The goals of a robot, in turn."""
     goals = track.goal[:, :2]
     goals = goals[~np.isnan(goals).any(axis=1)]
     if not len(goals):
@@ -81,7 +85,7 @@ def _goals(track: Track) -> list[NDArray[np.float64]]:
 
 
 def _without_progress(track: Track, geodesics: Geodesics, radius: float) -> int:
-    window = max(1, round(_WINDOW / track.step_time))
+    window = max(1, round(_WINDOW_S / track.step_time))
     count = 0
     for begin in range(0, len(track.pose) - window, window):
         a, b = begin, begin + window
@@ -89,16 +93,16 @@ def _without_progress(track: Track, geodesics: Geodesics, radius: float) -> int:
         if np.isnan(goal).any() or (track.goal[b, :2] != goal).any():
             continue
         before, after = (geodesics.length(track.position[row], goal, radius, coarse=True) for row in (a, b))
-        if math.isnan(before) or math.isnan(after):  # no way: as the crow flies
+        if math.isnan(before) or math.isnan(after):  # without a path the straight line counts
             before, after = (float(np.linalg.norm(goal - track.position[row])) for row in (a, b))
-        count += before - after < _LEAST
+        count += before - after < _MIN_PROGRESS_M
     return count
 
 
 def _turns(way: NDArray[np.float64], track: Track) -> float:
-    """Absolute heading changes of one who goes a way [rad]; if it cannot go sideways, it first turns towards it."""
+    """Absolute heading changes along a path [rad], including the first turn towards it for drives that need it."""
     legs = np.diff(way, axis=0)
     legs = legs[np.linalg.norm(legs, axis=1) > 0]
     before = [] if track.holonomic else [track.pose[0, 2]]
     angles = np.concatenate([before, np.arctan2(legs[:, 1], legs[:, 0])])
-    return float(np.abs(wrapped(np.diff(angles))).sum())
+    return float(np.abs(wrap(np.diff(angles))).sum())

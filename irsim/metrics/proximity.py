@@ -1,4 +1,4 @@
-"""How near it came to others: Francis et al. (arXiv 2306.16740), CD, SC, DH, TTC; HuNavSim; CrowdNav; robot_sf."""
+"""Metrics of proximity to others: Francis et al. (arXiv 2306.16740), CD, SC, DH, TTC; HuNavSim; CrowdNav; robot_sf."""
 
 from __future__ import annotations
 
@@ -10,28 +10,31 @@ from numpy.typing import NDArray
 from irsim.metrics.motion import runs_of
 from irsim.metrics.trajectory import Track
 
-__all__ = ["NO_APPROACH", "space", "time_to_contact"]
+__all__ = ["NO_APPROACH", "proximity_metrics", "time_to_contact"]
 
 NO_APPROACH = "no_approach"
-"""Flag of a robot: it and the humans never went for a contact, so that the time to it is NaN."""
-_PERSONAL = 0.5  # closer is intruding [m]
+"""Flag of a robot that was never on a collision course with a human, so that ``time_to_collision_min`` is NaN."""
+_PERSONAL_M = 0.5
+"""Distance [m] to a human below which a robot intrudes into its personal space."""
 _ZONES = {"intimate": (-np.inf, 0.45), "personal": (0.45, 1.2), "social": (1.2, 3.6), "public": (3.6, np.inf)}
-_NEAR = 0.2  # [m]
+"""Proxemic zones: least and greatest distance [m] to the nearest human."""
+_NEAR_M = 0.2
+"""Distance [m] to a human below which there is discomfort, or a near miss."""
 
 
-def space(track: Track) -> tuple[dict[str, float], list[str]]:
-    """Distances between surfaces over all rows until it arrived, NaN where there is none of the kind; what is odd.
+def proximity_metrics(track: Track) -> tuple[dict[str, float], list[str]]:
+    """Metrics of the distances between footprints until a robot arrived, and its flags; NaN without such objects.
 
-    - ``clearing_distance_min``, ``_avg`` [m]: to the nearest static thing.
-    - ``min_clearance`` [m]: to the nearest robot, human or static thing.
+    - ``clearing_distance_min``, ``_avg`` [m]: to the nearest static object.
+    - ``min_clearance`` [m]: to the nearest robot, human or static object.
     - ``distance_to_human_min``, ``_avg`` [m]: to the nearest human.
     - ``space_compliance``: share of rows with every human at 0.5 m or more (high is good);
       ``personal_space_intrusion_ratio`` is 1 minus it. ``proxemics_*_ratio``: share of rows with the nearest human
       closer than 0.45 m, to 1.2 m, to 3.6 m, and beyond.
     - ``discomfort_ratio``: share of rows with 0 < distance < 0.2 m, ``discomfort_min_dist`` the mean of those.
     - ``near_misses``: runs of rows within 0.2 m of a human that end without contact.
-    - ``time_to_collision_min`` [s]: see :func:`time_to_contact`; NaN, and flagged, if it never comes for any
-      of the humans.
+    - ``time_to_collision_min`` [s]: see :func:`time_to_contact`; NaN, and flagged, if the robot is never on a collision
+      course with a human.
     """
     _, humans, static = track.distance.T
     nan = float("nan")
@@ -43,11 +46,11 @@ def space(track: Track) -> tuple[dict[str, float], list[str]]:
         "distance_to_human_avg": _mean(humans),
     }
     there = humans[~np.isnan(humans)]
-    share = float((there >= _PERSONAL).mean()) if len(there) else nan
+    share = float((there >= _PERSONAL_M).mean()) if len(there) else nan
     found |= {"space_compliance": share, "personal_space_intrusion_ratio": 1.0 - share}
     for zone, (low, high) in _ZONES.items():
         found[f"proxemics_{zone}_ratio"] = float(((there >= low) & (there < high)).mean()) if len(there) else nan
-    close = there[(there > 0) & (there < _NEAR)]
+    close = there[(there > 0) & (there < _NEAR_M)]
     found |= {
         "discomfort_ratio": len(close) / len(there) if len(there) else nan,
         "discomfort_min_dist": _mean(close),
@@ -59,9 +62,9 @@ def space(track: Track) -> tuple[dict[str, float], list[str]]:
 
 
 def time_to_contact(track: Track) -> NDArray[np.float64]:
-    """(K - 1,) least time [s] until the bounding disc of the robot meets that of a human, both going on as in the step.
+    """(K - 1,) least time [s] until the bounding discs of the robot and a human touch at their present velocities.
 
-    0 while they overlap; NaN where nobody would ever be met.
+    0 while they overlap; NaN if they never touch.
     """
     steps = len(track.pose) - 1
     best = np.full(max(steps, 0), np.nan)
@@ -81,8 +84,8 @@ def time_to_contact(track: Track) -> NDArray[np.float64]:
 
 
 def _near_misses(distance: NDArray[np.float64]) -> int:
-    """Runs within the near-miss distance that end, without contact in them."""
-    runs = runs_of(distance < _NEAR)
+    """Number of runs of rows within the near-miss distance that end without a contact in them."""
+    runs = runs_of(distance < _NEAR_M)
     return sum(bool((distance[begin:end] > 0).all()) and end < len(distance) for begin, end in runs)
 
 

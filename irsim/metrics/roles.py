@@ -1,4 +1,4 @@
-"""Who is who to a robot: other robots, humans, static things."""
+"""Kinds of objects from the view of a robot: other robots, humans, static objects."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ if TYPE_CHECKING:
 
 __all__ = [
     "HUMAN",
+    "IGNORED",
     "KINDS",
-    "NOBODY",
     "ROBOT",
     "STATIC",
-    "company_of",
-    "on_their_way",
+    "kinds_of",
     "social_groups",
+    "travelling_humans",
 ]
 
 KINDS = ("robot", "human", "static")
 """Kinds of objects, in the order of the numbers below."""
-ROBOT, HUMAN, STATIC, NOBODY = range(4)
+ROBOT, HUMAN, STATIC, IGNORED = range(4)
 _HUMAN_TAG = "pedestrian"
 
 
-def company_of(records: Sequence[ObjectRecord]) -> NDArray[np.uint8]:
-    """(N,) what each object is to a robot beside it.
+def kinds_of(records: Sequence[ObjectRecord]) -> NDArray[np.uint8]:
+    """(N,) kind of each object.
 
-    *human*: an obstacle that moves by itself, or an object tagged ``pedestrian``; *robot*: a robot; *static*: what
-    stands still or is only pushed, maps, walls round the world; nobody: what is ``unobstructed``.
+    *human*: an obstacle that moves by its behavior, or an object tagged ``pedestrian``; *robot*: a robot; *static*:
+    an object that stands still or is only pushed, a map, a wall around the world; *ignored*: ``unobstructed`` objects.
     """
     return np.array([_kind(record) for record in records], dtype=np.uint8)
 
 
 def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
-    """Who walks together: the members of each of the ``social_groups`` of a group behavior, as indices of objects."""
+    """Members of each of the ``social_groups`` of group behaviors, as indices of objects."""
     members: dict[int, list[int]] = {}
     for index, record in enumerate(records):
         members.setdefault(record.group, []).append(index)
@@ -49,9 +49,9 @@ def social_groups(records: Sequence[ObjectRecord]) -> list[tuple[int, ...]]:
     return found
 
 
-def on_their_way(records: Sequence[ObjectRecord]) -> frozenset[str]:
-    """Names of the humans that go to a last goal: not those that wander or walk round and round."""
-    kinds = company_of(records)
+def travelling_humans(records: Sequence[ObjectRecord]) -> frozenset[str]:
+    """Names of the humans that have a last goal, unlike those that wander or loop."""
+    kinds = kinds_of(records)
     return frozenset(
         record.name
         for record, kind in zip(records, kinds, strict=True)
@@ -61,7 +61,7 @@ def on_their_way(records: Sequence[ObjectRecord]) -> frozenset[str]:
 
 def _kind(record: ObjectRecord) -> int:
     if record.unobstructed:
-        return NOBODY
+        return IGNORED
     if _HUMAN_TAG in record.tags:
         return HUMAN
     if record.role == "robot":

@@ -1,4 +1,4 @@
-"""Over episodes: mean, spread and intervals."""
+"""Statistics over episodes: mean, standard deviation and confidence intervals."""
 
 from __future__ import annotations
 
@@ -11,15 +11,20 @@ from numpy.typing import NDArray
 
 __all__ = ["bootstrap", "newcombe", "spread", "wilson"]
 
-_Z = 1.959963984540054  # of the normal distribution, 95 % two-sided
+_Z = 1.959963984540054
+"""Quantile of the normal distribution for a two-sided interval of 95 %."""
 _RESAMPLES = 10_000
+"""Number of bootstrap resamples."""
 _SEED = 20_230_616
-_BLOCK = 2_000_000  # numbers drawn at once
-_KEPT = 5_000_000  # numbers remembered for the next call
+"""Fixed seed of the resamples, so that equal values always have the same interval."""
+_BLOCK = 2_000_000
+"""Number of values that are drawn at once."""
+_MAX_CACHED = 5_000_000
+"""Number of weights that are cached for the next call."""
 
 
 def wilson(successes: int, count: int) -> tuple[float, float]:
-    """95 % interval of a proportion (Wilson 1927); NaN for none at all."""
+    """95 % interval of a proportion (Wilson 1927); NaN for a count of 0."""
     if count < 1:
         return math.nan, math.nan
     share, z2 = successes / count, _Z**2
@@ -31,13 +36,13 @@ def wilson(successes: int, count: int) -> tuple[float, float]:
 def newcombe(both: int, mine: int, other: int, neither: int) -> tuple[float, float]:
     """95 % interval of a difference of two paired shares (Newcombe 1998, paired data, method 10); NaN without pairs.
 
-    It has a width also where all pairs agree, which resampling them would not give.
+    The interval is not empty even if all pairs agree; a bootstrap of the pairs would be.
 
     Args:
-        both: Pairs in which both have it.
-        mine: Pairs in which only the one has it whose share the other's is taken from.
-        other: Pairs in which only the other has it.
-        neither: Pairs in which none has it.
+        both: Number of pairs in which both episodes have the property.
+        mine: Number of pairs in which only the first has it, from whose share that of the second is subtracted.
+        other: Number of pairs in which only the second has it.
+        neither: Number of pairs in which neither has it.
     """
     n = both + mine + other + neither
     if n < 1:
@@ -72,28 +77,28 @@ def bootstrap(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, flo
 
 
 def _resamples(count: int) -> Iterator[NDArray[np.float64]]:
-    """How often each of ``count`` values is drawn in each resample, in blocks of (resamples, count)."""
-    if count * _RESAMPLES <= _KEPT:
+    """Number of times that each of ``count`` values is drawn in each resample, in blocks of (resamples, count)."""
+    if count * _RESAMPLES <= _MAX_CACHED:
         yield _weights(count)
         return
     rng = np.random.default_rng(_SEED)
     rows = max(1, _BLOCK // count)
     for begin in range(0, _RESAMPLES, rows):
-        yield _drawn(rng, min(rows, _RESAMPLES - begin), count)
+        yield _draw(rng, min(rows, _RESAMPLES - begin), count)
 
 
 @lru_cache(maxsize=2)
 def _weights(count: int) -> NDArray[np.float64]:
-    return _drawn(np.random.default_rng(_SEED), _RESAMPLES, count)
+    return _draw(np.random.default_rng(_SEED), _RESAMPLES, count)
 
 
-def _drawn(rng: np.random.Generator, rows: int, count: int) -> NDArray[np.float64]:
+def _draw(rng: np.random.Generator, rows: int, count: int) -> NDArray[np.float64]:
     chosen = rng.integers(0, count, size=(rows, count)) + count * np.arange(rows)[:, None]
     return np.bincount(chosen.ravel(), minlength=rows * count).reshape(rows, count).astype(np.float64)
 
 
 def spread(values: Sequence[float]) -> tuple[int, float, float]:
-    """Count, mean and standard deviation (of the sample, n - 1) of the values that are not NaN."""
+    """Count, mean and sample standard deviation (n - 1) of the values that are not NaN."""
     known = [value for value in values if not math.isnan(value)]
     if not known:
         return 0, math.nan, math.nan

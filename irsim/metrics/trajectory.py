@@ -1,4 +1,4 @@
-"""One robot's part of a trace, until it arrived."""
+"""The trajectory of one robot up to its first arrival, cut out of a trace."""
 
 from __future__ import annotations
 
@@ -9,48 +9,51 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.metrics.roles import HUMAN, company_of, social_groups
+from irsim.common.angles import wrap
+from irsim.metrics.roles import HUMAN, kinds_of, social_groups
 
 if TYPE_CHECKING:
-    from irsim.metrics.clearance import Clearance
+    from irsim.metrics.clearances import Clearance
     from irsim.simulation.events import Event
     from irsim.simulation.simulation import Simulation
     from irsim.simulation.trace import Trace
 
-__all__ = ["HOLONOMIC", "Track", "spaced", "tracks", "wrapped"]
+__all__ = ["HOLONOMIC", "Track", "thin_path", "tracks"]
 
 Floats = NDArray[np.float64]
 HOLONOMIC = ("omni", "omni_angular")
-_APART = 0.05  # points of a path that directions and curvature are taken of [m]
+"""Drives that need not turn to move in another direction."""
+_POINT_SPACING_M = 0.05
+"""Least distance [m] of the path points from which directions and curvatures are computed."""
 
 
 @dataclass(frozen=True)
 class Track:
-    """Rows 0 to the first arrival of one robot, or to the end of the trace.
+    """Trajectory of one robot up to its first arrival, or to the end of the trace.
 
     Attributes:
-        name: Of the robot.
-        index: Among the objects.
+        name: Name of the robot.
+        index: Index of the robot among the objects.
         first: Step of the first row.
         step_time: Period [s].
         pose: (K, 3) x, y [m], heading [rad], world frame; row 0 is the start.
         goal: (K, 3) present goal; NaN without one.
-        collided: (K,) in contact with something that stands in the way.
-        stopped: At the last row a contact keeps it from moving.
-        distance: (K, 3) distance [m] to the nearest robot, human, static thing (see ``Clearance``).
+        collided: (K,) whether the robot touches an object that blocks it.
+        stopped: Whether a contact keeps it from moving at the last row.
+        distance: (K, 3) distance [m] to the nearest robot, human, static object (see ``Clearance``).
         arrival: Step of the first arrival, None if it never arrived.
-        collisions: Its contacts until then, with the kind of each (a number of :mod:`irsim.metrics.roles`).
-        control: (K - 1, C) controls executed in each step, as many as its drive has.
-        limits: (C,) greatest magnitude of each.
-        outside: (K,) its position is outside the world.
+        collisions: Contacts up to the arrival, each with the kind of the partner (see :mod:`irsim.metrics.roles`).
+        control: (K - 1, C) controls executed in each step.
+        limits: (C,) greatest magnitude of each control.
+        outside: (K,) whether its position is outside the world.
         others: (K, M, 3) poses of the humans.
-        others_static: (K, M) distance of each to the nearest static thing [m].
+        others_static: (K, M) distance of each human to the nearest static object [m].
         people: Names of the humans.
-        groups: Of each social group its members, as columns of ``others``.
+        groups: Members of each social group, as columns of ``others``.
         reaches: (M,) bounding radii of the humans [m].
-        reach: Its own bounding radius [m].
-        top_speed: The greatest of its limits of speed, forward or sideways [m/s].
-        holonomic: It need not turn to go another way.
+        reach: Bounding radius of the robot [m].
+        top_speed: Greatest speed limit, forward or sideways [m/s].
+        holonomic: Whether it can move in another direction without turning.
     """
 
     name: str
@@ -78,7 +81,7 @@ class Track:
 
     @property
     def position(self) -> Floats:
-        """(K, 2) [m]."""
+        """(K, 2) positions [m], world frame."""
         return self.pose[:, :2]
 
     @property
@@ -88,25 +91,25 @@ class Track:
 
     @property
     def speed(self) -> Floats:
-        """(K - 1,) [m/s]."""
+        """(K - 1,) speed during each step [m/s]."""
         return np.asarray(np.linalg.norm(self.velocity, axis=1))
 
     @property
     def turning(self) -> Floats:
-        """(K - 1,) heading change of each step [rad], in [-pi, pi)."""
-        return wrapped(np.diff(self.pose[:, 2]))
+        """(K - 1,) heading change during each step [rad], in [-pi, pi)."""
+        return wrap(np.diff(self.pose[:, 2]))
 
     @property
     def bends(self) -> Floats:
-        """Heading changes [rad] on its way, in [-pi, pi).
+        """Changes of direction along the path [rad], in [-pi, pi).
 
-        Those of its body, step by step; of a holonomic drive, whose body may look anywhere, those of the direction in
-        which it goes, from each point of its path to the next that is 0.05 m on.
+        They are the heading changes of each step. For a holonomic drive, whose heading is free, they are changes of
+        the direction of motion, computed from path points that are at least 0.05 m apart.
         """
         if not self.holonomic:
             return self.turning
-        legs = np.diff(spaced(self.position), axis=0)
-        return wrapped(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
+        legs = np.diff(thin_path(self.position), axis=0)
+        return wrap(np.diff(np.arctan2(legs[:, 1], legs[:, 0])))
 
     @property
     def path_length(self) -> float:
@@ -115,21 +118,16 @@ class Track:
 
     @property
     def success(self) -> bool:
-        """Arrived, and no contact until then."""
+        """Whether the robot arrived without a contact before."""
         return self.arrival is not None and not self.collisions
 
 
-def wrapped(angles: Floats) -> Floats:
-    """Angles [rad] in [-pi, pi)."""
-    return np.asarray((angles + np.pi) % (2 * np.pi) - np.pi)
-
-
-def spaced(points: Floats) -> Floats:
-    """Those of the points (T, 2) of a path that are 0.05 m from the last that was kept, (K, 2); the first is."""
+def thin_path(points: Floats) -> Floats:
+    """Thin the (T, 2) points of a path to (K, 2) points of which each is at least 0.05 m from the one before it."""
     kept = [0]
     x, y = points[:, 0].tolist(), points[:, 1].tolist()
     for row in range(1, len(x)):
-        if math.hypot(x[row] - x[kept[-1]], y[row] - y[kept[-1]]) >= _APART:
+        if math.hypot(x[row] - x[kept[-1]], y[row] - y[kept[-1]]) >= _POINT_SPACING_M:
             kept.append(row)
     return points[kept]
 
@@ -145,19 +143,19 @@ def tracks(
     """Cut a trace into the tracks of its robots.
 
     Args:
-        trace: The episode.
-        events: What happened in it.
-        distances: Of the robots.
-        simulation: What was simulated, in the scene of the trace.
-        radii: (N,) bounding radii [m].
-        top_speeds: Of the robots [m/s].
+        trace: Trace of the episode.
+        events: Events of the episode.
+        distances: Clearances of the robots.
+        simulation: The simulation with the scene of the trace.
+        radii: (N,) bounding radii of all objects [m].
+        top_speeds: Top speeds of the robots [m/s].
     """
-    from irsim.metrics.clearance import static_distance
-    from irsim.simulation.events import collision_of, first_events, partner_of
+    from irsim.metrics.clearances import static_distance
+    from irsim.simulation.events import first_events, is_collision_of, partner_of
 
     scenario = simulation.scenario
     records = scenario.objects
-    kinds, groups = company_of(records), social_groups(records)
+    kinds, groups = kinds_of(records), social_groups(records)
     passable = {record.name for record in records if record.unobstructed}
     number = {name: index for index, name in enumerate(trace.names)}
     arrivals = first_events(events, "arrival")
@@ -171,7 +169,7 @@ def tracks(
         rows = slice(0, len(trace) if arrival is None else arrival - first + 1)
         hits = []
         for event in events:
-            if collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
+            if is_collision_of(event, name, passable) and (arrival is None or event.step <= arrival):
                 other = partner_of(event, name)
                 hits.append((event, int(kinds[number[str(other)]])))
         them = humans[humans != robot]

@@ -1,12 +1,8 @@
 """Messages shaped like those of ROS; ``env.get_msg()`` makes them, ``env.receive_msg(…)`` reads them."""
 
-from irsim.msg.messages import (
-    ContactState,
+from irsim.msg.geometry import (
     Header,
-    LaserScan,
     Message,
-    ObjectState,
-    Odometry,
     Point,
     Pose,
     PoseWithCovariance,
@@ -14,8 +10,8 @@ from irsim.msg.messages import (
     Twist,
     TwistWithCovariance,
     Vector3,
-    WorldState,
 )
+from irsim.msg.messages import ContactState, LaserScan, ObjectState, Odometry, WorldState
 
 __all__ = [
     "ContactState",

@@ -1,160 +1,31 @@
-"""Messages shaped like those of ROS (geometry_msgs, nav_msgs, sensor_msgs), without needing ROS."""
+"""Messages about objects, sensors and environments, shaped like those of ROS (nav_msgs, sensor_msgs), without ROS."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "ContactState",
-    "Header",
-    "LaserScan",
-    "Message",
-    "ObjectState",
-    "Odometry",
-    "Point",
-    "Pose",
-    "PoseWithCovariance",
-    "Quaternion",
-    "Twist",
-    "TwistWithCovariance",
-    "Vector3",
-    "WorldState",
-]
+from irsim.msg.geometry import (
+    Header,
+    Message,
+    Point,
+    Pose,
+    PoseWithCovariance,
+    Quaternion,
+    Twist,
+    TwistWithCovariance,
+    Vector3,
+)
 
+__all__ = ["ContactState", "LaserScan", "ObjectState", "Odometry", "WorldState", "state_and_control"]
 
-def _plain(value: Any) -> Any:
-    if is_dataclass(value) and not isinstance(value, type):
-        return {entry.name: _plain(getattr(value, entry.name)) for entry in fields(value)}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _xyz(vector: Any) -> tuple[float, float, float]:
-    return float(vector.x), float(vector.y), float(vector.z)
-
-
-def _no_covariance() -> NDArray[np.float64]:
-    return np.zeros(36)
-
-
-class Message:
-    """What all messages have in common."""
-
-    def to_dict(self) -> dict[str, Any]:
-        """The message as mappings, lists, numbers and text."""
-        plain: dict[str, Any] = _plain(self)
-        return plain
-
-    def __eq__(self, other: object) -> bool:
-        """Whether it is the same kind of message with the same content; NaN is like nothing."""
-        if not isinstance(other, Message) or type(self) is not type(other):
-            return NotImplemented
-        return self.to_dict() == other.to_dict()
-
-    __hash__ = None  # type: ignore[assignment]
-
-
-@dataclass(eq=False)
-class Header(Message):
-    """Number of the step, simulated time [s] and frame."""
-
-    ros_type: ClassVar[str] = "std_msgs/Header"
-
-    seq: int = 0
-    stamp: float = 0.0
-    frame_id: str = "world"
-
-
-@dataclass(eq=False)
-class Point(Message):
-    """A point [m]."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/Point"
-
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
-
-
-@dataclass(eq=False)
-class Vector3(Message):
-    """A vector: m/s, rad/s or N."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/Vector3"
-
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
-
-
-@dataclass(eq=False)
-class Quaternion(Message):
-    """An orientation."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/Quaternion"
-
-    x: float = 0.0
-    y: float = 0.0
-    z: float = 0.0
-    w: float = 1.0
-
-    @classmethod
-    def from_yaw(cls, yaw: float) -> Quaternion:
-        """The turn about the vertical axis by ``yaw`` [rad]."""
-        return cls(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
-
-    def to_yaw(self) -> float:
-        """Heading [rad], in [-pi, pi]."""
-        across = 2 * (self.w * self.z + self.x * self.y)
-        return math.atan2(across, 1 - 2 * (self.y * self.y + self.z * self.z))
-
-
-@dataclass(eq=False)
-class Pose(Message):
-    """Position and orientation."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/Pose"
-
-    position: Point = field(default_factory=Point)
-    orientation: Quaternion = field(default_factory=Quaternion)
-
-
-@dataclass(eq=False)
-class PoseWithCovariance(Message):
-    """A pose; its covariance (36,) is zero, the state is exact."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/PoseWithCovariance"
-
-    pose: Pose = field(default_factory=Pose)
-    covariance: NDArray[np.float64] = field(default_factory=_no_covariance)
-
-
-@dataclass(eq=False)
-class Twist(Message):
-    """Linear [m/s] and angular [rad/s] velocity, body frame."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/Twist"
-
-    linear: Vector3 = field(default_factory=Vector3)
-    angular: Vector3 = field(default_factory=Vector3)
-
-
-@dataclass(eq=False)
-class TwistWithCovariance(Message):
-    """A twist; its covariance (36,) is zero."""
-
-    ros_type: ClassVar[str] = "geometry_msgs/TwistWithCovariance"
-
-    twist: Twist = field(default_factory=Twist)
-    covariance: NDArray[np.float64] = field(default_factory=_no_covariance)
+_MIN_STEERING_SPEED_M_S = 1e-6
+"""Below this speed [m/s] the yaw rate of a car says nothing about its steering angle."""
+_SCAN_KEYS = ("angle_min", "angle_max", "angle_increment", "time_increment", "scan_time", "range_min", "range_max")
 
 
 @dataclass(eq=False)
@@ -170,26 +41,29 @@ class Odometry(Message):
 
     @classmethod
     def from_object(cls, obj: Any, *, stamp: float = 0.0, seq: int = 0, frame_id: str = "world") -> Odometry:
-        """Where an object is now and how it moves."""
-        from irsim.msg.reading import odometry_of
-
-        return odometry_of(obj, Header(seq, stamp, frame_id))
+        """Return the present pose and twist of an object."""
+        x, y, theta = np.asarray(obj.state)[:3, 0].tolist()
+        return cls(
+            header=Header(seq, stamp, frame_id),
+            child_frame_id=f"{obj.name}/base_link",
+            pose=PoseWithCovariance(Pose(Point(x, y, float(obj.z)), Quaternion.from_yaw(theta))),
+            twist=TwistWithCovariance(_body_twist(obj)),
+        )
 
     @classmethod
     def from_msg(cls, msg: Any) -> Odometry:
-        """A copy of odometry, also of native ROS: pose, twist and what there is of the header.
+        """Copy an odometry message, which may be a native ROS one: pose, twist and the header fields it has.
 
         Raises:
-            TypeError: No ``pose.pose`` or ``twist.twist``.
+            TypeError: The message has no ``pose.pose`` or ``twist.twist``.
         """
         try:
             pose, twist = msg.pose.pose, msg.twist.twist
-            at, turn = pose.position, pose.orientation
-            linear, angular = twist.linear, twist.angular
-            copied = Pose(Point(*_xyz(at)), Quaternion(*_xyz(turn), float(turn.w)))
-            moving = Twist(Vector3(*_xyz(linear)), Vector3(*_xyz(angular)))
+            turn = pose.orientation
+            copied = Pose(Point(*_xyz(pose.position)), Quaternion(*_xyz(turn), float(turn.w)))
+            moving = Twist(Vector3(*_xyz(twist.linear)), Vector3(*_xyz(twist.angular)))
         except (AttributeError, TypeError) as error:
-            raise TypeError(f"odometry has pose.pose and twist.twist, with numbers in them: {error}") from None
+            raise TypeError(f"odometry must have pose.pose and twist.twist with numbers in them: {error}") from None
         head = getattr(msg, "header", None)
         stamp: Any = getattr(head, "stamp", 0.0)
         seconds = float(stamp.sec) + 1e-9 * float(stamp.nanosec) if hasattr(stamp, "sec") else float(stamp)
@@ -198,14 +72,14 @@ class Odometry(Message):
         return cls(header, child, PoseWithCovariance(copied), TwistWithCovariance(moving))
 
     def to_state_velocity(self, obj: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(state_dim, 1) state and (vel_dim, 1) control that this means for an object; zeros without a drive.
+        """Return the (state_dim, 1) state and (vel_dim, 1) control of an object that moves as this message says.
+
+        The control is zero for an object without a drive.
 
         Raises:
-            ValueError: Numbers that are not finite.
+            ValueError: A number is not finite.
         """
-        from irsim.msg.reading import numbers_of
-
-        state, control = numbers_of(obj, self)
+        state, control = state_and_control(obj, self)
         wanted = np.zeros(obj.vel_dim) if control is None else np.array(control)
         return np.array(state)[:, None], wanted[:, None]
 
@@ -231,10 +105,16 @@ class LaserScan(Message):
     def from_sensor(
         cls, sensor: Any, *, stamp: float = 0.0, seq: int = 0, frame_id: str | None = None, use_inf: bool = False
     ) -> LaserScan:
-        """What a lidar measures now; the frame is by default the type of the sensor, ``use_inf`` as in ``get_msg``."""
-        from irsim.msg.reading import scan_of
+        """Return the present scan of a lidar.
 
-        return scan_of(sensor, Header(seq, stamp, sensor.sensor_type if frame_id is None else frame_id), use_inf)
+        Args:
+            sensor: The lidar.
+            stamp: Simulated time [s] in the header.
+            seq: Step number in the header.
+            frame_id: Frame in the header; by default the type of the sensor.
+            use_inf: As in ``env.get_msg``.
+        """
+        return _scan(sensor, Header(seq, stamp, sensor.sensor_type if frame_id is None else frame_id), use_inf)
 
 
 @dataclass(eq=False)
@@ -251,7 +131,7 @@ class ContactState(Message):
 
 @dataclass(eq=False)
 class ObjectState(Message):
-    """Everything about one object at one moment; ``goal`` is a column or None."""
+    """State of one object at one moment; ``goal`` is a column or None."""
 
     header: Header
     id: int
@@ -276,20 +156,44 @@ class ObjectState(Message):
     def from_object(
         cls, obj: Any, *, stamp: float = 0.0, seq: int = 0, frame_id: str = "world", use_inf: bool = False
     ) -> ObjectState:
-        """Everything about an object now."""
-        from irsim.msg.reading import state_of
-
-        return state_of(obj, Header(seq, stamp, frame_id), use_inf)
+        """Return the present state of an object; ``use_inf`` as in ``env.get_msg``."""
+        lidars = [sensor for sensor in obj.sensors if hasattr(sensor, "get_scan") and hasattr(sensor, "hits")]
+        scans = []
+        for number, lidar in enumerate(lidars):
+            laser_frame = f"{obj.name}/laser" + (f"_{number}" if number else "")
+            scans.append(_scan(lidar, Header(seq, stamp, laser_frame), use_inf))
+        goal, contact = obj.goal, getattr(obj, "contact", None)
+        force = [0.0, 0.0] if contact is None else np.asarray(contact.force).reshape(-1).tolist()
+        return cls(
+            header=Header(seq, stamp, frame_id),
+            id=obj.id,
+            name=obj.name,
+            role=obj.role,
+            kinematics=obj.kinematics,
+            shape=obj.shape,
+            odom=Odometry.from_object(obj, stamp=stamp, seq=seq, frame_id=frame_id),
+            scan=scans[0] if scans else None,
+            goal=None if goal is None else goal.copy(),
+            static=obj.static,
+            arrive=obj.arrive,
+            collision=obj.collision,
+            collision_ids=[other.id for other in obj.collision_obj],
+            scans=scans,
+            contact_force=Vector3(*force),
+            contact_time=0.0 if contact is None else float(contact.contact_time),
+            air_time=0.0 if contact is None else float(contact.air_time),
+            contacts=[] if contact is None else [_contact(report) for report in contact.reports],
+        )
 
     @property
     def sensors(self) -> list[LaserScan]:
-        """The scans under another name."""
+        """The scans, under the name that objects use."""
         return self.scans
 
 
 @dataclass(eq=False)
 class WorldState(Message):
-    """All objects of an environment at one moment."""
+    """State of all objects of an environment at one moment."""
 
     header: Header
     name: str
@@ -299,10 +203,13 @@ class WorldState(Message):
 
     @classmethod
     def from_env(cls, env: Any, frame_id: str = "world", use_inf: bool = False) -> WorldState:
-        """Everything in an environment now."""
-        from irsim.msg.reading import world_of
-
-        return world_of(env, frame_id, use_inf)
+        """Return the present state of an environment; ``use_inf`` as in ``env.get_msg``."""
+        seq, stamp = env._world.count, env._world.time
+        states = [
+            ObjectState.from_object(obj, stamp=stamp, seq=seq, frame_id=frame_id, use_inf=use_inf)
+            for obj in env.objects
+        ]
+        return cls(Header(seq, stamp, frame_id), env._world.name, env.status, env.step_time, states)
 
     @property
     def robots(self) -> list[ObjectState]:
@@ -313,3 +220,89 @@ class WorldState(Message):
     def obstacles(self) -> list[ObjectState]:
         """The obstacles."""
         return [state for state in self.objects if state.role == "obstacle"]
+
+
+def state_and_control(obj: Any, odometry: Any) -> tuple[list[float], list[float] | None]:
+    """Return the state and control of an object that moves as an odometry message says.
+
+    Args:
+        obj: The object; what the message does not say is taken from its present state and velocity.
+        odometry: The message, which may be a native ROS one.
+
+    Returns:
+        The state (state_dim values) and the control (vel_dim values, or None for an object without a drive).
+
+    Raises:
+        TypeError: The message is not odometry.
+        ValueError: A number is not finite.
+    """
+    try:
+        pose, twist = odometry.pose.pose, odometry.twist.twist
+        turn = pose.orientation
+        numbers = [float(v) for v in (pose.position.x, pose.position.y, turn.x, turn.y, turn.z, turn.w)]
+        numbers += [float(v) for v in (twist.linear.x, twist.linear.y, twist.angular.z)]
+    except (AttributeError, TypeError) as error:
+        raise TypeError(f"odometry must have pose.pose and twist.twist with numbers in them: {error}") from None
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f"odometry for {obj.name!r} must have finite numbers, got {numbers}")
+    x, y, qx, qy, qz, qw, forward, lateral, rate = numbers
+    state: list[float] = obj.state[:, 0].tolist()
+    state[:3] = [x, y, Quaternion(qx, qy, qz, qw).to_yaw()]
+    if obj.kinematics is None:
+        return state, None
+    control: list[float] = obj.velocity[:, 0].tolist()
+    control[0] = forward
+    if obj.kinematics == "acker":
+        if abs(forward) > _MIN_STEERING_SPEED_M_S:
+            state[3] = math.atan(rate * (obj.wheelbase or 1.0) / forward)
+        control[1] = state[3]
+    elif obj.kinematics in ("omni", "omni_angular"):
+        control[1:] = [lateral, rate][: len(control) - 1]
+    elif len(control) > 1:
+        control[1] = rate
+    return state, control
+
+
+def _xyz(vector: Any) -> tuple[float, float, float]:
+    return float(vector.x), float(vector.y), float(vector.z)
+
+
+def _body_twist(obj: Any) -> Twist:
+    """Return the body-frame twist that the present control of an object produces."""
+    control = [*obj.velocity[:, 0].tolist(), 0.0, 0.0]
+    forward, lateral, rate = 0.0, 0.0, 0.0
+    if obj.kinematics in ("omni", "omni_angular"):
+        forward, lateral, rate = control[0], control[1], control[2] if obj.vel_dim > 2 else 0.0
+    elif obj.kinematics == "acker":
+        forward = control[0]
+        rate = forward * math.tan(float(obj.state[3, 0])) / (obj.wheelbase or 1.0)
+    elif obj.kinematics is not None:
+        forward, rate = control[0], control[1]
+    return Twist(Vector3(forward, lateral, 0.0), Vector3(0.0, 0.0, rate))
+
+
+def _scan(lidar: Any, header: Header, use_inf: bool) -> LaserScan:
+    scan = lidar.get_scan()
+    ranges = np.array(scan["ranges"], dtype=np.float32)
+    if use_inf:
+        hit = lidar.hits >= 0
+        ranges[~scan["valid"]] = np.inf
+        ranges[hit & ~scan["valid"] & (scan["ranges"] <= lidar.range_min)] = -np.inf
+    return LaserScan(
+        header=header,
+        **{key: float(scan[key]) for key in _SCAN_KEYS},
+        ranges=ranges,
+        intensities=np.zeros(0, dtype=np.float32),
+    )
+
+
+def _contact(report: Any) -> ContactState:
+    point, normal = np.asarray(report.point).reshape(-1), np.asarray(report.normal).reshape(-1)
+    return ContactState(
+        other_id=report.other.id,
+        other=report.other.name,
+        point=Point(*point.tolist()),
+        normal=Vector3(*normal.tolist()),
+        depth=float(report.depth),
+        force=float(report.force),
+    )

@@ -1,4 +1,4 @@
-"""Drawing what a planner has searched and found, onto a figure that is there anyway."""
+"""Draws the nodes and the path of a search into a figure that already exists."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def draw_search(
     start: tuple[float, float],
     goal: tuple[float, float],
 ) -> None:
-    """Draw nodes, the edges between them, and the path; nothing where there is no figure.
+    """Draw nodes, the edges between them, and the path; without a figure, do nothing.
 
     Args:
-        env_map: The map; its ``canvas`` gives the axes of its environment.
-        nodes: (K, 2) points looked at [m].
-        parents: (K,) index of the node each was reached from, -1 for none.
-        path: (2, N) the path found, or None.
-        start: Where from [m].
-        goal: Where to [m].
+        env_map: The map; its ``canvas`` returns the axes of its environment.
+        nodes: (K, 2) visited points [m].
+        parents: (K,) index of the node from which each node was reached, or -1.
+        path: (2, N) points of the path, or None.
+        start: Start position [m].
+        goal: Goal position [m].
     """
     axes = _axes(env_map)
     if axes is None:

@@ -1,4 +1,4 @@
-"""What a planner plans on: a rectangle of the world, a grid of occupied cells, things that stand in it."""
+"""Maps for planners: a rectangle of the world with a grid of occupied cells and a list of obstacles."""
 
 from __future__ import annotations
 
@@ -15,16 +15,18 @@ from irsim.navigation.outlines import body_parts, parts_of
 from irsim.objects.geometry import ObjectBody
 from irsim.simulation.occupancy import OCCUPIED, grid_occupied
 
-__all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarser", "terrain_of", "world_map"]
+__all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
 
 Floats = NDArray[np.float64]
-_COARSER, _FINER = 1.05, 0.95
-"""Resolutions this much off that of the world's grid count as equal."""
+MAX_EQUAL_RATIO = 1.05
+"""A resolution up to this many times that of the grid of the world counts as equal to it."""
+MIN_EQUAL_RATIO = 0.95
+"""A resolution down to this many times that of the grid of the world counts as equal to it."""
 
 
 @runtime_checkable
 class EnvGridMap(Protocol):
-    """What planners need to know of a map."""
+    """The part of a map that planners need."""
 
     width: float
     height: float
@@ -40,27 +42,27 @@ class EnvGridMap(Protocol):
     def grid_occupied(
         self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
     ) -> bool | None:
-        """Whether a cell near (x, y) is occupied, None without a grid."""
+        """Whether a cell near (x, y) is occupied; None without a grid."""
 
     def is_collision(self, geometry: Any) -> bool:
-        """Whether a shapely geometry has no room."""
+        """Whether a shapely geometry collides with an obstacle or leaves the map."""
 
 
 class Map:
-    """A rectangle of the world in which something plans.
+    """A rectangle of the world in which planners search.
 
     Args:
         width, height: Extent [m].
-        resolution: Size of the cells of grid planners where there is no grid [m].
-        obstacle_list: Things in the way: objects of an environment, shapely geometries, or anything that has one as
-            ``geometry``. What is ``unobstructed`` is in nobody's way.
-        grid: (nx, ny) occupancy 0 to 100, cell [i, j] with i along +x and j along +y from the lower left corner.
+        resolution: Cell size of grid planners if there is no grid [m].
+        obstacle_list: Obstacles: objects of an environment, shapely geometries, or anything with an attribute
+            ``geometry``. Objects that are ``unobstructed`` are ignored.
+        grid: (nx, ny) occupancy 0 to 100; cell [i, j] with i along +x and j along +y from the lower left corner.
         world_offset: Lower left corner [m].
 
     Attributes:
-        robot: Whose footprint grid planners plan for when they are not told; None: that of a cell.
-        seed: (seed, scene, noise episode) that sampling planners draw from; None: fresh entropy.
-        canvas: Gives the axes to draw on, or None; for ``show_animation``.
+        robot: Default robot whose footprint grid planners use; None stands for a footprint of one cell.
+        seed: (seed, scene, noise episode) for the samples of planners; None stands for fresh entropy.
+        canvas: Returns the Matplotlib axes for ``show_animation``, or None.
     """
 
     def __init__(
@@ -78,7 +80,7 @@ class Map:
         self.obstacle_list: list[Any] = list(obstacle_list or [])
         self.grid: Any = None if grid is None else np.asarray(grid)
         if self.grid is not None and (self.grid.ndim != 2 or not self.grid.size):
-            raise ValueError("the grid of a map has two dimensions: columns along x, rows along y")
+            raise ValueError("the grid of a map must have two dimensions: columns along x, rows along y")
         self.world_offset = (float(world_offset[0]), float(world_offset[1]))
         self.robot: Any = None
         self.seed: tuple[int, int, int] | None = None
@@ -87,7 +89,7 @@ class Map:
         self._cells: tuple[Any, core.OccupancyGrid] | None = None
 
     def share_cells(self, cells: core.OccupancyGrid) -> None:
-        """Take the core's form of the grid from ``cells`` as long as nobody writes to ``grid``."""
+        """Use ``cells``, the core's form of the grid, as long as ``grid`` is not changed."""
         if self.grid is not None and cells.shape == self.grid.shape:
             self._cells = self.grid.copy(), cells
 
@@ -105,17 +107,17 @@ class Map:
     def grid_occupied(
         self, x: float, y: float, margin_x: float = 0.0, margin_y: float = 0.0, threshold: float = OCCUPIED
     ) -> bool | None:
-        """Whether a cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
+        """Whether any cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
 
         Returns:
-            None without a grid; True outside the map.
+            True also for a box that leaves the map; None without a grid.
         """
         if self.grid is None:
             return None
         return grid_occupied(self.grid, self.bounds, x, y, margin_x, margin_y, threshold)
 
     def is_collision(self, geometry: Any) -> bool:
-        """Whether a shapely geometry leaves the map or meets an occupied cell or an obstacle; touching counts."""
+        """Whether a shapely geometry leaves the map, or touches or overlaps an occupied cell or an obstacle."""
         return terrain_of(self).collides(parts_of(geometry), (0.0, 0.0, 0.0))
 
 
@@ -127,52 +129,52 @@ def world_map(
     resolution: float,
     obstacles: Sequence[Any] | None = None,
 ) -> Map:
-    """The map of a world.
+    """Return the map of a world.
 
     Args:
         width: Extent along x [m].
         height: Extent along y [m].
         corner: Lower left corner [m].
-        grid: (nx, ny) occupancies of the world, None without a grid.
-        resolution: Size of the cells [m]; those of a grid may be joined to coarser ones (occupied where one of them is)
-            but not divided; not positive: those of the grid.
-        obstacles: What stands in the world.
+        grid: (nx, ny) occupancy of the world, or None.
+        resolution: Cell size [m]. Cells of the grid can be merged (a merged cell is occupied if any of its parts is)
+            but not divided. A value that is not positive stands for the resolution of the grid.
+        obstacles: Obstacles in the world.
     """
     try:
         resolution = float(resolution)
     except (TypeError, ValueError):
-        raise TypeError(f"the resolution of a map is a number [m], not {resolution!r}") from None
+        raise TypeError(f"the resolution of a map must be a number [m], got {resolution!r}") from None
     if grid is None:
         if not resolution > 0:
-            raise ValueError("a world without a grid needs a positive resolution")
+            raise ValueError("the map of a world without a grid must have a positive resolution")
         return Map(width, height, resolution, obstacles, None, corner)
-    own = width / grid.shape[0]
-    told = f"the grid of the world has cells of {own:g} m"
+    grid_resolution = width / grid.shape[0]
+    reason = f"the grid of the world has cells of {grid_resolution:g} m"
     if not resolution > 0:
-        resolution = own
-    elif resolution > _COARSER * own:
-        warnings.warn(f"{told}: they are joined to cells of {resolution:g} m", UserWarning, stacklevel=3)
-        grid = coarser(grid, round(width / resolution), round(height / resolution))
-    elif resolution < _FINER * own:
-        warnings.warn(f"{told}: they are not divided into {resolution:g} m", UserWarning, stacklevel=3)
-        resolution = own
+        resolution = grid_resolution
+    elif resolution > MAX_EQUAL_RATIO * grid_resolution:
+        warnings.warn(f"{reason}: they are merged to cells of {resolution:g} m", UserWarning, stacklevel=3)
+        grid = coarsen(grid, round(width / resolution), round(height / resolution))
+    elif resolution < MIN_EQUAL_RATIO * grid_resolution:
+        warnings.warn(f"{reason}: they cannot be divided into cells of {resolution:g} m", UserWarning, stacklevel=3)
+        resolution = grid_resolution
     return Map(width, height, resolution, obstacles, grid, corner)
 
 
-def coarser(grid: Any, columns: int, rows: int) -> Any:
-    """The largest value of each block of cells.
+def coarsen(grid: Any, columns: int, rows: int) -> Any:
+    """Merge cells to blocks, each with the largest value of its cells.
 
     Args:
         grid: (nx, ny) values.
-        columns: Blocks along x, at most nx.
-        rows: Blocks along y, at most ny.
+        columns: Number of blocks along x, at most nx.
+        rows: Number of blocks along y, at most ny.
 
     Returns:
         (columns, rows) array.
     """
     values = np.asarray(grid)
     columns, rows = min(max(1, columns), values.shape[0]), min(max(1, rows), values.shape[1])
-    # a cell counts for every block that it overlaps
+    # a cell counts for each block that it overlaps
     for axis, count in ((0, columns), (1, rows)):
         size = values.shape[axis]
         first = np.arange(count) * size // count
@@ -183,7 +185,7 @@ def coarser(grid: Any, columns: int, rows: int) -> Any:
 
 
 def terrain_of(env_map: Any) -> core.Terrain:
-    """The core's form of a map as it is now; kept with it until something in it has changed."""
+    """Return the core's form of a map; it is cached in the map until the map or one of its obstacles changes."""
     signature = _signature(env_map)
     kept = getattr(env_map, "_terrain", None)
     if kept is not None and kept[0] == signature:
@@ -194,17 +196,17 @@ def terrain_of(env_map: Any) -> core.Terrain:
         (parts_of(thing), (0.0, 0.0, 0.0))
         for thing in env_map.obstacle_list
         if not getattr(thing, "unobstructed", False)
-        and not (env_map.grid is not None and getattr(thing, "shape", None) == "map")  # the grid stands for it
+        and not (env_map.grid is not None and getattr(thing, "shape", None) == "map")  # already in the grid
     ]
-    things += [([cells], (0.0, 0.0, 0.0)) for cells in _grid(env_map)]
+    things += [([cells], (0.0, 0.0, 0.0)) for cells in _grid_parts(env_map)]
     terrain = core.Terrain((x, y, x + env_map.width, y + env_map.height), things)
     if isinstance(env_map, Map):
         env_map._terrain = signature, terrain
     return terrain
 
 
-def _grid(env_map: Any) -> list[Any]:
-    """The grid as a part of the core; nothing without occupied cells."""
+def _grid_parts(env_map: Any) -> list[Any]:
+    """Return the grid as a list of one part of the core; an empty list without occupied cells."""
     if env_map.grid is None:
         return []
     origin, cell, _, _ = cells_of(env_map)
@@ -216,7 +218,7 @@ def _grid(env_map: Any) -> list[Any]:
 
 
 def cells_of(env_map: Any) -> tuple[tuple[float, float], tuple[float, float], int, int]:
-    """Origin, cell size, columns and rows of the cells of grid planners: those of the grid if there is one."""
+    """Return origin, cell size, columns and rows of the cells that grid planners use: those of the grid, if any."""
     if env_map.grid is not None:
         nx, ny = env_map.grid.shape
     else:
@@ -225,12 +227,12 @@ def cells_of(env_map: Any) -> tuple[tuple[float, float], tuple[float, float], in
 
 
 def footprint_of(robot: Any) -> list[Any]:
-    """Parts of the body to plan for; none at all for that of a cell."""
+    """Return the parts of the footprint of a robot; an empty list without a robot, which means one cell."""
     return [] if robot is None else body_parts(robot)
 
 
 def _signature(env_map: Any) -> Any:
-    """Changes when something in the map has moved or was exchanged."""
+    """Return a value that changes when anything in the map has moved or been replaced."""
     things = tuple(
         (id(thing), thing.row, thing._simulation.pose[thing.row].tobytes(), thing.record.unobstructed)
         if isinstance(thing, ObjectBody)

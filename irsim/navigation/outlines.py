@@ -1,4 +1,4 @@
-"""Bodies and geometries as parts of the core, world frame or body frame."""
+"""Converts bodies and shapely geometries to parts of the core, in the world frame or the body frame."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ from irsim.objects.geometry import ObjectBody
 __all__ = ["body_parts", "parts_of", "placed_parts"]
 
 Floats = NDArray[np.float64]
-_SEGMENTS = 16
 
 
 def parts_of(thing: Any) -> list[Any]:
-    """What a thing occupies in the world, as parts of the core.
+    """Return the area that a thing occupies in the world, as parts of the core.
 
     Args:
-        thing: An object of an environment, a shapely geometry, or anything that has one as ``geometry``.
+        thing: An object of an environment, a shapely geometry, or anything with an attribute ``geometry``.
 
     Raises:
-        TypeError: It has no geometry.
+        TypeError: The thing has no geometry.
     """
     if isinstance(thing, ObjectBody):
         return placed_parts(thing._simulation.state, thing.row, world_frame=True)
@@ -32,14 +31,14 @@ def parts_of(thing: Any) -> list[Any]:
 
 
 def body_parts(thing: Any) -> list[Any]:
-    """The body of a thing about its origin at heading 0, as parts of the core.
+    """Return the body of a thing in the body frame, as parts of the core.
 
     Args:
-        thing: An object of an environment, a shapely geometry about the origin, or anything that has one as
+        thing: An object of an environment, a shapely geometry in the body frame, or anything with an attribute
             ``original_geometry``.
 
     Raises:
-        TypeError: It has no geometry.
+        TypeError: The thing has no geometry.
     """
     if isinstance(thing, ObjectBody):
         return placed_parts(thing._simulation.state, thing.row, world_frame=False)
@@ -47,12 +46,12 @@ def body_parts(thing: Any) -> list[Any]:
 
 
 def placed_parts(state: core.State, row: int, *, world_frame: bool) -> list[Any]:
-    """The body of a row as parts of the core, where it stands or about its origin.
+    """Return the body of one row of the state as parts of the core.
 
     Args:
-        state: Where it is.
-        row: Of the state.
-        world_frame: Where it stands.
+        state: State of the simulation.
+        row: Row of the object.
+        world_frame: Return the parts at the present pose; otherwise in the body frame.
     """
     parts: list[Any] = []
     for part, kind in enumerate(state.parts(row)):
@@ -71,7 +70,7 @@ def placed_parts(state: core.State, row: int, *, world_frame: bool) -> list[Any]
 def _geometry(thing: Any, attribute: str) -> Any:
     geometry = getattr(thing, attribute, thing)
     if not hasattr(geometry, "geom_type"):
-        raise TypeError(f"{thing!r} has no geometry: an object, or a shapely geometry, is needed")
+        raise TypeError(f"an obstacle must be an object or a shapely geometry, got {thing!r}")
     return geometry
 
 
@@ -89,7 +88,7 @@ def _parts(geometry: Any) -> Iterator[Any]:
         for one in geometry.geoms:
             yield from _parts(one)
     else:
-        raise TypeError(f"a geometry of type {kind!r} cannot be planned with")
+        raise TypeError(f"planners do not support geometries of type {kind!r}")
 
 
 def _xy(line: Any) -> Floats:
@@ -97,7 +96,7 @@ def _xy(line: Any) -> Floats:
 
 
 def _ring(polygon: Any) -> list[list[float]]:
-    """(N, 2) corners of a polygon; a hole is joined to the outline by the shortest seam, there and back."""
+    """Return the (N, 2) corners of a polygon; a seam, passed in both directions, connects each hole to the outline."""
     ring = _xy(polygon.exterior)[:-1]
     holes = [_xy(hole)[:-1] for hole in polygon.interiors]
     while holes:
@@ -105,6 +104,6 @@ def _ring(polygon: Any) -> list[list[float]]:
         k = int(np.argmin([gap.min() for gap in gaps]))
         hole, gap = holes.pop(k), gaps[k]
         i, j = np.unravel_index(int(gap.argmin()), gap.shape)
-        turned = np.roll(hole, -int(j), axis=0)
-        ring = np.vstack([ring[: i + 1], turned, turned[:1], ring[i:]])
+        rolled = np.roll(hole, -int(j), axis=0)
+        ring = np.vstack([ring[: i + 1], rolled, rolled[:1], ring[i:]])
     return [[float(x), float(y)] for x, y in ring]

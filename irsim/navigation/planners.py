@@ -1,4 +1,4 @@
-"""Path planners under the names that IR-SIM scripts know."""
+"""Path planners, with the class and argument names of IR-SIM 2.12."""
 
 from __future__ import annotations
 
@@ -17,16 +17,18 @@ __all__ = ["RRT", "AStarPlanner", "InformedRRTStar", "JPSPlanner", "PRMPlanner",
 
 Floats = NDArray[np.float64]
 _DRAWS_PER_CALL = 2**40
+"""Distance in the random stream between the first draws of two calls, so that calls never share draws."""
+_MIN_POINT_NUMBERS = 2
 
 
 @dataclass(eq=False, slots=True)
 class PathNode:
-    """A point that a planner has looked at.
+    """A point that a planner has visited.
 
     Attributes:
-        x, y: Where [m].
-        cost: Length of the way there from the start [m].
-        parent: The node it was reached from.
+        x, y: Position [m].
+        cost: Length of the path from the start [m].
+        parent: Node from which this node was reached.
     """
 
     x: float
@@ -36,17 +38,17 @@ class PathNode:
 
 
 class PathPlanner:
-    """What all planners share.
+    """Base class of the planners.
 
     Args:
-        env_map: From ``env.get_map()`` or a :class:`irsim.navigation.map.Map`.
-        robot: Whose footprint to plan for, at heading 0: an object, or a shapely geometry about the origin.
-        smooth: Leave out the points of a path that its neighbours can do without.
-        seed: For planners that draw samples; default: the environment's planner stream.
+        env_map: Result of ``env.get_map()``, or a :class:`irsim.navigation.map.Map`.
+        robot: Robot whose footprint at heading 0 must fit: an object, or a shapely geometry in the body frame.
+        smooth: Remove each point of a path that a straight line can bypass.
+        seed: Seed for planners that draw samples; default: the planner stream of the environment.
 
     Attributes:
-        start, end: First and last node; ``end.cost`` is the length of the last path [m], infinite without one.
-        node_list: Every node of the last search.
+        start, end: First and last node; ``end.cost`` is the length of the last path [m], infinite without a path.
+        node_list: All nodes of the last search.
     """
 
     def __init__(
@@ -65,15 +67,15 @@ class PathPlanner:
         self._calls = itertools.count()
 
     def planning(self, start_pose: Any, goal_pose: Any, show_animation: bool = True) -> Floats | None:
-        """Search a path.
+        """Search for a path.
 
         Args:
-            start_pose: At least two numbers, x and y [m], in any shape.
-            goal_pose: Likewise.
-            show_animation: Draw what was searched and found, if there is a figure.
+            start_pose: At least two numbers, x and y [m], in an array or sequence of any shape.
+            goal_pose: At least two numbers, x and y [m], in an array or sequence of any shape.
+            show_animation: Draw nodes and path, if a figure exists.
 
         Returns:
-            (2, N) points from the goal back to the start [m], None if there is no path.
+            (2, N) points from the goal back to the start [m]; None if no path was found.
         """
         return self._plan(start_pose, goal_pose, self._key, show_animation)
 
@@ -94,7 +96,7 @@ class PathPlanner:
         self.start = PathNode(*start)
         self.end = PathNode(*goal, cost)
         self._nodes = nodes, parents, costs
-        self.node_list = _linked(nodes, parents, costs) if self._keeps_nodes else []
+        self.node_list = _link_nodes(nodes, parents, costs) if self._keeps_nodes else []
         found = None if path is None else np.ascontiguousarray(path[::-1].T)
         if show_animation:
             from irsim.navigation.animation import draw_search
@@ -112,36 +114,39 @@ class PathPlanner:
 
 
 class _GridPlanner(PathPlanner):
-    """On the cells of the map; without ``robot`` for that of the map, and without that for one as large as a cell."""
+    """Planner on the cells of the map.
+
+    Without ``robot``, the default robot of the map is used; without that one, the footprint is one cell.
+    """
 
     def _footprint(self) -> list[Any]:
         return footprint_of(self.robot if self.robot is not None else getattr(self.map, "robot", None))
 
 
 class AStarPlanner(_GridPlanner):
-    """The shortest path over the eight neighbours of each cell; whether the start is free is not asked."""
+    """Finds the shortest path over the eight neighbours of each cell; the start may be occupied."""
 
     def _kernel(self) -> Any:
         return core.AstarOptions(resolution=0.0)
 
 
 class JPSPlanner(_GridPlanner):
-    """Paths as short as those of A*, found by jumping over cells that need no decision; the start must be free."""
+    """Finds paths as short as those of A* by jumping over cells without a choice; the start must be free."""
 
     def _kernel(self) -> Any:
         return core.JpsOptions(resolution=0.0)
 
 
 class RRT(PathPlanner):
-    """Grow a tree of random extensions until it reaches the goal.
+    """Grows a tree of random extensions until it reaches the goal.
 
     Args:
         env_map: The map.
-        robot: Whose footprint to plan for, at heading 0.
+        robot: Robot whose footprint at heading 0 must fit.
         expand_dis: Longest extension [m].
-        path_resolution: Extensions end on multiples of this length [m]; they are checked along their whole length.
-        goal_sample_rate: Share of samples that are the goal [%].
-        max_iter: Samples before giving up.
+        path_resolution: Extensions have a multiple of this length [m]; collisions are checked along their whole length.
+        goal_sample_rate: Share of samples that are the goal itself [%].
+        max_iter: Number of samples after which the search ends.
         smooth, seed: See :class:`PathPlanner`.
     """
 
@@ -178,12 +183,13 @@ class RRT(PathPlanner):
 
 
 class RRTStar(RRT):
-    """RRT that rewires the tree around each new point, so that paths get shorter.
+    """RRT that rewires the tree around each new point, which shortens the path.
 
     Args:
         env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth, seed: See :class:`RRT`.
-        connect_circle_dist: Scale of the radius in which the tree is rewired [m].
-        search_until_max_iter: Keep improving until all samples are drawn, instead of stopping at the first path.
+        connect_circle_dist: Scale of the radius within which the tree is rewired [m].
+        search_until_max_iter: Continue to improve the path until all samples are drawn, rather than stop at the first
+            path.
     """
 
     def __init__(
@@ -217,7 +223,7 @@ class RRTStar(RRT):
 
 
 class InformedRRTStar(RRTStar):
-    """RRT* that, once it has a path, samples only the ellipse that can hold a shorter one.
+    """RRT* that, after it has found a path, samples only the ellipse that can contain a shorter one.
 
     Args:
         env_map, robot, expand_dis, path_resolution, goal_sample_rate, max_iter, smooth, seed: See :class:`RRT`.
@@ -256,13 +262,13 @@ class InformedRRTStar(RRTStar):
 
 
 class PRMPlanner(PathPlanner):
-    """Connect random free points to a graph, then take its shortest path.
+    """Connects random free points to a graph and returns its shortest path.
 
     Args:
         env_map: The map.
-        robot_radius: Of the disc to plan for [m].
-        n_sample: How many free points are drawn.
-        n_knn: Most edges per point.
+        robot_radius: Radius of the disc that must fit [m].
+        n_sample: Number of free points to draw.
+        n_knn: Largest number of edges per point.
         max_edge_len: Longest edge [m].
         smooth, seed: See :class:`PathPlanner`.
     """
@@ -286,23 +292,23 @@ class PRMPlanner(PathPlanner):
         self.robot_radius = float(robot_radius)
         self.n_sample, self.n_knn, self.max_edge_len = n_sample, n_knn, max_edge_len
 
-    def planning(  # type: ignore[override]  # the order of arguments that scripts know
+    def planning(  # type: ignore[override]  # the argument order of IR-SIM 2.12
         self,
         start_pose: Any,
         goal_pose: Any,
         rng: np.random.Generator | None = None,
         show_animation: bool = True,
     ) -> Floats | None:
-        """Search a path.
+        """Search for a path.
 
         Args:
-            start_pose: At least two numbers, x and y [m], in any shape.
-            goal_pose: Likewise.
-            rng: Where to take the seed of the samples from, instead of the planner's own.
-            show_animation: Draw what was searched and found, if there is a figure.
+            start_pose: At least two numbers, x and y [m], in an array or sequence of any shape.
+            goal_pose: At least two numbers, x and y [m], in an array or sequence of any shape.
+            rng: Generator that the seed of the samples is drawn from; default: the seed of the planner.
+            show_animation: Draw nodes and path, if a figure exists.
 
         Returns:
-            (2, N) points from the goal back to the start [m], None if there is no path.
+            (2, N) points from the goal back to the start [m]; None if no path was found.
         """
         key = self._key if rng is None else (int(rng.integers(2**63)), 0, 0)
         return self._plan(start_pose, goal_pose, key, show_animation)
@@ -316,12 +322,12 @@ class PRMPlanner(PathPlanner):
 
 def _point(pose: Any, what: str) -> tuple[float, float]:
     numbers = np.asarray(pose, dtype=np.float64).reshape(-1)
-    if numbers.size < 2 or not np.isfinite(numbers[:2]).all():
-        raise ValueError(f"the {what} of a path needs two numbers, x and y: not {pose!r}")
+    if numbers.size < _MIN_POINT_NUMBERS or not np.isfinite(numbers[:2]).all():
+        raise ValueError(f"the {what} of a path must have two finite numbers, x and y, got {pose!r}")
     return float(numbers[0]), float(numbers[1])
 
 
-def _linked(points: Floats, parents: NDArray[np.int32], costs: Floats) -> list[PathNode]:
+def _link_nodes(points: Floats, parents: NDArray[np.int32], costs: Floats) -> list[PathNode]:
     nodes = [PathNode(x, y, cost) for (x, y), cost in zip(points.tolist(), costs.tolist(), strict=True)]
     for node, parent in zip(nodes, parents.tolist(), strict=True):
         node.parent = nodes[parent] if parent >= 0 else None

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from irsim.objects.view import ObjectView
+from irsim.objects.base import SimObject
 
 __all__ = ["assign_actions", "beyond_limits"]
 
 _SLACK = 1e-9
 """What rounding may add to a limit."""
-Assignments = list[tuple[ObjectView, list[float]]]
+Assignments = list[tuple[SimObject, list[float]]]
 
 
 def _is_one(action: Any) -> bool:
@@ -24,7 +24,7 @@ def _is_one(action: Any) -> bool:
     return len(action) > 0 and all(isinstance(v, (int, float, np.number)) and not isinstance(v, bool) for v in action)
 
 
-def _find(objects: Sequence[ObjectView], key: Any) -> ObjectView:
+def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
     if isinstance(key, (int, np.integer)) and not isinstance(key, bool):
         index = int(key)
         if 0 <= index < len(objects) and objects[index].id == index:
@@ -40,7 +40,7 @@ def _find(objects: Sequence[ObjectView], key: Any) -> ObjectView:
     return found[0]
 
 
-def _control(view: ObjectView, action: Any) -> list[float]:
+def _control(view: SimObject, action: Any) -> list[float]:
     try:
         values = np.asarray(action, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
@@ -53,7 +53,7 @@ def _control(view: ObjectView, action: Any) -> list[float]:
     return list(map(float, values))
 
 
-def beyond_limits(view: ObjectView, control: Sequence[float]) -> bool:
+def beyond_limits(view: SimObject, control: Sequence[float]) -> bool:
     """Whether limits of speed or acceleration will cut a control."""
     record = view.record
     limits = zip(control, record.vel_min, record.vel_max, strict=True)
@@ -66,7 +66,7 @@ def beyond_limits(view: ObjectView, control: Sequence[float]) -> bool:
 
 
 def assign_actions(
-    objects: Sequence[ObjectView], action: Any, action_id: Any, warn: Callable[[str], None]
+    objects: Sequence[SimObject], action: Any, action_id: Any, warn: Callable[[str], None]
 ) -> Assignments:
     """Which object gets which control.
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.objects.geometry import column
+from irsim.objects.base import column
+from irsim.objects.geometry import ObjectBody
 from irsim.objects.neighbors import discs
-
-if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ObjectRecord
-    from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObjectAvoidance"]
 
@@ -25,25 +22,8 @@ _THRESHOLD = 0.1
 _PER_AXIS = ("omni", "omni_angular", None)
 
 
-class ObjectAvoidance:
-    """Part of :class:`irsim.objects.view.ObjectView`."""
-
-    if TYPE_CHECKING:
-        _simulation: Simulation
-        record: ObjectRecord
-        row: int
-        name: str
-        goal: Any
-        kinematics: Any
-        shape: Any
-        vel_dim: int
-        position: Any
-        orientation: Any
-        velocity_xy: Any
-        centroid: Any
-        radius_extend: Any
-        vertices: Any
-        external_objects: Any
+class ObjectAvoidance(ObjectBody):
+    """What avoidance laws ask of an object; part of :class:`irsim.objects.view.ObjectView`."""
 
     @property
     def desired_omni_vel(self) -> Floats:
@@ -98,10 +78,10 @@ class ObjectAvoidance:
     @property
     def rvo_line_segments(self) -> list[list[float]]:
         """[x1, y1, x2, y2] of each segment of a linestring, world frame; empty for other shapes."""
-        if self.shape != "linestring":
+        outline = self.vertices
+        if self.shape != "linestring" or outline is None:
             return []
-        points = self.vertices.T.tolist()
-        return [[*a, *b] for a, b in pairwise(points)]
+        return [[*a, *b] for a, b in pairwise(outline.T.tolist())]
 
     def vel_world2body(self, velocity_xy: Any) -> Floats:
         """The control with which its drive follows a world velocity.

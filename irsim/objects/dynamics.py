@@ -3,31 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.objects.geometry import column
+from irsim.objects.base import SimObject, column
 from irsim.objects.sensors.contact import Contact2D
 
-if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ObjectRecord
-    from irsim.simulation.simulation import Simulation
-
-__all__ = ["ObjectMatter"]
+__all__ = ["ObjectDynamics"]
 
 Floats = NDArray[np.float64]
 
 
-class ObjectMatter:
+class ObjectDynamics(SimObject):
     """Physics of one row of a simulation, for ``collision_mode: contact``."""
 
-    _simulation: Simulation
-    record: ObjectRecord
-    row: int
-    static: bool
     contact: Contact2D
 
     @property

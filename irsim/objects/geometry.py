@@ -8,26 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.functions.inequalities import polygon_inequality
+from irsim.objects.base import SimObject, column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
 
 if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["ObjectBody", "column", "convex_inequality"]
+__all__ = ["ObjectBody", "convex_inequality"]
 
 Floats = NDArray[np.float64]
 Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _CIRCLE_POINTS = 64
 _STRAIGHT = 1e-12
 """A corner that turns less than this [m2] counts as straight."""
-
-
-def column(values: Any) -> Floats:
-    """(n, 1) read-only copy."""
-    copied = np.array(values, dtype=np.float64).reshape(-1, 1)
-    copied.setflags(write=False)
-    return copied
 
 
 def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) -> Inequality:
@@ -46,34 +40,12 @@ def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) ->
     if kinds != ["polygon"]:
         return None, None, None, None if len(kinds) == 1 else False
     points = state.vertices(row, 0, world_frame)
-    edges = np.roll(points, -1, axis=0) - points
-    ahead = np.roll(edges, -1, axis=0)
-    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
-    if not ((turns >= -_STRAIGHT).all() or (turns <= _STRAIGHT).all()):
-        return None, None, None, False
-    if turns.sum() < 0:
-        points = points[::-1]
-        edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
-    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
+    found = polygon_inequality(points, _STRAIGHT)
+    return (None, None, None, False) if found is None else (*found, "Rpositive", True)
 
 
-class ObjectBody:
+class ObjectBody(SimObject):
     """Geometry of one row of a simulation."""
-
-    _simulation: Simulation
-    record: ObjectRecord
-    row: int
-
-    @property
-    def shape(self) -> str:
-        """Name of the shape."""
-        return str(getattr(self.record.shape, "name", ""))
-
-    @property
-    def kinematics(self) -> str | None:
-        """Name of the drive; None for objects that have none."""
-        return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
 
     @property
     def radius(self) -> float:

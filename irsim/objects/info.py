@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
 
 __all__ = ["ObjectInfo", "ObstacleInfo"]
 
@@ -51,9 +48,10 @@ class ObjectInfo(_Extensible):
     restitution: float
 
     @classmethod
-    def of(cls, view: ObjectView) -> ObjectInfo:
+    def of(cls, view: Any) -> ObjectInfo:
         """The description of ``view`` now."""
         record = view.record
+        normals, right_side, cone, convex = view.get_init_Gh()
         return cls(
             view.id,
             view.shape,
@@ -68,7 +66,10 @@ class ObjectInfo(_Extensible):
             np.array(record.angle_range, dtype=np.float64).reshape(2, 1),
             view.goal_threshold,
             view.wheelbase,
-            *view.get_init_Gh(),
+            normals,
+            right_side,
+            cone,
+            convex,
             view.name,
             record.mass,
             record.friction,
@@ -91,6 +92,6 @@ class ObstacleInfo(_Extensible):
     convex_flag: bool | None
 
     @classmethod
-    def of(cls, view: ObjectView) -> ObstacleInfo:
+    def of(cls, view: Any) -> ObstacleInfo:
         """The description of ``view`` now."""
         return cls(view.position, view.vertices, view.velocity, view.radius, *view.get_init_Gh())

@@ -10,16 +10,25 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from irsim.objects.base import SimObject
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.extensions.behaviors import forget_behavior
 from irsim.objects.extensions.drives import attach_python_drives
-from irsim.objects.view import ObjectView, set_views, views
 from irsim.simulation.simulation import Simulation
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore"]
+__all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore", "set_views"]
+
+
+def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
+    """Let these objects show the rows of a simulation of one world, in this order."""
+    for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
+        if view.record is not record:
+            view.describe(record)
+        view.attach(simulation, index)
+    simulation.keep_views(shown)
 
 
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
@@ -33,17 +42,17 @@ def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simula
     return simulation
 
 
-def admit(simulation: Simulation, newcomers: Sequence[ObjectView]) -> None:
+def admit(simulation: Simulation, newcomers: Sequence[SimObject]) -> None:
     """Move objects, each alone so far, into a simulation of one world; they become its last rows."""
-    present = views(simulation)
+    present = simulation.views()
     records = [_as_it_starts(view) for view in newcomers]
     _exchange(simulation, [*present, *newcomers], [*simulation.scenario.objects, *records])
 
 
-def dismiss(simulation: Simulation, leaving: Iterable[ObjectView]) -> None:
+def dismiss(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
     """Take objects out of a simulation of one world; each is alone from then on."""
     gone = set(leaving)
-    staying = [view for view in views(simulation) if view not in gone]
+    staying = [view for view in simulation.views() if view not in gone]
     seed = simulation.key()[0]
     for view in gone:
         own = alone(simulation.scenario, view.record, seed)
@@ -52,7 +61,7 @@ def dismiss(simulation: Simulation, leaving: Iterable[ObjectView]) -> None:
     _exchange(simulation, staying, _with_leaders(simulation.scenario.objects, [view.record for view in staying]))
 
 
-def amend(view: ObjectView, record: ObjectRecord) -> None:
+def amend(view: SimObject, record: ObjectRecord) -> None:
     """Give an object another record, of the same id; it and all others go on where they are.
 
     Raises:
@@ -65,23 +74,23 @@ def amend(view: ObjectView, record: ObjectRecord) -> None:
         return
     if record.behavior is not view.record.behavior:
         forget_behavior(simulation, view)
-    shown = views(simulation)
+    shown = simulation.views()
     _exchange(simulation, shown, [record if other is view else other.record for other in shown])
 
 
 def amend_world(simulation: Simulation, **changed: Any) -> None:
     """Go on with other values in the section ``world`` of the scenario."""
     world = simulation.scenario.world.model_copy(update=changed)
-    shown = views(simulation)
+    shown = simulation.views()
     origins = [(simulation, view.row) for view in shown]
     simulation.exchange(replace(simulation.scenario, world=world), origins)
     _settle(simulation, shown)
 
 
-def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Sequence[ObjectView]) -> None:
+def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Sequence[SimObject]) -> None:
     """Start the next scene with the objects of ``scenario``, shown by ``originals``; all others are alone then."""
     seed = simulation.key()[0]
-    for view in views(simulation):
+    for view in simulation.views():
         if view not in originals:
             own = alone(simulation.scenario, view.record, seed)
             own.exchange(own.scenario, [(simulation, view.row)])
@@ -90,23 +99,23 @@ def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Seque
     _settle(simulation, originals, anew=True)
 
 
-def _exchange(simulation: Simulation, shown: Sequence[ObjectView], records: Sequence[ObjectRecord]) -> None:
+def _exchange(simulation: Simulation, shown: Sequence[SimObject], records: Sequence[ObjectRecord]) -> None:
     origins = [(view._simulation, view.row) for view in shown]
     simulation.exchange(replace(simulation.scenario, objects=list(records)), origins)
     _settle(simulation, shown)
 
 
-def _settle(simulation: Simulation, shown: Sequence[ObjectView], *, anew: bool = False) -> None:
+def _settle(simulation: Simulation, shown: Sequence[SimObject], *, anew: bool = False) -> None:
     """After other rows: who is where, and where code of users takes part."""
     set_views(simulation, shown)
     attach_python(simulation, anew=anew)
 
 
-def _keep(view: ObjectView, own: Simulation) -> None:
+def _keep(view: SimObject, own: Simulation) -> None:
     set_views(own, [view])
 
 
-def _as_it_starts(view: ObjectView) -> ObjectRecord:
+def _as_it_starts(view: SimObject) -> ObjectRecord:
     """Its record with the present initial values, from which a redrawn scene starts it."""
     state = view.init_state[:, 0].tolist()
     return replace(view.record, state=state, goals=[goal[:, 0].tolist() for goal in view.goals])

@@ -44,9 +44,7 @@ def discs(simulation: Simulation, world: int) -> Floats:
         found[:, 1] += s * centre[:, 0] + c * centre[:, 1]
     found[:, 2:4] = simulation.state.velocities_world(world)
     if simulation.drives is not None:
-        from irsim.objects.view import views
-
-        objects = views(simulation, world)
+        objects = simulation.views(world)
         for index in simulation.drives.objects:
             found[index, 2:4] = objects[index].velocity_xy[:, 0]
     found[:, 4] = simulation.radius[rows] + AVOIDANCE_MARGIN

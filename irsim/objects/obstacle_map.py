@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.objects.geometry import column
+from irsim.objects.base import column
 from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_collision_geometry
 

@@ -19,37 +19,37 @@ from pydantic import ValidationError
 from irsim.components.behaviors._options import behavior_fields
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
 
 __all__ = ["HINTS", "BehaviorKeys", "FixedList", "behavior_keys", "change", "refuse", "sensor_options"]
 
 _CHOICES = {"role": ("robot", "obstacle"), "arrive_mode": ("position", "state")}
 
 
-def _flag(view: ObjectView, name: str, value: Any) -> bool:
+def _flag(view: SimObject, name: str, value: Any) -> bool:
     if not isinstance(value, (bool, np.bool_, int)):
         raise TypeError(f"{name!r} of {view.name!r} is True or False, not {value!r}")
     return bool(value)
 
 
-def _length(view: ObjectView, name: str, value: Any) -> float:
+def _length(view: SimObject, name: str, value: Any) -> float:
     number = float(value)
     if not (math.isfinite(number) and number >= 0):
         raise ValueError(f"{name!r} of {view.name!r} is a number of at least 0, not {value!r}")
     return number
 
 
-def _optional(view: ObjectView, name: str, value: Any) -> float | None:
+def _optional(view: SimObject, name: str, value: Any) -> float | None:
     return None if value is None else _length(view, name, value)
 
 
-def _choice(view: ObjectView, name: str, value: Any) -> str:
+def _choice(view: SimObject, name: str, value: Any) -> str:
     if value not in _CHOICES[name]:
         raise ValueError(f"{name!r} of {view.name!r} is {' or '.join(map(repr, _CHOICES[name]))}, not {value!r}")
     return str(value)
 
 
-def _limits(view: ObjectView, name: str, value: Any) -> list[float]:
+def _limits(view: SimObject, name: str, value: Any) -> list[float]:
     numbers = np.asarray(value, dtype=np.float64).reshape(-1)
     if numbers.size != view.vel_dim or np.isnan(numbers).any():
         raise ValueError(f"{name!r} of {view.name!r} is {view.vel_dim} numbers, not {value!r}")
@@ -58,23 +58,23 @@ def _limits(view: ObjectView, name: str, value: Any) -> list[float]:
     return [float(v) for v in numbers]
 
 
-def _number(view: ObjectView, name: str, value: Any) -> int:
+def _number(view: SimObject, name: str, value: Any) -> int:
     return int(value)
 
 
-def _words(view: ObjectView, name: str, value: Any) -> tuple[str, ...]:
+def _words(view: SimObject, name: str, value: Any) -> tuple[str, ...]:
     return tuple(str(word) for word in value)
 
 
-def _text(view: ObjectView, name: str, value: Any) -> str:
+def _text(view: SimObject, name: str, value: Any) -> str:
     return str(value)
 
 
-def _picture(view: ObjectView, name: str, value: Any) -> str | None:
+def _picture(view: SimObject, name: str, value: Any) -> str | None:
     return None if value is None else str(value)
 
 
-def _color(view: ObjectView, name: str, value: Any) -> Any:
+def _color(view: SimObject, name: str, value: Any) -> Any:
     return value
 
 
@@ -153,7 +153,7 @@ def refuse(owner: str, name: str, hint: str) -> NoReturn:
     raise AttributeError(f"{name!r} of {owner} cannot be set: {hint}")
 
 
-def change(view: ObjectView, name: str, value: Any) -> None:
+def change(view: SimObject, name: str, value: Any) -> None:
     """Set an attribute of :data:`SETTINGS`.
 
     Raises:
@@ -234,7 +234,7 @@ class BehaviorKeys(dict[str, Any]):
         return dict, (dict(self),)
 
 
-def behavior_keys(view: ObjectView) -> BehaviorKeys:
+def behavior_keys(view: SimObject) -> BehaviorKeys:
     """The keys of its behavior, or of that of its group; to be written where it is its own."""
 
     def present() -> dict[str, Any]:
@@ -250,7 +250,7 @@ def behavior_keys(view: ObjectView) -> BehaviorKeys:
     return BehaviorKeys(present(), apply)
 
 
-def _set_behavior(view: ObjectView, keys: dict[str, Any]) -> None:
+def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
     """Another behavior, as a file could have it.
 
     Raises:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 import irsim._core as core
 from irsim.components.maps._grid import MapCells, Walls
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["compound_body", "core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
+__all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
 
 _QUADRANT_SEGMENTS = 16
 
@@ -65,13 +62,13 @@ def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
     return parts
 
 
-def touching(a: ObjectView, b: ObjectView) -> bool:
+def touching(a: SimObject, b: SimObject) -> bool:
     """Whether two bodies meet where they are now, exactly."""
     first, second = core_parts(a._simulation, a.row), core_parts(b._simulation, b.row)
     return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
 
 
-def touching_circle(a: ObjectView, x: float, y: float, radius: float) -> bool:
+def touching_circle(a: SimObject, x: float, y: float, radius: float) -> bool:
     """Whether a body where it is now meets a circle."""
     circle = core.Circle(radius=radius, center=[x, y])
     return core.intersects(core_parts(a._simulation, a.row), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
@@ -98,35 +95,3 @@ def from_shapely(geometry: Any) -> list[core.Part]:
     if not parts:
         raise ValueError("the geometry is empty")
     return parts
-
-
-def compound_body(parts: Sequence[Any]) -> list[float]:
-    """What contacts need to know of the area that parts of a compound cover together.
-
-    Returns:
-        Its centre, x, y [m, body frame], and the square of its radius of gyration [m^2] if it is in one piece (holes
-        count as filled); empty where a part is drawn per scene.
-    """
-    import shapely
-
-    shapes: list[Any] = []
-    for part in parts:
-        if isinstance(part, core.Circle):
-            shapes.append(shapely.Point(part.center).buffer(part.radius, quad_segs=_QUADRANT_SEGMENTS))
-        elif isinstance(part, core.Polygon):
-            shapes.append(shapely.Polygon(part.vertices))
-        elif isinstance(part, core.Linestring):
-            shapes.append(shapely.LineString(part.vertices))
-        else:
-            return []
-    area: Any = shapely.union_all(shapes)
-    centre = [area.centroid.x, area.centroid.y]
-    return [*centre, _gyration2(area.exterior.coords, centre)] if area.geom_type == "Polygon" else centre
-
-
-def _gyration2(ring: Any, centre: Sequence[float]) -> float:
-    """Second moment of the area in a closed ring about ``centre``, per area [m^2]."""
-    a = np.asarray(ring, dtype=np.float64)[:-1] - centre
-    b = np.roll(a, -1, axis=0)
-    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return float(np.sum(cross * np.sum(a * a + a * b + b * b, axis=1)) / (6.0 * np.sum(cross)))

@@ -5,18 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.objects.base import SimObject
 from irsim.objects.shapely_geometry import from_shapely, touching, touching_circle
 from irsim.simulation.active_env import last_used
-
-if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
-    from irsim.scenario.resolve.resolved import ObjectRecord
-    from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObjectStatus"]
 
@@ -25,29 +21,8 @@ _STOPS = {0: ("robot", "obstacle"), 2: ("robot",)}
 """Who stops when it touches something, by collision mode of the core."""
 
 
-class ObjectStatus:
-    """Part of :class:`irsim.objects.view.ObjectView`."""
-
-    if TYPE_CHECKING:
-        _simulation: Simulation
-        record: ObjectRecord
-        row: int
-        name: str
-        role: Any
-        goal: Any
-        goals: Any
-        state: Any
-        init_state: Any
-        static: bool
-        unobstructed: bool
-        arrive_mode: Any
-        goal_threshold: Any
-        external_objects: Any
-        environment_objects: Any
-        surroundings: Any
-
-        def set_goal(self, goal: Any, init: bool = False) -> None:
-            """See :class:`irsim.objects.view.ObjectView`."""
+class ObjectStatus(SimObject):
+    """Evaluation of one object outside a step; part of :class:`irsim.objects.view.ObjectView`."""
 
     # arrival and contact ---------------------------------------------------------------------------------------------
     def check_arrive(self, goal: Any, threshold: float | None = None) -> bool:
@@ -77,9 +52,9 @@ class ObjectStatus:
             arrived = False
         self._simulation.arrived[self.row] = arrived
 
-    def check_collision(self, obj: ObjectView) -> bool:
+    def check_collision(self, obj: SimObject) -> bool:
         """Whether it touches another object now, exactly."""
-        return touching(self, obj)  # type: ignore[arg-type]
+        return touching(self, obj)
 
     def check_collision_status(self) -> None:
         """Set the flags of collision and stop from where everything is now."""
@@ -94,7 +69,7 @@ class ObjectStatus:
         self.check_collision_status()
 
     @property
-    def possible_collision_objects(self) -> list[ObjectView]:
+    def possible_collision_objects(self) -> list[SimObject]:
         """The others, ``unobstructed`` ones left out, whose bounding boxes meet its own."""
         if self.surroundings is None:
             objects = self.environment_objects
@@ -134,7 +109,7 @@ class ObjectStatus:
     # goals and bodies ------------------------------------------------------------------------------------------------
     def set_random_goal(
         self,
-        obstacle_list: Iterable[ObjectView],
+        obstacle_list: Iterable[SimObject],
         init: bool = False,
         free: bool = True,
         goal_check_radius: float = 0.2,
@@ -172,22 +147,7 @@ class ObjectStatus:
         """
         self._simulation.reshape(self.row, from_shapely(geometry))
 
-    # what it belongs to ----------------------------------------------------------------------------------------------
-    @property
-    def env_param(self) -> Any:
-        """``env_param`` of its environment; None for an object that is in none."""
-        return getattr(self._simulation.owner(), "env_param", None)
-
-    @property
-    def world_param(self) -> Any:
-        """``world_param`` of its environment; None for an object that is in none."""
-        return getattr(self._simulation.owner(), "world_param", None)
-
-    @property
-    def logger(self) -> Any:
-        """The logger of its environment; None for an object that is in none."""
-        return getattr(self._simulation.owner(), "logger", None)
-
+    # ids -----------------------------------------------------------------------------------------------------------
     @staticmethod
     def reset_id_iter(start: int = 0, step: int = 1) -> None:
         """Let the ids of new objects of the environment used last begin anew."""

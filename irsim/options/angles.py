@@ -7,19 +7,14 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from irsim.common.angles import FULL_TURN
 from irsim.options.base import problem
 from irsim.options.units import Radians
 
-__all__ = ["FULL_TURN", "SpanAngle", "is_span", "wrap"]
+__all__ = ["SpanAngle", "is_span"]
 
-FULL_TURN = 2 * math.pi
 _ROUNDING = 0.02
 """Excess over a full turn that counts as rounding: 6.28, 6.2832 and 6.3 all mean a full turn [rad]."""
-
-
-def wrap(angle: float) -> float:
-    """The angle of the same direction in [-pi, pi)."""
-    return (angle + math.pi) % FULL_TURN - math.pi
 
 
 def is_span(angle: float) -> bool:

@@ -1,6 +1,6 @@
 """Pictures of an environment: its scene, its figure, snapshots, strips and recordings.
 
-Nothing is imported, Matplotlib least of all, before something is drawn.
+Names are imported when first used, because importing Matplotlib is slow.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How far from everything that stands still: what a snapshot's overlay ``clearance`` draws."""
+"""The clearance map: distance to the nearest static obstacle, which the snapshot overlay ``clearance`` draws."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contourpy import FillType, LineType, contour_generator
 import irsim._core as core
 from irsim.graphics.scene.scene import Bounds, Floats, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
-from irsim.metrics.roles import STATIC, company_of
+from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
 if TYPE_CHECKING:
@@ -20,154 +20,166 @@ if TYPE_CHECKING:
 
 __all__ = ["FreeSpace", "draw_clearance"]
 
-_CELLS = 120_000
-_EXACT = 1e-4
-_BEYOND = 0.25
-"""What is so far beyond the edge of the picture counts too, as a share of its longer side."""
-_PER_RADIUS = 6
-_NICE = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-"""Distances that lines are drawn at, those that are more than the radius [m]."""
-_APART = 1.4
-"""A line is left out that is not so many times as far off as the one before."""
-_MOST_LINES = 3
-_TRIED, _EDGE = 60, 0.05
-"""Points of a line that are looked at for its label; the least distance from the picture's edge, as a share of it."""
-_NO_GO, _LINE, _TEXT = "#e8590c", "#1c7ed6", "#1864ab"
-_FILL_ALPHA, _LINE_ALPHA = 0.22, 0.55
-_ZORDER, _TEXT_ZORDER = 0.5, 9.0
-_SIZE = 7.5
-_NOBODY = -1000
-"""Labels of nobody count down from here."""
+MAX_CELLS = 120_000
+"""Largest number of cells."""
+_TOLERANCE_M = 1e-4
+"""Accuracy of an exact distance [m]."""
+_MARGIN_SHARE = 0.25
+"""Obstacles outside the picture count up to this distance from its edge, as a share of its longer side."""
+_CELLS_PER_RADIUS = 6
+"""Number of cells per radius of the smallest robot, if that does not give too many cells."""
+_LINE_DISTANCES_M = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+"""Distances [m] at which lines can be drawn; those below the radius of the smallest robot are not used."""
+MIN_LINE_RATIO = 1.4
+"""A line is drawn only if its distance is at least this many times that of the previous line."""
+MAX_LINES = 3
+"""Largest number of distances at which lines are drawn."""
+MAX_LABEL_CANDIDATES = 60
+"""Number of points of a line that are tried as the position of its label."""
+MIN_EDGE_SHARE = 0.05
+"""Smallest distance of a label from the edge of the picture, as a share of the longer side of the picture."""
+_UNREACHABLE_COLOR = "#e8590c"
+_LINE_COLOR = "#1c7ed6"
+_TEXT_COLOR = "#1864ab"
+_FILL_ALPHA = 0.22
+_LINE_ALPHA = 0.55
+_ZORDER = 0.5
+_TEXT_ZORDER = 9.0
+_TEXT_SIZE_PT = 7.5
+_NO_OBJECT = -1000
+"""Object id of marks and labels that belong to no object; further labels count down from here."""
 
 
 class FreeSpace:
-    """Distances to what stands still and is in the way, over a rectangle.
+    """Distances to the nearest static obstacle, over a rectangle.
 
     Args:
-        simulation: What stands where.
-        world: Which of its worlds.
+        simulation: The simulation.
+        world: Index of the world.
         box: Left, bottom, right, top [m].
-        radius: Cells are a good deal smaller than this, if there are not too many [m].
+        radius: Radius of the smallest robot [m]; cells are several times smaller, unless that gives too many.
 
     Attributes:
-        half: Half the diagonal of a cell [m].
+        half_diagonal: Half the diagonal of a cell [m].
     """
 
     def __init__(self, simulation: Simulation, world: int, box: Bounds, radius: float) -> None:
         first, records = world * simulation.objects, simulation.scenario.objects
-        standing = [i for i in np.flatnonzero(company_of(records) == STATIC).tolist() if records[i].static]
-        parts = [part for i in standing for part in placed_parts(simulation.state, first + i, world_frame=True)]
+        static = [i for i in np.flatnonzero(kinds_of(records) == STATIC).tolist() if records[i].static]
+        parts = [part for i in static for part in placed_parts(simulation.state, first + i, world_frame=True)]
         width, height = box[2] - box[0], box[3] - box[1]
-        size = max(math.sqrt(width * height / _CELLS), radius / _PER_RADIUS)
+        size = max(math.sqrt(width * height / MAX_CELLS), radius / _CELLS_PER_RADIUS)
         nx, ny = max(2, math.ceil(width / size)), max(2, math.ceil(height / size))
         self._box, self._cell = box, (width / nx, height / ny)
-        self.half = math.hypot(*self._cell) / 2
+        self.half_diagonal = math.hypot(*self._cell) / 2
         self._terrain = core.Terrain((-1e8, -1e8, 1e8, 1e8), [(parts, (0.0, 0.0, 0.0))] if parts else [])
         self._clearance = core.Clearance(self._terrain, (box[:2], self._cell, nx, ny))
         self._distance: Floats | None = None
 
     @property
     def distance(self) -> Floats:
-        """(nx, ny) distances at the middles of the cells [m]."""
+        """(nx, ny) distances at the centres of the cells [m]."""
         if self._distance is None:
             self._distance = np.asarray(self._clearance.distance, dtype=np.float64)
         return self._distance
 
     @property
-    def middles(self) -> tuple[Floats, Floats]:
-        """(nx,) and (ny,) coordinates of the middles of the cells [m]."""
+    def cell_centers(self) -> tuple[Floats, Floats]:
+        """(nx,) and (ny,) coordinates of the centres of the cells [m]."""
         nx, ny = self.distance.shape
         x = self._box[0] + (np.arange(nx) + 0.5) * self._cell[0]
         y = self._box[1] + (np.arange(ny) + 0.5) * self._cell[1]
         return np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
 
-    def at(self, points: Floats) -> Floats:
-        """(K,) distances at the cells of (K, 2) points [m]."""
+    def distance_at(self, points: Floats) -> Floats:
+        """Return the (K,) distances of the cells that contain (K, 2) points [m]."""
         cells = ((points - self._box[:2]) / self._cell).astype(int)
         i, j = (np.clip(cells[:, axis], 0, size - 1) for axis, size in enumerate(self.distance.shape))
         values: Floats = self.distance[i, j]
         return values
 
-    def exactly_at(self, point: tuple[float, float]) -> float:
-        """Distance at a point, to a tenth of a millimetre [m]; infinity where nothing stands."""
-        low, high = 0.0, float(self.at(np.array([point]))[0]) + 2 * self.half
+    def exact_distance(self, point: tuple[float, float]) -> float:
+        """Return the distance at a point [m], accurate to 0.1 mm; infinity in a world without static obstacles."""
+        low, high = 0.0, float(self.distance_at(np.array([point]))[0]) + 2 * self.half_diagonal
         if not math.isfinite(high):
             return high
-        while high - low > _EXACT:
+        while high - low > _TOLERANCE_M:
             radius = (low + high) / 2
             touches = self._terrain.collides([core.Circle(radius=radius, center=(0.0, 0.0))], (*point, 0.0))
             low, high = (low, radius) if touches else (radius, high)
         return low
 
-    def way(self, start: Floats, goal: Floats, radius: float, reach: float) -> Floats | None:
-        """(K, 2) points that a disc passes to get within ``reach`` of a goal; None if there is no way."""
-        here, there = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
-        if self._clearance.widest(here, there, reach)[0] < radius - self.half:
+    def path(self, start: Floats, goal: Floats, radius: float, reach: float) -> Floats | None:
+        """Return the (K, 2) points of a path of a disc to within ``reach`` of a goal; None without such a path."""
+        first, target = (float(start[0]), float(start[1])), (float(goal[0]), float(goal[1]))
+        if self._clearance.widest(first, target, reach)[0] < radius - self.half_diagonal:
             return None
-        end = there if self.exactly_at(there) >= radius else self._clearance.climb(there, reach)
-        least = min(radius, float(self.at(np.array([here, end])).min())) - self.half
-        found = np.asarray(self._clearance.way(here, end, least))
-        return np.concatenate([[here], found[1:-1], [end]]) if len(found) else None
+        last = target if self.exact_distance(target) >= radius else self._clearance.climb(target, reach)
+        min_distance = min(radius, float(self.distance_at(np.array([first, last])).min())) - self.half_diagonal
+        found = np.asarray(self._clearance.way(first, last, min_distance))
+        return np.concatenate([[first], found[1:-1], [last]]) if len(found) else None
 
 
 def draw_clearance(scene: Scene, simulation: Simulation, world: int = 0) -> None:
-    """Add to a scene where the middle of the smallest robot cannot be, and lines at some distances [m].
+    """Add the clearance map to a scene: the area that the smallest robot cannot enter, and lines of equal distance.
 
     Args:
-        scene: What to add to; its extent is what the picture shows.
-        simulation: Where it is from.
-        world: Which of its worlds.
+        scene: The scene; its extent is the area that the picture shows.
+        simulation: The simulation that the scene shows.
+        world: Index of the world.
     """
     x0, x1, y0, y1 = scene.extent
-    radius = _smallest(simulation, world)
-    more = _BEYOND * max(x1 - x0, y1 - y0)
-    space = FreeSpace(simulation, world, (x0 - more, y0 - more, x1 + more, y1 + more), max(radius, 0.02))
+    radius = _smallest_robot_radius(simulation, world)
+    margin = _MARGIN_SHARE * max(x1 - x0, y1 - y0)
+    box = x0 - margin, y0 - margin, x1 + margin, y1 + margin
+    space = FreeSpace(simulation, world, box, max(radius, 0.02))
     distance = space.distance
     if not math.isfinite(float(distance.min())):
         return
-    x, y = space.middles
+    x, y = space.cell_centers
     inside = (x[:, None] > x0) & (x[:, None] < x1) & (y > y0) & (y < y1)
-    most = float(distance[inside].max())
+    max_distance = float(distance[inside].max())
     levels: Any = contour_generator(x, y, distance.T, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
     if radius > 0:
         points, offsets = levels.filled(-1.0, radius)
         for corners, starts in zip(points, offsets, strict=True):
             rings = [np.asarray(corners[a:b]) for a, b in itertools.pairwise(starts)]
-            stroke = Stroke(_NO_GO, 0.8)
-            scene.marks.append(Mark(_NOBODY, "field", Region(rings), _NO_GO, stroke, _FILL_ALPHA, _ZORDER))
-        _label(scene, f"{radius:.2g} m", levels.lines(radius), _NO_GO)
+            stroke, region = Stroke(_UNREACHABLE_COLOR, 0.8), Region(rings)
+            scene.marks.append(Mark(_NO_OBJECT, "field", region, _UNREACHABLE_COLOR, stroke, _FILL_ALPHA, _ZORDER))
+        _label_line(scene, f"{radius:.2g} m", levels.lines(radius), _UNREACHABLE_COLOR)
     shown, last = 0, radius
-    for level in _NICE:
-        if last * _APART < level < most and shown < _MOST_LINES:
+    for level in _LINE_DISTANCES_M:
+        if last * MIN_LINE_RATIO < level < max_distance and shown < MAX_LINES:
             lines = levels.lines(level)
             for line in lines:
-                stroke = Stroke(_LINE, 0.8)
-                scene.marks.append(Mark(_NOBODY, "field", Line(line), None, stroke, _LINE_ALPHA, _ZORDER))
-            _label(scene, f"{level:g} m", lines, _TEXT)
+                stroke = Stroke(_LINE_COLOR, 0.8)
+                scene.marks.append(Mark(_NO_OBJECT, "field", Line(line), None, stroke, _LINE_ALPHA, _ZORDER))
+            _label_line(scene, f"{level:g} m", lines, _TEXT_COLOR)
             shown, last = shown + 1, level
 
 
-def _smallest(simulation: Simulation, world: int) -> float:
-    """Radius of the smallest robot's inner disc [m]; 0 without robots."""
+def _smallest_robot_radius(simulation: Simulation, world: int) -> float:
+    """Return the radius of the inscribed disc of the smallest robot [m]; 0 without robots."""
     rows = world * simulation.objects + np.flatnonzero(simulation.robots)
     found = [inscribed_radius(simulation, int(row)) for row in rows]
     return min((radius for radius in found if radius > 0), default=0.0)
 
 
-def _label(scene: Scene, text: str, lines: list[Floats], color: str) -> None:
-    """Write the distance on one of its lines, where there is most room between other names and the edge."""
+def _label_line(scene: Scene, text: str, lines: list[Floats], color: str) -> None:
+    """Label lines of one distance at the point that is farthest from other labels and not close to the edge."""
     x0, x1, y0, y1 = scene.extent
-    points = np.concatenate([line[:: max(1, len(line) // _TRIED)] for line in lines]) if lines else np.empty((0, 2))
+    thinned = [line[:: max(1, len(line) // MAX_LABEL_CANDIDATES)] for line in lines]
+    points = np.concatenate(thinned) if thinned else np.empty((0, 2))
     inside = np.minimum(
         np.minimum(points[:, 0] - x0, x1 - points[:, 0]), np.minimum(points[:, 1] - y0, y1 - points[:, 1])
     )
-    points = points[inside > _EDGE * max(x1 - x0, y1 - y0)]
+    points = points[inside > MIN_EDGE_SHARE * max(x1 - x0, y1 - y0)]
     if not len(points):
         return
     taken = np.array([label.anchor for label in scene.labels]).reshape(-1, 2)
     best = 0
     if len(taken):
         best = int(np.hypot(*(points[:, None] - taken[None]).transpose(2, 0, 1)).min(axis=1).argmax())
-    number = _NOBODY - sum(label.object <= _NOBODY for label in scene.labels)
+    number = _NO_OBJECT - sum(label.object <= _NO_OBJECT for label in scene.labels)
     x, y = points[best].tolist()
-    scene.labels.append(Label(number, "field", x, y, (x, y), text, color, _SIZE, 1.0, _TEXT_ZORDER))
+    scene.labels.append(Label(number, "field", x, y, (x, y), text, color, _TEXT_SIZE_PT, 1.0, _TEXT_ZORDER))

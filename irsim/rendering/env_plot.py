@@ -1,8 +1,7 @@
-"""The picture of one environment: figure, window, saved frames. Nothing is made before something is drawn."""
+"""The picture of one environment: its figure and window. Nothing is made before the first drawing."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,11 +13,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from irsim.diagnostics.diagnostic import nearest
-from irsim.graphics.encoding.picture_files import picture_path, replacing
-from irsim.graphics.encoding.pixels import Pixels, from_image, to_image
-from irsim.graphics.encoding.png import png_bytes
+from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure, fitting_size, inches
-from irsim.graphics.figure.layers import opaque_colors
 from irsim.graphics.figure.live_figure import LiveCanvas, LiveFigure
 from irsim.graphics.figure.overlay import Overlay
 from irsim.graphics.figure.pictures import Pictures
@@ -27,9 +23,11 @@ from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.rendering.plot_steps import PlotSteps
-from irsim.rendering.recording import Pictured, Recording
+from irsim.rendering.recording import Pictured
+from irsim.rendering.saving import Saving, saved_figure_options
+from irsim.rendering.script_drawings import ScriptDrawings
 from irsim.rendering.user_sensors import UserSensors
 
 if TYPE_CHECKING:
@@ -37,44 +35,25 @@ if TYPE_CHECKING:
 
 __all__ = ["EnvPlot"]
 
-_PAD_INCHES = 0.1
-_SAVE_OPTIONS = frozenset(
-    [
-        "dpi",
-        "bbox_inches",
-        "pad_inches",
-        "transparent",
-        "facecolor",
-        "edgecolor",
-        "metadata",
-        "bbox_extra_artists",
-        "pil_kwargs",
-        "orientation",
-        "papertype",
-        "backend",
-    ]
-)
-_QUICK_OPTIONS = frozenset({"dpi", "bbox_inches", "pad_inches"})
 
-
-class EnvPlot(PlotSteps):
+class EnvPlot(PlotSteps, ScriptDrawings):
     """Draws one environment.
 
-    Pictures show the state at the moment they are made, whenever that is and whoever makes them; ``update`` only notes
-    how to draw it. Artists are brought up to date when the figure is drawn, saved or asked for.
+    A picture always shows the state at the moment it is made; ``update`` only notes how to draw it. Artists are brought
+    up to date when the figure is drawn, saved or requested.
 
     Args:
-        env: What to draw.
+        env: The environment.
         display: Open a window where that is possible.
-        full: Fill the screen with it.
+        full: Let the window fill the screen.
         palette: Default colours.
-        attach: Told the axes once they are made.
+        attach: Called with the axes when they are made.
 
     Attributes:
         title: Fixed title, or None for time and status.
-        show_title: Whether there is a title.
-        viewpoint: Point or name of the object that the view follows, or None.
-        saved_figure_kwargs: Options of saved figures; those given to ``save_figure`` are added.
+        show_title: Whether a title is drawn.
+        viewpoint: Point that the view is centred on, or name of the object that it follows, or None.
+        saved_figure_kwargs: Options of saved figures; options given to ``save_figure`` are added.
     """
 
     def __init__(
@@ -92,8 +71,8 @@ class EnvPlot(PlotSteps):
         source = env.simulation.scenario.source
         self._pictures = Pictures(Path(source).parent if source else None, env.logger.warning)
         self._options = env.simulation.scenario.world.plot
-        self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **_saved_figure(self._options)}
-        self._format: str | None = self.saved_figure_kwargs.pop("format", None)
+        saved = saved_figure_options(self._options)
+        self.saved_figure_kwargs: dict[str, Any] = {"dpi": 100, "bbox_inches": "tight", **saved}
         self._dpi = float(self.saved_figure_kwargs["dpi"])
         width, height = self._options.figure_pixels
         self._size = float(width), float(height)
@@ -102,11 +81,10 @@ class EnvPlot(PlotSteps):
         self._user_sensors = UserSensors()
         self._figure: SceneFigure | None = None
         self._window: Window | None = None
-        self._recording = Recording(env)
+        self._saving = Saving(self, self.saved_figure_kwargs.pop("format", None))
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
         self._region: tuple[float, float, float, float] | None = None
-        self._saved_size: tuple[int, int] | None = None
         self._entry: PyplotEntry | None = None
         self._frame = 0
         self._looking = False
@@ -125,29 +103,29 @@ class EnvPlot(PlotSteps):
     # the figure ------------------------------------------------------------------------------------------------------
     @property
     def fig(self) -> Figure:
-        """The Matplotlib figure, made when first asked for."""
+        """The Matplotlib figure, which is made when it is first needed."""
         return self._present().figure
 
     @property
     def ax(self) -> Axes:
-        """Its axes, in world coordinates [m]."""
+        """The axes of the figure, in world coordinates [m]."""
         return self._present().ax
 
     @property
     def made(self) -> bool:
-        """Whether there is a figure."""
+        """Whether the figure has been made."""
         return self._figure is not None
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height of the last saved picture [px]; of the figure before that."""
-        return self._saved_size or (int(self._size[0]), int(self._size[1]))
+        """Width and height of the last saved picture, or of the figure before the first [px]."""
+        return self._saving.size or (int(self._size[0]), int(self._size[1]))
 
     def set_size(self, longer_side: float) -> None:
-        """Make the longer side of pictures this long [px], the other one as the world asks for.
+        """Set the longer side of pictures [px]; the other side follows from the world.
 
         Raises:
-            ValueError: Not positive, or the figure exists.
+            ValueError: The size is not positive, or the figure has been made.
         """
         if not longer_side > 0:
             raise ValueError(f"the size must be positive, not {longer_side}")
@@ -162,11 +140,12 @@ class EnvPlot(PlotSteps):
         """Show only a part of the world: x_min, y_min, x_max, y_max [m]; call it before ``set_size``.
 
         Raises:
-            ValueError: It is none.
+            ValueError: The region is not valid.
         """
         self._region = region_extent(region)
 
-    def _made(self) -> SceneFigure:
+    def made_figure(self) -> SceneFigure:
+        """Return the figure, which is made when it is first needed."""
         if self._figure is None:
             entry = self.list_in_pyplot()
             if self._display:
@@ -204,31 +183,35 @@ class EnvPlot(PlotSteps):
 
     # the present -----------------------------------------------------------------------------------------------------
     def _moment(self) -> tuple[Any, ...]:
-        """What tells one picture from the next, cheaply."""
+        """Return what distinguishes one picture from the next, which is cheap to compare."""
         simulation = self.env.simulation
         return int(simulation.count[0]), simulation.revision, self._frame, self.env.status, self.title
 
     def _present(self) -> SceneFigure:
-        """The figure, its artists as of now."""
-        figure = self._made()
+        """Return the figure with its artists up to date."""
+        figure = self.made_figure()
         if not self._looking and self._shown_at != self._moment():
             self._show(figure)
         return figure
 
+    def note_drawn(self) -> None:
+        """Note that the canvas shows what the artists show."""
+        self._drawn_at = self._shown_at
+
     def before_drawing(self) -> None:
-        """Bring the artists up to date; called by the figure when somebody draws or saves it."""
+        """Bring the artists up to date; the figure calls this before it is drawn or saved."""
         if self._figure is not None and not self._looking:
             self._show(self._figure)
             self._figure.compositor.forget()
-            self._drawn_at = self._shown_at
+            self.note_drawn()
 
     def is_outdated(self) -> bool:
-        """Whether the pixels of the canvas show another moment than this one."""
+        """Whether the pixels of the canvas show an earlier moment."""
         return self._figure is not None and not self._looking and self._drawn_at != self._moment()
 
     @contextmanager
-    def _as_shown(self) -> Iterator[None]:
-        """Draw and read the artists as they are."""
+    def as_shown(self) -> Iterator[None]:
+        """Draw and read the artists as they are, without bringing them up to date."""
         before, self._looking = self._looking, True
         try:
             yield
@@ -236,7 +219,7 @@ class EnvPlot(PlotSteps):
             self._looking = before
 
     def _show(self, figure: SceneFigure) -> None:
-        with self._as_shown():
+        with self.as_shown():
             figure.show(self.scene(), self._title())
             if self.env.simulation.measurements:
                 objects = views(self.env.simulation)
@@ -245,7 +228,7 @@ class EnvPlot(PlotSteps):
         self._shown_at = self._moment()
 
     def _has_picture(self, name: str) -> bool:
-        """Whether an image is drawn in place of bodies."""
+        """Whether an image of that name is drawn in place of a body."""
         return self._pictures.has(name)
 
     def _new_figure(self, figure: Figure | None) -> SceneFigure:
@@ -259,7 +242,7 @@ class EnvPlot(PlotSteps):
         )
 
     def scene(self) -> Scene:
-        """What the picture shows, as data."""
+        """Return what the picture shows, as data."""
         scene = self._builder.build(
             status=self.env.status, viewpoint=self.viewpoint, mode=self._mode, overrides=self._overrides
         )
@@ -276,8 +259,9 @@ class EnvPlot(PlotSteps):
         time = int(simulation.count[0]) * float(simulation.scenario.world.step_time)
         return f"Simulation Time: {time:.2f}s, Status: {self.env.status}"
 
-    def _synced(self) -> SceneFigure:
-        figure = self._made()
+    def synced_figure(self) -> SceneFigure:
+        """Return the figure with its artists brought up to date."""
+        figure = self.made_figure()
         self._show(figure)
         return figure
 
@@ -290,7 +274,7 @@ class EnvPlot(PlotSteps):
             **overrides: Object plot keys that hold until the next call.
 
         Raises:
-            ValueError: Unknown mode.
+            ValueError: The mode is unknown.
         """
         if mode not in MODES:
             raise ValueError(f"unknown render mode {mode!r}: choose one of {', '.join(MODES)}")
@@ -308,37 +292,24 @@ class EnvPlot(PlotSteps):
             self.env.logger.warning(f"render: {key!r} is not a plot option and is ignored{hint}")
 
     def pause(self, interval: float) -> None:
-        """Show the present state in the window for ``interval`` seconds; returns at once where there is none."""
+        """Show the present state in the window for ``interval`` seconds; without a window return at once."""
         if not self._display:
             return
-        figure = self._synced()
+        figure = self.synced_figure()
         if self._window is not None and self._window.open:
-            with self._as_shown():
+            with self.as_shown():
                 figure.draw()
             self._window.refresh(interval)
 
     def show(self) -> None:
-        """Show the window until the user closes it; returns at once where there is none."""
+        """Show the window until the user closes it; without a window return at once."""
         self.pause(0.001)
         if self._window is not None:
             self._window.wait()
 
     def frame(self) -> Image.Image:
-        """The picture as it would be saved."""
-        return to_image(self._pixels({})[0])
-
-    def _pixels(self, options: Mapping[str, Any]) -> tuple[Pixels, tuple[int, int, int, int] | None]:
-        options = {**self.saved_figure_kwargs, **options}
-        figure = self._synced()
-        tight = options.get("bbox_inches") == "tight"
-        with self._as_shown():
-            if _is_quick(options, figure.figure.dpi):
-                self._drawn_at = self._shown_at
-                return figure.pixels(tight=tight, pad_inches=options.get("pad_inches", _PAD_INCHES))
-            data = io.BytesIO()
-            figure.figure.savefig(data, **{**options, "format": "png"})
-        with Image.open(data) as image:
-            return from_image(image), None
+        """Return the picture as it would be saved."""
+        return to_image(self._saving.pixels()[0])
 
     # files -----------------------------------------------------------------------------------------------------------
     def save_figure(
@@ -352,90 +323,50 @@ class EnvPlot(PlotSteps):
         """Save the present picture.
 
         Args:
-            save_name: Name with format (default ``<world>.png``), in ``fig_path`` unless absolute.
+            save_name: File name with format (default ``<world>.png``), in ``fig_path`` unless absolute.
             include_index: Append ``_<step, 4 digits>``.
-            save_gif: Save into ``ani_buffer_path``, with the index, and keep it as a frame of the animation.
-            **options: Of Matplotlib's ``savefig``; they hold for later saves too, ``format`` excepted.
+            save_gif: Save into ``ani_buffer_path``, with the index, and store it as a frame of the animation.
+            **options: Options of Matplotlib's ``savefig``; except ``format`` they hold for later saves too.
 
         Returns:
             The file.
 
         Raises:
-            ValueError: A format nothing writes.
+            ValueError: The format is not supported.
         """
-        wanted = options.pop("format", None)
-        _check_save_options(options)
-        self.saved_figure_kwargs.update(options)
-        count = int(self.env.simulation.count[0])
-        paths = self.env.path_param
-        path = picture_path(
-            paths.ani_buffer_path if save_gif else paths.fig_path,
-            save_name,
-            self.env.simulation.scenario.name,
-            count=count if include_index or save_gif else None,
-            format=wanted,
-            default_format=self._format,
-        )
-        figure = self._synced()
-        with replacing(path) as temporary:
-            if path.suffix == ".png" and _is_quick(self.saved_figure_kwargs, figure.figure.dpi):
-                pixels, _ = self._pixels({})
-                temporary.write_bytes(png_bytes(pixels, figure.figure.dpi))
-                self._saved_size = pixels.shape[1], pixels.shape[0]
-            else:
-                with self._as_shown():
-                    figure.figure.savefig(temporary, format=path.suffix[1:], **self.saved_figure_kwargs)
-        if save_gif and count != self._recording.last_count:
-            self.add_frame()
-        return path
+        return self._saving.save_figure(save_name, include_index=include_index, save_gif=save_gif, options=options)
 
     def add_frame(self, **options: Any) -> None:
-        """Keep the present picture for the animation; all frames are cut like the first.
+        """Store the present picture for the animation; all frames are cut like the first.
 
         Args:
-            **options: Of ``savefig``; they hold for later frames too.
+            **options: Options of ``savefig``; they hold for later frames too.
         """
-        _check_save_options(options)
-        self.saved_figure_kwargs.update(options)
-        kwargs, crop = self.saved_figure_kwargs, self._recording.crop
-        if crop is not None and kwargs.get("bbox_inches") == "tight" and _is_quick(kwargs, self._made().figure.dpi):
-            figure = self._synced()
-            with self._as_shown():
-                figure.draw()
-                pixels = figure.compositor.pixels(crop)
-            self._drawn_at = self._shown_at
-        else:
-            pixels, self._recording.crop = self._pixels({})
-        self._recording.add(pixels, self._colors)
-        self._saved_size = pixels.shape[1], pixels.shape[0]
+        self._saving.add_frame(options)
 
     def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
-        """Write the animation of the frames kept so far, and forget them.
+        """Write the animation of the stored frames and drop them.
 
         Args:
             path: File to write; default ``<ani_path>/<ani_name><suffix>``.
             **options: See :meth:`irsim.rendering.recording.Recording.save`.
 
         Returns:
-            The file; None, with a warning, when there are no frames.
+            The file; None, with a warning, if no frames are stored.
 
         Raises:
-            ValueError: A suffix that nothing writes.
+            ValueError: The suffix is not supported.
         """
-        return self._recording.save(path, **options)
+        return self._saving.recording.save(path, **options)
 
     @property
     def frames_written(self) -> int:
-        """Frames of the animation saved last."""
-        return self._recording.frames_written
-
-    def _colors(self) -> list[tuple[int, int, int]]:
-        """Colours that a reduced palette must keep: those of opaque bodies, paper and ink."""
-        return opaque_colors(self.scene())
+        """Number of frames of the last saved animation."""
+        return self._saving.recording.frames_written
 
     # life ------------------------------------------------------------------------------------------------------------
     def reset(self) -> None:
-        """Draw everything anew: drawings, titles and views of scripts are gone; kept frames stay."""
+        """Draw everything again without the drawings, titles and viewpoints of scripts; stored frames stay."""
         self._options = self.env.simulation.scenario.world.plot
         self._begin()
         self._builder = SceneBuilder(self.env.simulation, palette=self.palette, has_picture=self._has_picture)
@@ -443,10 +374,10 @@ class EnvPlot(PlotSteps):
         self._user_sensors.forget()
         if self._figure is not None:
             self._figure.clear()
-            self._synced()
+            self.synced_figure()
 
     def close(self) -> None:
-        """Close the window and forget figure and frames."""
+        """Close the window and drop figure and frames."""
         if self._window is not None:
             self._window.close()
             self._window = None
@@ -458,56 +389,9 @@ class EnvPlot(PlotSteps):
         if self._figure is not None:
             self._figure.compositor.forget()
         self._figure = None
-        self._recording.forget()
-
-    # drawings of scripts ---------------------------------------------------------------------------------------------
-    def set_title(self, title: str | None) -> None:
-        """Fixed title until the next reset; None shows time and status again."""
-        self.title = title
-
-    def draw_trajectory(self, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
-        """A path; see :meth:`Overlay.trajectory`."""
-        self._overlay.trajectory(self._made().ax, traj, traj_type, **kwargs)
-
-    def draw_points(self, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
-        """Dots; see :meth:`Overlay.points`."""
-        if points is not None:
-            self._overlay.points(self._made().ax, points, s, c, refresh, **kwargs)
-
-    def draw_box(self, vertex: Any, refresh: bool = False, color: str = "-") -> None:
-        """A closed outline; see :meth:`Overlay.box`."""
-        self._overlay.box(self._made().ax, vertex, refresh, color)
-
-    def draw_quiver(self, point: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
-        """One arrow (x, y, u, v)."""
-        if point is not None:
-            self._overlay.quivers(self._made().ax, [point], refresh, color, **kwargs)
-
-    def draw_quivers(self, points: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
-        """Arrows (x, y, u, v)."""
-        self._overlay.quivers(self._made().ax, points, refresh, color, **kwargs)
+        self._saving.recording.forget()
 
 
 def _canvas_of(plot: EnvPlot | None) -> Any:
-    """The canvas of a figure that pyplot asks for; an empty one if its environment has just gone."""
+    """Return the canvas that pyplot requests; an empty one if the environment has just been deleted."""
     return LiveFigure().canvas if plot is None else plot.fig.canvas
-
-
-def _saved_figure(options: Any) -> dict[str, Any]:
-    values: dict[str, Any] = options.saved_figure.model_dump(exclude_unset=True)
-    return {key: value for key, value in values.items() if value is not None or key == "bbox_inches"}
-
-
-def _check_save_options(options: Mapping[str, Any]) -> None:
-    """Refuse a misspelt option before it is kept for later saves."""
-    for name in options:
-        if name not in _SAVE_OPTIONS:
-            near = nearest(name, _SAVE_OPTIONS)
-            hint = f"did you mean {near!r}?" if near else f"known are {', '.join(sorted(_SAVE_OPTIONS))}"
-            raise TypeError(f"unknown option {name!r} of a saved figure; {hint}")
-
-
-def _is_quick(options: Mapping[str, Any], dpi: float) -> bool:
-    """Whether options of ``savefig`` can be served from the canvas as it is."""
-    same_dpi = options.get("dpi") in (dpi, "figure", None)
-    return same_dpi and set(options) <= _QUICK_OPTIONS and options.get("bbox_inches") in ("tight", None)

@@ -1,4 +1,4 @@
-"""The picture of an environment in three dimensions."""
+"""The 3-D picture of an environment."""
 
 from __future__ import annotations
 
@@ -14,54 +14,55 @@ from irsim.rendering.env_plot import EnvPlot
 
 __all__ = ["EnvPlot3D"]
 
-_ARROW = 6
+_ARROW_NUMBERS = 6
+_XYZ_ROWS = 3
 
 
 class _Overlay3D(Overlay):
-    """Drawings of a script in space: points and paths of three rows (two lie on the ground), arrows of six numbers."""
+    """Drawings of a script in 3-D: points and paths have three rows (or two, on the ground), arrows six numbers."""
 
     def trajectory(self, ax: Any, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
-        """A path through ``traj``."""
+        """Draw a path through ``traj``."""
         refresh = kwargs.pop("refresh", False)
-        direction = kwargs.pop("show_direction", False)
-        rows = _in_space(traj, flat=True)
+        show_direction = kwargs.pop("show_direction", False)
+        rows = _xyz(traj, flat=True)
         kwargs = self._with_color(traj_type, {"label": "trajectory", **kwargs}, self.palette.path)
         artists: list[Artist] = list(ax.plot(*rows, traj_type, **kwargs))
-        if direction:
-            heading = coordinates(traj, least=3)[2]
+        if show_direction:
+            heading = coordinates(traj, min_rows=_XYZ_ROWS)[2]
             artists.append(ax.quiver(*rows, np.cos(heading), np.sin(heading), 0 * heading, length=0.4))
         self._keep(artists, refresh)
 
     def points(self, ax: Any, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
-        """Dots at (3, N) or (2, N) points."""
-        rows = _in_space(points) if points is not None else np.empty((3, 0))
+        """Draw dots at (3, N) or (2, N) points."""
+        rows = _xyz(points) if points is not None else np.empty((3, 0))
         if rows.shape[1]:
             self._keep([ax.scatter(*rows, s=s, c=self.palette.marker if c is None else c, **kwargs)], refresh)
 
     def box(self, ax: Any, vertices: Any, refresh: bool = False, color: str = "-") -> None:
-        """A closed outline."""
-        rows = _in_space(vertices)
+        """Draw a closed outline."""
+        rows = _xyz(vertices)
         closed = np.concatenate([rows, rows[:, :1]], axis=1)
         self._keep(list(ax.plot(*closed, color, **self._with_color(color, {}, self.palette.path))), refresh)
 
     def quivers(self, ax: Any, arrows: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
-        """Arrows (x, y, z, u, v, w)."""
+        """Draw arrows (x, y, z, u, v, w)."""
         if arrows is None:
             return
         rows = np.array([np.asarray(arrow, dtype=float).reshape(-1) for arrow in arrows])
-        if rows.size and rows.shape[1] != _ARROW:
-            raise ValueError(f"an arrow in space has {_ARROW} numbers (x, y, z, u, v, w), not {rows.shape[1]}")
+        if rows.size and rows.shape[1] != _ARROW_NUMBERS:
+            raise ValueError(f"a 3-D arrow must have {_ARROW_NUMBERS} numbers (x, y, z, u, v, w), got {rows.shape[1]}")
         if rows.size:
             self._keep([ax.quiver(*rows.T, color=self.palette.quiver if color is None else color, **kwargs)], refresh)
 
 
 class EnvPlot3D(EnvPlot):
-    """Draws one environment in space; see :class:`irsim.rendering.env_plot.EnvPlot`. Grid maps and fog are not drawn.
+    """Draws one environment in 3-D; see :class:`irsim.rendering.env_plot.EnvPlot`. Grid maps and fog are not drawn.
 
     Args:
-        env: What to draw.
+        env: The environment.
         depth: Extent along z [m].
-        **kwargs: Those of ``EnvPlot``.
+        **kwargs: Arguments of ``EnvPlot``.
     """
 
     def __init__(self, env: Any, *, depth: float, **kwargs: Any) -> None:
@@ -77,8 +78,8 @@ class EnvPlot3D(EnvPlot):
         return SceneFigure3D(self._size, self._dpi, depth=self._depth, axis=axis, figure=figure)
 
 
-def _in_space(points: Any, *, flat: bool = False) -> Any:
-    """(3, N); ``flat`` puts everything on the ground, where the third row is a heading."""
-    rows = coordinates(points, least=2)
-    third = np.zeros(rows.shape[1]) if flat or rows.shape[0] < 3 else rows[2]
+def _xyz(points: Any, *, flat: bool = False) -> Any:
+    """Convert points to (3, N); ``flat`` sets z to 0, for points whose third row is a heading."""
+    rows = coordinates(points, min_rows=2)
+    third = np.zeros(rows.shape[1]) if flat or rows.shape[0] < _XYZ_ROWS else rows[2]
     return np.vstack([rows[:2], third])

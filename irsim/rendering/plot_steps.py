@@ -1,4 +1,4 @@
-"""The parts of a frame under the names that scripts of IR-SIM call."""
+"""Drawing the parts of a frame one by one, with the method names that scripts of IR-SIM call."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.layers import FogLayer
 from irsim.graphics.scene.scene import Fog, GridImage, Scene
 from irsim.objects.drawing.scene_builder import MODES
-from irsim.objects.view import views
+from irsim.objects.views import views
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:
@@ -22,9 +22,10 @@ __all__ = ["PlotSteps"]
 
 
 class PlotSteps:
-    """Part of :class:`irsim.rendering.env_plot.EnvPlot`: pictures follow the environment by themselves.
+    """Part of :class:`irsim.rendering.env_plot.EnvPlot` that scripts of IR-SIM call for each part of a frame.
 
-    ``objects`` are accepted everywhere; those that are not the environment's are drawn by their own ``plot``.
+    A figure follows its environment anyway, so most methods just bring the whole figure up to date. ``objects`` that
+    do not belong to the environment are drawn by their own method ``plot``.
     """
 
     env: Pictured
@@ -42,7 +43,8 @@ class PlotSteps:
         def save_animation(self, path: str | Path | None = None, **options: Any) -> Path | None:
             """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
-        def _synced(self) -> Any: ...
+        def synced_figure(self) -> Any:
+            """See :class:`irsim.rendering.env_plot.EnvPlot`."""
 
     @property
     def x_range(self) -> list[float]:
@@ -66,11 +68,11 @@ class PlotSteps:
 
         Args:
             mode: Objects that ``kwargs`` apply to: ``dynamic``, ``static`` or ``all``.
-            objects: Others to draw, too.
-            **kwargs: Object plot keys that hold until the next call.
+            objects: Additional objects to draw.
+            **kwargs: Object plot keys that stay in force until the next call.
         """
         self.update(mode, **kwargs)
-        self._synced()
+        self.synced_figure()
         own = {id(view) for view in views(self.env.simulation)}
         for view in objects or ():
             if id(view) not in own:
@@ -79,7 +81,7 @@ class PlotSteps:
     step_objects_plot = step
 
     def draw_components(self, mode: str = "all", objects: Iterable[Any] | None = None, **kwargs: Any) -> None:
-        """Draw everything, also what ``clear_components`` took out; see :meth:`step`."""
+        """Draw everything, including what ``clear_components`` has removed; see :meth:`step`."""
         self.step(mode, objects, **kwargs)
 
     def init_objects_plot(self, objects: Iterable[Any] | None = None, **kwargs: Any) -> None:
@@ -87,14 +89,14 @@ class PlotSteps:
         self.step("all", objects, **kwargs)
 
     def clear_components(self, mode: str = "all", objects: Iterable[Any] | None = None) -> None:
-        """Take objects out of the picture until the next frame.
+        """Remove objects from the picture until the next frame.
 
         Args:
-            mode: ``dynamic`` ones, ``static`` ones or ``all``.
-            objects: Of which; default: all of the environment.
+            mode: Which objects to remove: ``dynamic``, ``static`` or ``all``.
+            objects: Objects to choose from; default: all objects of the environment.
 
         Raises:
-            ValueError: Another mode.
+            ValueError: The mode is unknown.
         """
         if mode not in MODES:
             raise ValueError(f"unknown mode {mode!r}: choose one of {', '.join(MODES)}")
@@ -102,7 +104,7 @@ class PlotSteps:
             if mode == "all" or (mode == "static") == view.static:
                 self._hidden.add(view.id)
                 view.plot_clear(all=True)
-        self._synced()
+        self.synced_figure()
 
     def _without_hidden(self, scene: Scene) -> Scene:
         for name in ("marks", "beams", "labels", "pictures", "grids") if self._hidden else ():
@@ -110,30 +112,30 @@ class PlotSteps:
         return scene
 
     def step_world_plot(self) -> None:
-        """Bring fog, and everything else, up to date."""
-        self._synced()
+        """Bring the fog and everything else up to date."""
+        self.synced_figure()
 
     def update_title(self) -> None:
-        """Bring the title, and everything else, up to date."""
-        self._synced()
+        """Bring the title and everything else up to date."""
+        self.synced_figure()
 
     def set_ax_viewpoint(self, objects: Iterable[Any] | None = None) -> None:
-        """Centre the view on ``viewpoint``.
+        """Centre the view on the ``viewpoint`` of the scenario.
 
         Args:
-            objects: Accepted as it was before; the viewpoint names an object of the environment.
+            objects: Ignored; IR-SIM 2.12 searched the viewpoint among them.
         """
-        self._synced()
+        self.synced_figure()
 
     def draw_grid_map(self, grid_map: Any = None, **kwargs: Any) -> None:
-        """Draw another map than the environment's over the world.
+        """Draw an additional map over the whole world.
 
         Args:
-            grid_map: (nx, ny) occupancies, 0 to 100; None: the map of the environment, which is drawn anyway.
+            grid_map: (nx, ny) occupancy, 0 to 100. None stands for the map of the environment, which is drawn anyway.
             **kwargs: Properties of the image: ``alpha``, ``cmap``, ``zorder``, …
         """
         if grid_map is None:
-            self._synced()
+            self.synced_figure()
             return
         levels = np.clip(np.asarray(grid_map), 0, 100).astype(np.uint8)
         layer = GridLayer(self.ax, 0.0)
@@ -141,15 +143,16 @@ class PlotSteps:
         layer.artist.set(**kwargs)
 
     def draw_fog(self, fog_map: Any = None, zorder: int = 2, **kwargs: Any) -> None:
-        """Draw another fog than the environment's.
+        """Draw an additional fog.
 
         Args:
-            fog_map: A :class:`irsim.simulation.fog.FogMap`; None: that of the environment, which is drawn anyway.
-            zorder: Layer.
+            fog_map: A :class:`irsim.simulation.fog.FogMap`. None stands for the fog of the environment, which is drawn
+                anyway.
+            zorder: Layer of the image.
             **kwargs: ``color`` and ``alpha``.
         """
         if fog_map is None:
-            self._synced()
+            self.synced_figure()
             return
         x, y = fog_map.world_offset
         extent = x, x + fog_map.width, y, y + fog_map.height

@@ -1,4 +1,4 @@
-"""The animation of an environment: frames kept while it runs, written when it ends."""
+"""The animation of an environment: frames are stored while it runs and written when it ends."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.animation import AnimationOptions, FrameBuffer, check_suffix
-from irsim.graphics.encoding.picture_files import replacing
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.encoding.png import png_bytes
 from irsim.graphics.encoding.video import VIDEO_OPTIONS
@@ -17,14 +17,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Pictured", "Recording"]
 
-_PLACE = ("ani_name", "suffix", "rm_fig_path")
+_FILE_OPTIONS = ("ani_name", "suffix", "rm_fig_path")
+"""Options of the files rather than of playback or encoder."""
 
 
 class Pictured(Protocol):
-    """What drawing reads of an environment.
+    """The part of an environment that drawing reads.
 
-    ``path_param`` has the folders ``fig_path``, ``ani_path`` and ``ani_buffer_path``; ``logger`` has ``info`` and
-    ``warning``; ``ani_kwargs`` are the defaults of the animation.
+    ``path_param`` has the folders ``fig_path``, ``ani_path`` and ``ani_buffer_path``, ``logger`` has ``info`` and
+    ``warning``, and ``ani_kwargs`` holds the default options of the animation.
     """
 
     path_param: Any
@@ -33,19 +34,19 @@ class Pictured(Protocol):
 
     @property
     def simulation(self) -> Simulation:
-        """State and scenario."""
+        """The simulation, with state and scenario."""
 
     @property
     def status(self) -> str:
-        """Word for the title."""
+        """Status word, shown in the title."""
 
 
 class Recording:
-    """Frames of one environment; it shares them with no other.
+    """Stored frames of one environment.
 
     Attributes:
-        crop: Box (left, top, right, bottom) that all frames are cut to [px], once there is one.
-        frames_written: Frames of the animation saved last.
+        crop: Box (left, top, right, bottom) that all frames are cut to [px]; None before the first frame.
+        frames_written: Number of frames of the last saved animation.
     """
 
     def __init__(self, env: Pictured) -> None:
@@ -56,15 +57,15 @@ class Recording:
 
     @property
     def last_count(self) -> int | None:
-        """Step number of the frame kept last."""
+        """Step number of the last stored frame, or None."""
         return self._buffer.counts[-1] if self._buffer is not None and self._buffer.counts else None
 
     def add(self, pixels: Pixels, colors: Callable[[], list[tuple[int, int, int]]]) -> None:
-        """Keep a frame.
+        """Store a frame.
 
         Args:
             pixels: The frame.
-            colors: Tells the (r, g, b) that must come out exactly in a GIF; asked for the first frame.
+            colors: Returns the (r, g, b) colours that a GIF must reproduce exactly; called for the first frame only.
         """
         if self._buffer is None:
             defaults = self.env.ani_kwargs
@@ -82,20 +83,21 @@ class Recording:
         rm_fig_path: bool = True,
         **options: Any,
     ) -> Path | None:
-        """Write the animation and forget the frames.
+        """Write the animation and drop the frames.
 
         Args:
             path: File to write; default ``<ani_path>/<ani_name><suffix>``.
-            ani_name: Default ``animation_<world>``.
-            suffix: ``.gif``, ``.apng``, ``.png`` or a video's: ``.mp4``, ``.webm``, …
-            rm_fig_path: Unless set to False, no single frames are left behind; else they are in ``ani_buffer_path``.
-            **options: ``fps`` (10), ``last_frame_duration`` (1 s), ``loop`` (0: for ever), and the video encoder's.
+            ani_name: File name; default ``animation_<world>``.
+            suffix: ``.gif``, ``.apng``, ``.png`` or that of a video: ``.mp4``, ``.webm``, …
+            rm_fig_path: False also writes each frame as a PNG file to ``ani_buffer_path``.
+            **options: ``fps`` (default 10), ``last_frame_duration`` (default 1 s), ``loop`` (default 0: without end)
+                and the options of the video encoder.
 
         Returns:
-            The file; None, with a warning, when there are no frames.
+            Path of the file; None, with a warning, if no frames are stored.
 
         Raises:
-            ValueError: A suffix that nothing writes.
+            ValueError: The suffix is not supported.
             RuntimeError: The video encoder failed.
         """
         paths, name = self.env.path_param, self.env.simulation.scenario.name
@@ -108,7 +110,7 @@ class Recording:
             self.env.logger.warning(f"unknown options of the animation are ignored: {', '.join(unknown)}")
         buffer = self._buffer
         if buffer is None or not buffer.frames:
-            self.env.logger.warning("no frames were kept: there is no animation to save")
+            self.env.logger.warning("no animation is saved, because no frames were stored")
             return None
         buffer.save(path, play)
         if not rm_fig_path:
@@ -129,8 +131,8 @@ class Recording:
 
 
 def _animation_options(options: Mapping[str, Any]) -> tuple[AnimationOptions, list[str]]:
-    """Options of an animation, and the names among them that mean nothing."""
+    """Return the playback options, and the names of unknown options."""
     known = {key: options[key] for key in ("fps", "last_frame_duration", "loop") if options.get(key) is not None}
     video = {key: options[key] for key in VIDEO_OPTIONS if key in options}
-    unknown = [key for key in options if key not in known and key not in video and key not in _PLACE]
+    unknown = [key for key in options if key not in known and key not in video and key not in _FILE_OPTIONS]
     return AnimationOptions(**known, video=video), unknown

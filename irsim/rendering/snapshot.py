@@ -1,4 +1,4 @@
-"""One small, legible picture of a simulation, for people and agents who want a quick look."""
+"""The snapshot: one small, legible picture of a simulation, for a quick look."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import reduce_colors
-from irsim.graphics.encoding.picture_files import replacing
 from irsim.graphics.encoding.pixels import to_image
 from irsim.graphics.figure.figure import SceneFigure, fitting_size
 from irsim.graphics.figure.layers import opaque_colors
@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 __all__ = ["Extra", "legible_scene", "png_of", "render_scene"]
 
 Extra = Callable[[Scene], None]
-"""Adds something to a scene."""
+"""Callback that adds marks or labels to a scene."""
 _DPI = 100.0
-_COLORS = 255
+MAX_COLORS = 255
+"""Number of colours of a snapshot, which keeps its file small."""
 
 
 def render_scene(
@@ -43,22 +44,22 @@ def render_scene(
     overrides: Mapping[str, Any] | None = None,
     extra: Extra | None = None,
 ) -> bytes:
-    """Draw one world as a PNG of few colours (some 20 kB).
+    """Draw the present state of one world as a PNG with few colours (about 20 kB).
 
     Args:
-        simulation: What to draw, at its present state.
-        out: File to write too.
-        size_px: Longer side of the picture.
-        world: Which world of a batch.
-        labels: Name objects (robots first, where there are many), and draw paths and goals.
-        title: Text above; default: the time.
-        viewpoint: Point or object name to centre on; default: what the scenario says.
-        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the world.
+        simulation: The simulation.
+        out: File to write as well; default: none.
+        size_px: Longer side of the picture [px].
+        world: Index of the world in a batch.
+        labels: Draw names, paths and goals; if there are many names, those of robots only.
+        title: Text above the picture; default: the time.
+        viewpoint: Point or object name to centre on; default: that of the scenario.
+        region: x_min, y_min, x_max, y_max [m] of the part to show; default: the whole world.
         overrides: Object plot keys.
-        extra: Adds something to the scene.
+        extra: Callback that adds marks or labels to the scene.
 
     Returns:
-        The PNG file.
+        The content of the PNG file.
     """
     scene, pictures = legible_scene(
         simulation, world, labels=labels, viewpoint=viewpoint, region=region, overrides=overrides, extra=extra
@@ -85,7 +86,7 @@ def legible_scene(
     overrides: Mapping[str, Any] | None = None,
     extra: Extra | None = None,
 ) -> tuple[Scene, Pictures]:
-    """What such a picture shows, and the images in it; see :func:`render_scene`."""
+    """Return the scene of a snapshot, and the images in it; see :func:`render_scene` for the arguments."""
     options, source = simulation.scenario.world.plot, simulation.scenario.source
     pictures = Pictures(Path(source).parent if source else None)
     builder = SceneBuilder(simulation, world=world, has_picture=pictures.has)
@@ -106,7 +107,7 @@ def legible_scene(
 
 
 def png_of(image: Image.Image, kept: Sequence[tuple[int, int, int]]) -> bytes:
-    """A PNG file of few colours, among them those that are to be kept."""
+    """Convert an image to a PNG file with few colours, which include ``kept``."""
     data = io.BytesIO()
-    reduce_colors(image, kept, _COLORS).save(data, "PNG", optimize=True)
+    reduce_colors(image, kept, MAX_COLORS).save(data, "PNG", optimize=True)
     return data.getvalue()

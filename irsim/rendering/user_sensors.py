@@ -1,4 +1,4 @@
-"""Sensors of user code that draw themselves: ``plot(ax, state)`` once, ``step_plot()`` for every further picture."""
+"""Drawing of user-defined sensors: ``plot(ax, state)`` is called once, ``step_plot()`` for each later frame."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ __all__ = ["UserSensors"]
 
 
 class UserSensors:
-    """Lets them draw into the axes of one figure."""
+    """Lets the user-defined sensors of an environment draw into the axes of one figure."""
 
     def __init__(self) -> None:
         self._drawn: dict[int, PythonSensor] = {}
 
     def show(self, ax: Axes, objects: Sequence[ObjectView]) -> None:
-        """Bring their drawings up to date.
+        """Bring the drawings of the sensors up to date.
 
         Args:
             ax: Axes in world coordinates.
-            objects: Those whose sensors are shown.
+            objects: Objects whose sensors are shown.
         """
         sensors = [sensor for view in objects for sensor in view.sensors if isinstance(sensor, PythonSensor)]
         for sensor in [*self._drawn.values()]:
@@ -43,5 +43,5 @@ class UserSensors:
                 sensor.instance.plot(ax, sensor.parent.state)
 
     def forget(self) -> None:
-        """The axes are empty again."""
+        """Forget which sensors have drawn, because the axes are empty again."""
         self._drawn.clear()

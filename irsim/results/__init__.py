@@ -1,1 +1,62 @@
 """Typed results of every command: what the CLI prints and ``--json`` dumps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from irsim.common.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from irsim.results.base import Result
+    from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, EpisodeRow, Estimate, Proportion
+    from irsim.results.diff import CommentChange, KeyChange, ScenarioDiff, WorldChange
+    from irsim.results.findings import Edit, Finding
+    from irsim.results.picture import MovingPose, RenderResult, RobotPlan, RobotPose, SnapshotResult
+    from irsim.results.run import EventRecord, HorizonSource, Left, ReplayResult, RobotResult, RunResult, RunTable
+    from irsim.results.validation import DryRun, Fix, Stuck, ValidationReport
+
+__all__ = [
+    "BenchmarkResult",
+    "BenchmarkRow",
+    "CommentChange",
+    "DryRun",
+    "Edit",
+    "EpisodeRow",
+    "Estimate",
+    "EventRecord",
+    "Finding",
+    "Fix",
+    "HorizonSource",
+    "KeyChange",
+    "Left",
+    "MovingPose",
+    "Proportion",
+    "RenderResult",
+    "ReplayResult",
+    "Result",
+    "RobotPlan",
+    "RobotPose",
+    "RobotResult",
+    "RunResult",
+    "RunTable",
+    "ScenarioDiff",
+    "SnapshotResult",
+    "Stuck",
+    "ValidationReport",
+    "WorldChange",
+]
+
+_NAMES = {
+    "base": ["Result"],
+    "benchmark": ["BenchmarkResult", "BenchmarkRow", "EpisodeRow", "Estimate", "Proportion"],
+    "diff": ["CommentChange", "KeyChange", "ScenarioDiff", "WorldChange"],
+    "findings": ["Edit", "Finding"],
+    "picture": ["MovingPose", "RenderResult", "RobotPlan", "RobotPose", "SnapshotResult"],
+    "run": ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable"],
+    "validation": ["DryRun", "Fix", "Stuck", "ValidationReport"],
+}
+"""Public names of each module."""
+
+__getattr__, __dir__ = lazy_names(
+    __name__, {name: f"{__name__}.{module}" for module, names in _NAMES.items() for name in names}, [*_NAMES, "labels"]
+)

@@ -1,24 +1,27 @@
-"""Short names for behaviors that are given with many options, and short lists of seeds. Nothing of the engine."""
+"""Short labels for behaviors with many options, and short lists of failed seeds."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from irsim.common.text import listed
+
 __all__ = ["labels_of", "seeds_of"]
 
-_LONGEST = 24
+MAX_LABEL = 24
+"""Characters of a behavior that is its own label; a longer one is numbered."""
 
 
 def labels_of(behaviors: Sequence[str]) -> dict[str, str]:
-    """What to call each behavior: a long one by its name and its place in the list, as ``orca #2``."""
+    """Return a label for each behavior: a long one gets its name and its place in the list, as ``orca #2``."""
     return {
-        text: text if len(text) <= _LONGEST else f"{_name(text)} #{place}"
+        text: text if len(text) <= MAX_LABEL else f"{_name(text)} #{place}"
         for place, text in enumerate(behaviors, start=1)
     }
 
 
 def _name(text: str) -> str:
-    """The name in a behavior that is known to be one."""
+    """Return the name in a behavior that is known to be valid."""
     if not text.lstrip().startswith("{"):
         return text.strip()
     from irsim.scenario.yaml.document import load_text
@@ -27,14 +30,13 @@ def _name(text: str) -> str:
 
 
 def seeds_of(failed: dict[str, list[int]], most: int) -> str:
-    """Which seeds failed: ``timeout: seeds 18, 23, 32; collision: seed 7``; empty if none did.
+    """List the failed seeds: ``timeout: seeds 18, 23, 32; collision: seed 7``; empty if none failed.
 
     Args:
-        failed: Seeds by how they ended.
-        most: Seeds at most of each.
+        failed: Seeds by outcome.
+        most: Maximum number of seeds to list per outcome.
     """
-    told = []
+    parts = []
     for outcome, seeds in failed.items():
-        more = f" and {len(seeds) - most} more" if len(seeds) > most else ""
-        told.append(f"{outcome}: seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds[:most]))}{more}")
-    return "; ".join(told)
+        parts.append(f"{outcome}: seed{'s' * (len(seeds) > 1)} {listed([str(seed) for seed in seeds], most)}")
+    return "; ".join(parts)

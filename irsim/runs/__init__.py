@@ -1,4 +1,4 @@
-"""Recorded runs: folders ``<workspace>/.irsim/runs/<id>`` with everything that happened in an episode."""
+"""Recorded runs: folders ``<workspace>/.irsim/runs/<id>`` with the trace, events and result of an episode."""
 
 from __future__ import annotations
 

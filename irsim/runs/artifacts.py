@@ -1,4 +1,4 @@
-"""The files of a run as text that somebody can read a part at a time."""
+"""The files of a run as text, of which a caller can read a part at a time."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from irsim.scenario.limits import Limits
 __all__ = ["artifact"]
 
 _DECIMALS = 4
+"""Decimals of poses."""
 _COLUMNS = ("x", "y", "heading", "speed", "turn_rate", "control", "goal", "status")
 
 
@@ -35,24 +36,24 @@ def artifact(
     most: int = 1_000_000,
     limits: Limits | None = None,
 ) -> str:
-    """A part of what was recorded.
+    """A part of one artifact of a run.
 
-    Files are given from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. What does not
-    fit ends with whole steps; ``next_step`` of ``events.json`` and ``trace.json`` says where to go on, null at the end,
-    and so does a last line ``# next_step: N`` of ``trace.csv``, which is not there at the end.
-    ``replay.json`` is what the page of :mod:`irsim.replay` reads: ``data`` holds the characters from ``offset`` on, of
-    ``total``, which together are a packed run in base64.
+    Files are read from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. A part that is
+    cut by ``most`` ends with a whole step; ``next_step`` of ``events.json`` and ``trace.json`` is the step to continue
+    with, null at the end. ``trace.csv`` has it in a last line ``# next_step: N``, which is missing at the end.
+    ``replay.json`` is what the page of :mod:`irsim.replay` reads: ``data`` holds the characters from ``offset`` on of a
+    packed run in base64, which has ``total`` characters.
 
     Args:
-        run: Which run.
+        run: The run.
         name: One of :data:`irsim.runs.store.ARTIFACTS`.
         from_step: First step.
-        to_step: Last step; by default the last there is.
-        every: Every how many-th step of a trace.
+        to_step: Last step; default: the last step of the run.
+        every: Take every Nth step of a trace.
         robot: Only this object; ``trace.json`` then has its ranges, too.
         offset: First character of a file.
-        most: Bytes at most.
-        limits: Of the reader of the scenario, which ``replay.json`` needs.
+        most: Greatest number of bytes.
+        limits: Limits of the reader of the scenario, which ``replay.json`` needs.
 
     Raises:
         RunError: There is no such artifact, object or step.
@@ -83,24 +84,24 @@ def _replay(run: Run, offset: int, most: int, limits: Limits | None) -> str:
 
 def _events(run: Run, from_step: int, to_step: int | None, robot: str | None, most: int) -> str:
     if robot is not None:
-        run.index_of(robot)  # refuses names that nobody has
+        run.index_of(robot)  # refuses names that no object has
     if from_step > max([run.last_step, 0, *(event.step for event in run.events)]):
         raise RunError("step-out-of-range", f"run {run.id} has no step {from_step}", run.extent, where="from_step")
-    room, parts, next_step = most - 200, list[tuple[int, str]](), None
+    space, parts, next_step = most - 200, list[tuple[int, str]](), None
     for event in run.events:
         if event.step < from_step or (to_step is not None and event.step > to_step):
             continue
         if robot is not None and robot not in (event.object, event.partner):
             continue
         part = json.dumps({field: getattr(event, field) for field in event._fields})
-        room -= len(part) + 2
-        if room < 0:
+        space -= len(part) + 2
+        if space < 0:
             next_step = event.step
             break
         parts.append((event.step, part))
-    told = [part for step, part in parts if step != next_step]  # whole steps
+    whole_steps = [part for step, part in parts if step != next_step]
     head = json.dumps({"run_id": run.id, "status": run.status, "next_step": next_step})
-    return f'{head[:-1]}, "events": [{", ".join(told)}]}}'
+    return f'{head[:-1]}, "events": [{", ".join(whole_steps)}]}}'
 
 
 def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str | None, most: int) -> str:
@@ -121,7 +122,7 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
         "every": max(1, every),
         "notes": run.notes,
     }
-    room, parts, next_step = most - len(json.dumps(head)) - 100, list[str](), None
+    space, parts, next_step = most - len(json.dumps(head)) - 100, list[str](), None
     for row in rows:
         values: dict[str, Any] = {
             "step": int(trace.step[row]),
@@ -135,8 +136,8 @@ def _trace(run: Run, from_step: int, to_step: int | None, every: int, robot: str
                 key: _finite(trace.ranges[key][row]) if row < len(trace.ranges[key]) else None for key in keys
             }
         part = json.dumps(values, separators=(",", ":"))
-        room -= len(part) + 1
-        if room < 0:
+        space -= len(part) + 1
+        if space < 0:
             next_step = int(trace.step[row])
             break
         parts.append(part)
@@ -162,5 +163,5 @@ def _csv(run: Run, from_step: int, to_step: int | None, every: int, robot: str |
 
 
 def _finite(ranges: Any) -> list[float | None]:
-    """To a millimetre; None where nothing was hit."""
+    """Ranges rounded to a millimetre; None where a beam hit nothing."""
     return [round(float(value), 3) if np.isfinite(value) else None for value in ranges]

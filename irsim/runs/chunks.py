@@ -1,4 +1,7 @@
-"""A piece of a record as a file: NPZ, not compressed, with what changes row by row and what does not only once."""
+"""A piece of a recorded run as an uncompressed NPZ file, in which values that rarely change are stored once per change.
+
+Poses and controls have one row per step; goals, flags and scans only the rows in which they change.
+"""
 
 from __future__ import annotations
 
@@ -17,27 +20,33 @@ from numpy.typing import NDArray
 from pydantic_core import to_json
 
 import irsim._core as core
-from irsim.runs.files import Buffer, unreadable
+from irsim.common.files import Buffer
+from irsim.runs.files import unreadable
 from irsim.simulation.trace import Trace
 
-__all__ = ["Layout", "chunk_of", "load_chunk", "load_events"]
+__all__ = ["Layout", "load_chunk", "load_events", "pack_chunk"]
 
-_MOST_BYTES = 256 * 1024**2
-_MOST_NUMBERS = 2**27
+_MAX_BYTES = 256 * 1024**2
+"""Size of the largest piece that is read."""
+_MAX_NUMBERS = 2**27
+"""Number of values of the largest array that is read."""
 _ABOUT = "piece.json"
 _BITS = {"arrived": 1, "collided": 2, "stopped": 4}
 _ENTRY, _PLACE, _END = (Struct(f"<{kind}") for kind in ("5H3I2H", "3H2I", "4H2IH"))
 _MADE_BY = b"\x14\x00"
-_VERSION, _EPOCH = 20, 33  # that can read it; the 1st of January 1980, as ZIP counts
+_VERSION = 20
+"""ZIP version needed to read the archive."""
+_EPOCH = 33
+"""Date of all entries in ZIP format: 1 January 1980."""
 
 
 @dataclass(frozen=True)
 class Layout:
-    """What the pieces of one run have in common.
+    """Properties that all pieces of one run share.
 
     Attributes:
         names: Names of the N objects.
-        sensors: Key and number of beams of each sensor whose ranges are kept.
+        sensors: Key and number of beams of each sensor whose ranges are recorded.
         step_time: Period [s].
     """
 
@@ -46,22 +55,22 @@ class Layout:
     step_time: float
 
 
-def chunk_of(
+def pack_chunk(
     log: core.Log, movers: Sequence[int], pose: NDArray[np.float64], events: Sequence[Mapping[str, Any]]
 ) -> list[Buffer]:
-    """What a log holds, as the parts of a file; they are good until the log changes.
+    """The content of a log as the parts of a file, which are valid until the log changes.
 
-    ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the objects that move; ``pose_at`` (N, 3) of
-    everybody; ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4 stopped) and ``ranges`` (K, beams) as often
-    as they changed. ``piece.json`` says which steps these are (``first`` and how many), who ``movers`` are, from which
-    rows on each goal, flag and scan holds (``goal_rows``, ``flag_rows``, ``scan_rows``; no scans without any), and
-    what happened (``events``).
+    The arrays are ``pose`` (T, M, 3) and, in single precision, ``control`` (T, M, C) of the objects that can move;
+    ``pose_at`` (N, 3) of all objects; ``goal`` (K, N, 3), ``flags`` (K, N; 1 arrived, 2 collided, 4 stopped) and
+    ``ranges`` (K, beams) with one row per change. ``piece.json`` has the ``first`` step and number of ``rows``, the
+    indices of the ``movers``, the rows from which on each goal, flag and scan holds (``goal_rows``, ``flag_rows``,
+    ``scan_rows``, empty without scans), and the ``events``.
 
     Args:
-        log: What happened since the last piece.
-        movers: Objects whose poses it holds.
-        pose: (N, 3) present pose of everybody.
-        events: What happened.
+        log: The trace since the last piece.
+        movers: Indices of the objects whose poses the log has.
+        pose: (N, 3) present poses of all objects.
+        events: Events since the last piece.
     """
     about = {
         "first": log.first,
@@ -87,7 +96,7 @@ def chunk_of(
 
 
 def _archive(entries: Sequence[tuple[str, bytes, Buffer]]) -> list[Buffer]:
-    """A ZIP archive of entries that are not compressed: a name, and the two parts of what it holds.
+    """A ZIP archive of uncompressed entries, each given by its name and the two parts of its content.
 
     :mod:`zipfile` takes six times as long, more than the steps of a short run. PKWARE's APPNOTE 6.3, sections 4.3.7
     (before each entry), 4.3.12 (directory) and 4.3.16 (its end).
@@ -100,25 +109,25 @@ def _archive(entries: Sequence[tuple[str, bytes, Buffer]]) -> list[Buffer]:
         parts += (b"PK\x03\x04", known, title, head, body)
         directory += (b"PK\x01\x02", _MADE_BY, known, _PLACE.pack(0, 0, 0, 0, place), title)
         place += 4 + len(known) + len(title) + size
-    told = b"".join(directory)
-    end = _END.pack(0, 0, len(entries), len(entries), len(told), place, 0)
-    return [*parts, told, b"PK\x05\x06", end]
+    listing = b"".join(directory)
+    end = _END.pack(0, 0, len(entries), len(entries), len(listing), place, 0)
+    return [*parts, listing, b"PK\x05\x06", end]
 
 
 def _head(array: NDArray[Any]) -> bytes:
-    """Of a file in NPY format 1.0; the data begin at a multiple of 64 bytes."""
+    """Header of an array in NPY format 1.0, padded so that the data begin at a multiple of 64 bytes."""
     text = f"{{'descr': {array.dtype.str!r}, 'fortran_order': False, 'shape': {array.shape}, }}"
     text += " " * (-(len(text) + 11) % 64) + "\n"
     return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
 
 
 def load_chunk(path: Path, layout: Layout) -> Trace:
-    """Read such a file.
+    """Read the trace of a piece.
 
     Raises:
-        RunError: It is not what :func:`chunk_of` makes.
+        RunError: The file is not one that :func:`pack_chunk` makes.
     """
-    with _changes(path):
+    with _as_run_error(path):
         _check_size(path)
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
@@ -126,20 +135,20 @@ def load_chunk(path: Path, layout: Layout) -> Trace:
 
 
 def load_events(path: Path) -> Any:
-    """Read what happened from such a file, as :func:`chunk_of` was given it.
+    """Read the events of a piece, as :func:`pack_chunk` got them.
 
     Raises:
-        RunError: It is not what :func:`chunk_of` makes.
+        RunError: The file is not one that :func:`pack_chunk` makes.
     """
-    with _changes(path):
+    with _as_run_error(path):
         _check_size(path)
         with zipfile.ZipFile(path) as archive:
             return json.loads(archive.read(_ABOUT))["events"]
 
 
 @contextmanager
-def _changes(path: Path) -> Iterator[None]:
-    """Whatever is wrong with a file, in our words."""
+def _as_run_error(path: Path) -> Iterator[None]:
+    """Turn any error about the content of a file into a RunError."""
     try:
         yield
     except (
@@ -160,8 +169,8 @@ def _changes(path: Path) -> Iterator[None]:
 def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
     first, rows = int(about["first"]), int(about["rows"])
     count, beams = len(layout.names), sum(number for _, number in layout.sensors)
-    if first < 0 or not 0 < rows * max(1, count * 3, beams) <= _MOST_NUMBERS:
-        raise ValueError("more rows than are written")
+    if first < 0 or not 0 < rows * max(1, count * 3, beams) <= _MAX_NUMBERS:
+        raise ValueError("more rows than irsim writes")
     movers, columns = [int(row) for row in about["movers"]], arrays["control"].shape[-1]
     if movers and min(movers) < 0:
         raise ValueError("movers out of range")
@@ -172,12 +181,12 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
     pose[:, movers] = arrays["pose"]
     control = np.zeros((rows, count, 3))
     control[:, movers, :columns] = arrays["control"]
-    flags = _held(about["flag_rows"], arrays["flags"], rows, (count,)).astype(np.uint8)
+    flags = _expand(about["flag_rows"], arrays["flags"], rows, (count,)).astype(np.uint8)
     ranges: dict[str, NDArray[np.float32]] = {}
     if layout.sensors:
         scans = np.zeros((0, beams), dtype=np.float32)
         if about["scan_rows"]:
-            scans = _held(about["scan_rows"], arrays["ranges"], rows, (beams,)).astype(np.float32, copy=False)
+            scans = _expand(about["scan_rows"], arrays["ranges"], rows, (beams,)).astype(np.float32, copy=False)
         cuts = np.cumsum([number for _, number in layout.sensors])[:-1]
         ranges = {key: part for (key, _), part in zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)}
     step = np.arange(first, first + rows, dtype=np.int64)
@@ -186,7 +195,7 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
         time=step.astype(np.float64) * layout.step_time,
         pose=pose,
         control=control,
-        goal=_held(about["goal_rows"], arrays["goal"], rows, (count, 3)),
+        goal=_expand(about["goal_rows"], arrays["goal"], rows, (count, 3)),
         arrived=(flags & _BITS["arrived"]).astype(bool),
         collided=(flags & _BITS["collided"]).astype(bool),
         stopped=(flags & _BITS["stopped"]).astype(bool),
@@ -196,8 +205,8 @@ def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layou
     )
 
 
-def _held(begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[int, ...]) -> NDArray[Any]:
-    """(T, …) of values that each hold from their row on."""
+def _expand(begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[int, ...]) -> NDArray[Any]:
+    """(T, …) array, one row per step, of values that each hold from their row on."""
     _expect(values, (len(begins), *shape))
     if not values.size:
         return np.zeros((rows, *shape), dtype=values.dtype)
@@ -209,12 +218,12 @@ def _held(begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[i
 
 def _expect(array: NDArray[Any], shape: tuple[int, ...]) -> None:
     if array.shape != shape:
-        raise ValueError(f"an array of shape {array.shape} where {shape} is written")
+        raise ValueError(f"an array must have shape {shape}, got {array.shape}")
 
 
 def _check_size(path: Path) -> None:
-    """Refuse files that would unpack to more than they are: these are never compressed."""
+    """Refuse compressed files, which could unpack to any size: pieces are never compressed."""
     with zipfile.ZipFile(path) as archive:
         entries = archive.infolist()
-    if sum(entry.file_size for entry in entries) > min(_MOST_BYTES, path.stat().st_size):
+    if sum(entry.file_size for entry in entries) > min(_MAX_BYTES, path.stat().st_size):
         raise ValueError("compressed or too large")

@@ -1,61 +1,45 @@
-"""The files of runs: written so that nobody sees half of one, read with errors in our words. Standard library only."""
+"""The files of runs: written in one step, and read with errors in terms of runs."""
 
 from __future__ import annotations
 
 import json
 import os
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
-from irsim.diagnostics.errors import IrsimError
+from irsim.common.files import Buffer, create_bytes, replace_bytes, write_all
+from irsim.diagnostics.errors import CodedError
 
 __all__ = [
-    "TEMPORARY",
-    "Buffer",
     "Claim",
     "RunError",
-    "begun",
     "claim",
+    "create_file",
     "json_of",
-    "locked",
+    "lock_file",
     "plain_file",
     "refusal",
+    "replace_file",
     "text_of",
     "unreadable",
-    "written",
 ]
 
-Buffer: TypeAlias = bytes | memoryview
-"""Bytes, as they are."""
-TEMPORARY = ".new-"
-_NEW = os.O_CREAT | os.O_EXCL | os.O_WRONLY | getattr(os, "O_BINARY", 0)
-_MOST_TEXT = 32 * 1024**2
+_MAX_TEXT_BYTES = 32 * 1024**2
+"""Size of the largest text file that is read."""
 
 
-class RunError(IrsimError, ValueError):
-    """A run that cannot be opened, read or written.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to do instead.
-        where: Argument it is about, if it is not the run itself.
-    """
-
-    def __init__(self, code: str, message: str, fix: str | None = None, *, where: str | None = None) -> None:
-        self.code, self.message, self.fix, self.where = code, message, fix, where
-        super().__init__(f"{code}: {message}" + (f". Fix: {fix}" if fix else ""))
+class RunError(CodedError, ValueError):
+    """A run cannot be opened, read or written."""
 
 
 def unreadable(what: str) -> RunError:
-    """The error for files of a run that are not as they were written."""
+    """The error for a file of a run that is damaged or has been changed."""
     return RunError("unreadable-run", what, "run it again: the same scenario and seed give the same run")
 
 
 def plain_file(folder: Path, name: str) -> Path | None:
-    """A file of a run, None if it is not there or is anything but an ordinary file."""
+    """Path of a file of a run, None if it does not exist or is not an ordinary file."""
     path = folder / name
     return path if path.is_file() and not path.is_symlink() else None
 
@@ -64,14 +48,14 @@ def text_of(folder: Path, name: str) -> str | None:
     """Text of a file of a run, None without that file.
 
     Raises:
-        RunError: It is too large, or no text.
+        RunError: The file is too large, or not text.
     """
     path = plain_file(folder, name)
     if path is None:
         return None
     try:
-        if path.stat().st_size > _MOST_TEXT:
-            raise unreadable(f"'{name}' of run {folder.name} is larger than irsim writes such files")
+        if path.stat().st_size > _MAX_TEXT_BYTES:
+            raise unreadable(f"'{name}' of run {folder.name} is larger than any that irsim writes")
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
         return None
@@ -83,7 +67,7 @@ def json_of(folder: Path, name: str) -> Any:
     """Data of a JSON file of a run, None without that file.
 
     Raises:
-        RunError: It does not hold JSON.
+        RunError: The file is not JSON.
     """
     text = text_of(folder, name)
     if text is None:
@@ -94,100 +78,79 @@ def json_of(folder: Path, name: str) -> Any:
         raise unreadable(f"'{name}' of run {folder.name} is not JSON: it has been changed") from None
 
 
-def begun(target: str | Path, text: bytes) -> None:
-    """Write a file of a folder that has no ``run.json`` yet: nobody takes that for a run, so half a file harms nobody.
+def create_file(target: str | Path, text: bytes) -> None:
+    """Write a file of a folder without ``run.json``, which does not count as a run until it has one.
 
     Raises:
-        RunError: The system refuses.
+        RunError: The operating system refuses to write it.
     """
     try:
-        _put(os.open(target, _NEW, 0o600), text)
+        create_bytes(target, text)
     except OSError as error:
         raise refusal(target, error) from None
 
 
-def written(target: str | Path, *parts: Buffer) -> None:
-    """Write a file of a run by way of a temporary one, so that nobody ever sees half of it.
+def replace_file(target: str | Path, *parts: Buffer) -> None:
+    """Write a file of a run in one step, so that no incomplete file is ever seen.
 
     Raises:
-        RunError: The system refuses.
+        RunError: The operating system refuses to write it.
     """
-    head, separator, _ = os.fspath(target).rpartition(os.sep)
-    temporary = f"{head}{separator}{TEMPORARY}{os.urandom(4).hex()}"
     try:
-        descriptor = os.open(temporary, _NEW, 0o600)
-        try:
-            _put(descriptor, *parts)
-            os.replace(temporary, target)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(temporary)
-            raise
+        replace_bytes(target, *parts)
     except OSError as error:
         raise refusal(target, error) from None
-
-
-def _put(descriptor: int, *parts: Buffer) -> None:
-    try:
-        _write(descriptor, *parts)
-    finally:
-        os.close(descriptor)
-
-
-def _write(descriptor: int, *parts: Buffer) -> None:
-    """Write all of it, without copies and buffers, which short runs would feel."""
-    done = os.writev(descriptor, parts) if hasattr(os, "writev") else 0
-    if done < sum(map(len, parts)):
-        rest = memoryview(b"".join(parts))[done:]
-        while rest:
-            rest = rest[os.write(descriptor, rest) :]
 
 
 def refusal(target: str | Path, error: OSError) -> RunError:
-    """What the system refuses, in our words."""
+    """The error for a file that the operating system refuses to write."""
     what = f"'{target}' cannot be written: {error.strerror or error}"
     return RunError("file-access", what, "check permissions and the space left")
 
 
 @dataclass(frozen=True)
 class Claim:
-    """Says that a run or a job is being written, as long as this process lives and until it is released."""
+    """Marks a run or a job as being written, until it is released or this process ends."""
 
     descriptor: int
 
     def release(self) -> None:
-        """Nobody writes any more."""
+        """Mark the run or job as no longer being written."""
         os.close(self.descriptor)
 
 
 def claim(file: str | Path, text: bytes = b"") -> Claim:
-    """Say that this process writes a run or a job.
+    """Mark a run or a job as being written by this process.
 
     Args:
-        file: The file to make and to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
-        text: What it holds.
+        file: The file to create and to lock: ``scenario.yaml`` of a run, ``lock`` of a job.
+        text: Content of the file.
 
     Raises:
-        RunError: It is there already, or the system refuses.
+        RunError: The file exists already, or the operating system refuses to write it.
     """
     try:
         descriptor = os.open(file, os.O_CREAT | os.O_EXCL | os.O_RDWR | getattr(os, "O_BINARY", 0), 0o600)
         try:
-            locked(descriptor, wait=True)
-            _write(descriptor, text)
+            lock_file(descriptor, wait=True)
+            write_all(descriptor, text)
         except BaseException:
             os.close(descriptor)
             raise
     except FileExistsError:
-        what = f"'{os.path.dirname(file)}' holds a run already"
+        what = f"'{os.path.dirname(file)}' already contains a run"
         raise RunError("file-exists", what, "name another folder for the run") from None
     except OSError as error:
         raise refusal(file, error) from None
     return Claim(descriptor)
 
 
-def locked(descriptor: int, *, wait: bool) -> bool | None:
-    """Lock a file until it is closed; whether that worked, None on systems without such locks."""
+def lock_file(descriptor: int, *, wait: bool) -> bool | None:
+    """Lock an open file until it is closed.
+
+    Returns:
+        Whether the lock was acquired; None on systems without such locks.
+    """
     try:
         import fcntl
     except ImportError:

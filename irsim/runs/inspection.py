@@ -1,4 +1,4 @@
-"""Looking into a recorded run: where everybody was, who touched whom, who came how close, how fast they were."""
+"""Tables of a recorded run: positions step by step, collisions, closest approaches, speeds."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.metrics import approaches
-from irsim.results.results import RunTable
+from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of
@@ -27,19 +27,20 @@ View = Literal["rows", "collisions", "closest", "speeds"]
 Field = Literal["x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"]
 FIELDS: tuple[Field, ...] = get_args(Field)
 _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "status")
-_STANDING = 1e-3
-"""Slower than this is standing still [m/s]."""
+_MIN_SPEED = 1e-3
+"""Speed [m/s] below which an object stands still."""
 _DECIMALS = 4
-_NOT_KEPT = "not recorded"
-_PARTNERS = 5
-"""Of each kind, whom an object is told to have come near."""
+"""Decimals of the numbers of a table."""
+_NOT_RECORDED = "not recorded"
+_MAX_PARTNERS = 5
+"""Number of objects of each kind that ``closest`` lists for one object."""
 Cell = float | int | str | bool | None
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class _Question:
-    """What is asked of which part of a trace: ``first`` and ``last`` are row numbers, ``objects`` columns of it."""
+    """A request for a table; ``first`` and ``last`` are rows of the trace, ``objects`` its columns."""
 
     run: Run
     trace: Trace
@@ -78,23 +79,23 @@ def inspect_run(
     """A part of a recorded run as a table.
 
     Args:
-        run: Its id, its folder, or ``last``.
-        view: ``rows``: positions and more, step by step; ``collisions``: who touched whom, where and how fast;
-            ``closest``: for each robot whom it came how near and when, the nearest five robots, humans and things that
-            stand still, edge to edge (between footprints; negative: overlap);
-            ``speeds``: for each robot how far and fast it went, and where it stood still longest, until it arrived
-            (all of the part asked for if that begins after). ``speed`` is a magnitude everywhere, never negative;
-            ``min_forward_speed`` is that along the heading and negative where it drove backwards (None for
+        run: Id of the run, its folder, or ``last``.
+        view: ``rows``: positions and more, step by step; ``collisions``: objects in contact, with place and speeds;
+            ``closest``: the closest approaches of each robot to the nearest five robots, humans and static objects,
+            with time and place, as distances between footprints (negative: overlap);
+            ``speeds``: path length and speeds of each robot and its longest stop, until it arrived (or of all requested
+            steps if they begin after its arrival). ``speed`` is a magnitude, never negative;
+            ``min_forward_speed`` is the velocity along the heading, negative where the robot drove backwards (None for
             omnidirectional drives); ``max_turn_rate`` is a magnitude, too.
-        robot: Name of one robot, or of another object; by default all robots.
+        robot: Name of one robot, or of another object; default: all robots.
         from_step: First step.
-        to_step: Last step; by default the last there is.
-        every: Take every so many-th step; by default as many as make the table fit into ``limit``.
+        to_step: Last step; default: the last step of the run.
+        every: Take every Nth step; default: the smallest N with which the table fits into ``limit``.
         fields: Columns of ``rows``, see :data:`FIELDS`.
-        limit: Rows of the table at most, None for all.
-        cursor: ``next_cursor`` of the page before; all else as in that call.
-        workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
-        limits: Of the reader of the scenario, which ``closest`` needs.
+        limit: Greatest number of rows of the table, None for all.
+        cursor: ``next_cursor`` of the previous page; all other arguments as in that call.
+        workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
+        limits: Limits of the reader of the scenario, which ``closest`` needs.
 
     Raises:
         RunError: There is no such run, robot, step or field.
@@ -114,7 +115,7 @@ def inspect_run(
     found = VIEWS[view](question)
     if start and start >= found.total:
         what = f"cursor {cursor!r} is beyond the last row"
-        raise RunError("bad-argument", what, "use next_cursor of the page before", where="cursor")
+        raise RunError("bad-argument", what, "use next_cursor of the previous page", where="cursor")
     shown = start + len(found.rows)
     result = opened.result
     return RunTable(
@@ -134,7 +135,7 @@ def inspect_run(
     )
 
 
-# what is asked for ----------------------------------------------------------------------------------------------------
+# request --------------------------------------------------------------------------------------------------------------
 
 
 def _fields(names: Sequence[str] | None) -> Sequence[Field]:
@@ -143,8 +144,8 @@ def _fields(names: Sequence[str] | None) -> Sequence[Field]:
     for index, name in enumerate(names):
         if name not in FIELDS:
             near = nearest(name, FIELDS)
-            fix = f"did you mean {near}?" if near else f"there are {', '.join(FIELDS)}"
-            raise RunError("bad-argument", f"there is no field {clean(name)!r}", fix, where=f"fields[{index}]")
+            fix = f"did you mean {near}?" if near else f"the fields are {', '.join(FIELDS)}"
+            raise RunError("bad-argument", f"{clean(name)!r} is not a valid field", fix, where=f"fields[{index}]")
     return [field for field in FIELDS if field in names]
 
 
@@ -159,8 +160,8 @@ def _start(cursor: str | None) -> int:
     if cursor is None:
         return 0
     if not (cursor.isascii() and cursor.isdigit() and len(cursor) < 12):
-        fix = "use next_cursor of the page before"
-        raise RunError("bad-argument", f"{clean(cursor)!r} is no cursor", fix, where="cursor")
+        fix = "use next_cursor of the previous page"
+        raise RunError("bad-argument", f"{clean(cursor)!r} is not a valid cursor", fix, where="cursor")
     return int(cursor)
 
 
@@ -168,10 +169,10 @@ def _start(cursor: str | None) -> int:
 
 
 def _rows(asked: _Question) -> _Found:
-    """Step by step, in each step robot by robot."""
+    """Rows of the trace, step by step, in each step robot by robot."""
     steps, count = asked.last - asked.first + 1, len(asked.objects)
     every = asked.every
-    if every is None:  # spread evenly, with the last one
+    if every is None:  # spread evenly, including the last step
         fitting = steps if asked.limit is None else max(2, asked.limit // max(1, count))
         every = 1 if steps <= fitting else math.ceil((steps - 1) / (fitting - 1))
     picked = np.arange(asked.first, asked.last + 1, every)
@@ -191,28 +192,28 @@ def _rows(asked: _Question) -> _Found:
 
 
 def _controls(asked: _Question) -> int:
-    """How many numbers a control of the chosen objects has at most."""
+    """Greatest number of control values of the chosen objects."""
     objects = asked.run.resolved["objects"]
     chosen = [objects[index].get("vel_dim") for index in asked.objects if objects[index].get("kinematics") is not None]
     return max((count for count in chosen if isinstance(count, int) and 0 < count <= 3), default=2)
 
 
 def _cells(asked: _Question, field: Field, row: int, index: int, controls: int) -> list[Cell]:
-    trace, aimless = asked.trace, not asked.run.resolved["objects"][index].get("goals")
+    trace, no_goal = asked.trace, not asked.run.resolved["objects"][index].get("goals")
     x, y, heading = trace.pose[row, index].tolist()
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
     if field == "control":
         return [_number(value) for value in trace.control[row, index, :controls]]
     if field == "goal":
-        return [None, None] if aimless else [_number(goal_x), _number(goal_y)]
+        return [None, None] if no_goal else [_number(goal_x), _number(goal_y)]
     if field == "status":
         flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
-        return [" ".join(word for word, flag in flags if flag[row, index]) or ("" if aimless else "under way")]
+        return [" ".join(word for word, flag in flags if flag[row, index]) or ("" if no_goal else "under way")]
     if field == "nearest_hit":
         prefix = f"{trace.names[index]}/"
         blocks = [block for key, block in trace.ranges.items() if key.startswith(prefix)]
         if any(row >= len(block) for block in blocks):
-            return [_NOT_KEPT]
+            return [_NOT_RECORDED]
         least = [float(block[row].min()) for block in blocks if block.size]
         return [_number(min(least, default=math.inf))]
     if field == "speed":
@@ -223,13 +224,13 @@ def _cells(asked: _Question, field: Field, row: int, index: int, controls: int) 
         "x": x,
         "y": y,
         "heading": heading,
-        "goal_distance": math.nan if aimless else math.hypot(goal_x - x, goal_y - y),
+        "goal_distance": math.nan if no_goal else math.hypot(goal_x - x, goal_y - y),
     }[field]
     return [_number(value)]
 
 
 def _collisions(asked: _Question) -> _Found:
-    """Contacts that begin, with the speeds of both just before."""
+    """Beginnings of contacts, with the speeds of both objects just before."""
     trace = asked.trace
     steps = (int(trace.step[asked.first]), int(trace.step[asked.last]))
     chosen = {trace.names[index] for index in asked.objects}
@@ -249,10 +250,10 @@ def _collisions(asked: _Question) -> _Found:
 
 
 def _closest(asked: _Question) -> _Found:
-    """Whom each robot came how near, the nearest first."""
+    """Closest approaches of each robot to other objects, the closest first."""
     scenario = scenario_of(asked.run, asked.limits)
     part, trace = asked.trace.pose[asked.first : asked.last + 1], asked.trace
-    near = approaches(part, scenario, asked.objects, _PARTNERS, seed=int(asked.run.meta["seed"]))
+    near = approaches(part, scenario, asked.objects, _MAX_PARTNERS, seed=int(asked.run.meta["seed"]))
     found = [(each, index) for index, some in zip(asked.objects, near, strict=True) for each in some]
     rows: list[list[Cell]] = []
     for each, index in sorted(found, key=lambda item: (item[0].distance, item[1])):
@@ -265,7 +266,7 @@ def _closest(asked: _Question) -> _Found:
 
 
 def _speeds_of_robots(asked: _Question) -> _Found:
-    """How far and how fast each robot went until it arrived, and its longest stand."""
+    """Path length and speeds of each robot until it arrived, and its longest stop."""
     trace, rows = asked.trace, list[list[Cell]]()
     for index in asked.objects:
         arrived = trace.arrived[asked.first : asked.last + 1, index]
@@ -273,7 +274,7 @@ def _speeds_of_robots(asked: _Question) -> _Found:
         last = asked.first + first if 0 < first < len(arrived) else asked.last
         speeds = _speeds(trace, index, asked.first, last)
         way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
-        begin, length = _longest_stand(speeds[:first])
+        begin, length = _longest_stop(speeds[:first])
         stand: list[Cell] = [_number(length * trace.step_time), None]
         if length:
             stand[1] = int(trace.step[asked.first + begin])
@@ -306,7 +307,7 @@ def _paged(asked: _Question, columns: list[str], rows: list[list[Cell]]) -> _Fou
 
 
 def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
-    """(last - first + 1,) true speed [m/s] of an object in the step that led to each row; 0 in the first row of all."""
+    """(last - first + 1,) speed [m/s] of an object in the step before each row; 0 in the first row of the trace."""
     here = trace.pose[first : last + 1, index, :2]
     before = trace.pose[max(0, first - 1) : last, index, :2]
     if first == 0:
@@ -316,7 +317,7 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
 
 
 def _least_forward(asked: _Question, index: int, last: int) -> Cell:
-    """Least velocity along the heading [m/s]; None for drives whose heading is not where they go, and without steps."""
+    """Least velocity along the heading [m/s]; None for omnidirectional drives, and without steps."""
     drive = asked.run.resolved["objects"][index].get("kinematics")
     name = drive.get("name") if isinstance(drive, dict) else None
     pose = asked.trace.pose[max(0, asked.first - 1) : last + 1, index]
@@ -335,16 +336,16 @@ def _turn_rate(trace: Trace, index: int, row: int) -> float:
 
 
 def _speed_before(trace: Trace, name: str | None, row: int) -> Cell:
-    """Speed in the step that led to the contact; None for what is no object of the trace."""
+    """Speed in the step before a contact; None for a partner that is not an object of the trace."""
     if name not in trace.names:
         return None
     return _number(float(_speeds(trace, trace.names.index(name), row, row)[0]))
 
 
-def _longest_stand(speeds: Floats) -> tuple[int, int]:
-    """First row and number of rows of the longest stretch of standing still; the first row says nothing of motion."""
+def _longest_stop(speeds: Floats) -> tuple[int, int]:
+    """First row and number of rows of the longest stop; the first row has no speed, so it never counts."""
     best, begin = (0, 0), 0
-    for row, still in enumerate((speeds < _STANDING).tolist()):
+    for row, still in enumerate((speeds < _MIN_SPEED).tolist()):
         if not still or row == 0:
             begin = row + 1
         elif row + 1 - begin > best[1]:
@@ -353,11 +354,11 @@ def _longest_stand(speeds: Floats) -> tuple[int, int]:
 
 
 def _number(value: float) -> float | None:
-    """To a tenth of a millimetre; None for what is no number."""
+    """A number rounded to four decimals; None if it is not finite."""
     return round(float(value), _DECIMALS) if math.isfinite(value) else None
 
 
 def _precise(value: float) -> float:
-    """The same, but what is not 0 is not told as 0."""
+    """A number rounded to four decimals, or to two digits if that would make it 0."""
     rounded = round(value, _DECIMALS)
     return rounded if rounded or not value else float(f"{value:.2g}")

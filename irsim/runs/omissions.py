@@ -1,19 +1,19 @@
-"""What a record lacks, in words: of a long or large run not everything is kept."""
+"""Notes on what the record of a long or large run omits."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["lacking"]
+__all__ = ["omission_notes"]
 
 
-def lacking(meta: Mapping[str, Any], steps: int | None = None) -> list[str]:
-    """What was not kept because there was too much of it; empty if everything was.
+def omission_notes(meta: Mapping[str, Any], steps: int | None = None) -> list[str]:
+    """Notes on what was too large to be recorded; empty if everything was recorded.
 
     Args:
-        meta: What ``run.json`` says.
-        steps: Executed steps, if the run has ended.
+        meta: Content of ``run.json``.
+        steps: Number of executed steps, None if the run has not ended.
     """
     whole = f"of {steps}" if steps is not None else f"of at most {meta.get('horizon')}"
     until, scans = meta.get("trace_until"), meta.get("scans_until")

@@ -1,4 +1,4 @@
-"""A resolved scenario with the scene that was drawn, as plain data."""
+"""A resolved scenario and its initial scene as plain data."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _each, _like = attrgetter(*_EACH), attrgetter(*_LIKE)
 
 
 def plain_scenario(simulation: Simulation) -> bytes:
-    """World and objects with all defaults, and where each object starts in the scene at hand, as JSON.
+    """World and objects with all defaults, and the initial pose of each object, as JSON.
 
-    What objects have in common stands once, in ``options``, and each object says which of these it has. Numbers that
-    JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. Outlines of random shapes and cells of maps are
-    left out: the scenario and the seed give them again.
+    Options that successive objects share are stored once, in ``options``; each object has the index of its options.
+    Numbers that JSON lacks are the words ``Infinity``, ``-Infinity`` and ``NaN``. Outlines of random shapes and cells
+    of maps are omitted, as scenario and seed reproduce them.
     """
     scenario, goals = simulation.scenario, simulation.state.goals
     objects, options = list[dict[str, Any]](), list[dict[str, Any]]()
@@ -52,11 +52,11 @@ def plain_scenario(simulation: Simulation) -> bytes:
 
 
 def with_options(data: Any) -> dict[str, Any]:
-    """What :func:`plain_scenario` tells, read and with its options in each object.
+    """The data of :func:`plain_scenario`, with the shared options copied into each object.
 
     Raises:
-        TypeError: It is something else.
-        LookupError: It lacks a part.
+        TypeError: The data have another structure.
+        LookupError: A part of the data is missing.
     """
     options = data["options"]
     objects = [{**options[item["options"]], **item} for item in data["objects"]]
@@ -66,5 +66,5 @@ def with_options(data: Any) -> dict[str, Any]:
 
 
 def _values(model: Any) -> Any:
-    """Fields of a model by their names: its own way to JSON looks up each serializer, which a short run would feel."""
+    """Fields of a model by name; the serializer of the model would take longer than a few steps of a small world."""
     return vars(model) if isinstance(model, BaseModel) else model

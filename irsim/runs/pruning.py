@@ -1,4 +1,4 @@
-"""Lets go of runs: old ones, the least recently used ones of too many, and what killed processes left."""
+"""Deletes old runs, the least recently used runs beyond a quota, and what killed processes left."""
 
 from __future__ import annotations
 
@@ -9,39 +9,41 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.runs.files import TEMPORARY
+from irsim.common.files import TEMPORARY
 from irsim.runs.store import ABANDONED, ID, META, being_written, date_of, dated_folders
 
 __all__ = ["DAY", "QUOTA", "prune", "remove", "tidy"]
 
 QUOTA = 500 * 1000 * 1000
-"""Bytes that the runs of a workspace may take together; the least recently used ones make room."""
+"""Size in bytes of all runs of a workspace, beyond which the least recently used ones are deleted."""
 DAY = 24 * 3600.0
-"""Seconds after its last use that a run is kept."""
+"""Time [s] after its last use for which a run is kept."""
 _TRASH = ".gone-"
+"""Prefix of the names of folders that are being deleted."""
 _TIDIED = ".tidied"
-_BETWEEN_TIDYING = 5.0
-"""Seconds: looking at every run before each short one would cost more than the run."""
+"""File whose modification time is that of the last tidying."""
+_TIDYING_PERIOD_S = 5.0
+"""Time [s] between two tidyings: checking all runs before each short run would take longer than the run."""
 
 
 def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None = None) -> list[str]:
-    """Let go of runs that nobody has used for ``age`` seconds, and of the least recently used ones beyond the quota.
+    """Delete runs that have not been used for ``age`` seconds, and the least recently used ones beyond the quota.
 
-    Runs that are being written stay, and so does ``keep``. Leftovers of processes that were killed are swept up.
+    Runs that are being written stay, and so does ``keep``. What killed processes left is deleted.
 
     Args:
         runs: Folder of all runs.
-        quota: Bytes they may take together.
-        age: Seconds after its last use.
+        quota: Size in bytes that all runs may have together.
+        age: Time [s] after its last use for which a run is kept.
         keep: Id of a run that stays.
 
     Returns:
-        Ids of what was let go.
+        Ids of the deleted runs.
     """
     _sweep(runs)
-    runs_used = dated_folders(runs, (META,))[::-1]  # the latest used last
+    runs_used = dated_folders(runs, (META,))[::-1]  # the most recently used one last
     sizes = {folder: _size_of(folder) for _, folder in runs_used}
-    total, gone, oldest = sum(size for size, _ in sizes.values()), list[str](), time.time_ns() - age * 1e9
+    total, deleted, oldest = sum(size for size, _ in sizes.values()), list[str](), time.time_ns() - age * 1e9
     for used, folder in runs_used:
         size, leftovers = sizes[folder]
         unwanted = used < oldest or total > quota
@@ -49,18 +51,18 @@ def prune(runs: Path, *, quota: int = QUOTA, age: float = DAY, keep: str | None 
             continue
         if unwanted:
             remove(folder)
-            gone.append(folder.name)
+            deleted.append(folder.name)
             total -= size
         else:
             _sweep_run(leftovers)
-    return gone
+    return deleted
 
 
 def tidy(runs: str | Path) -> None:
-    """:func:`prune`, unless somebody did so a moment ago."""
+    """:func:`prune`, unless the runs were pruned a moment ago."""
     mark = f"{runs}{os.sep}{_TIDIED}"
     with suppress(OSError):
-        if 0 <= time.time() - os.stat(mark).st_mtime < _BETWEEN_TIDYING:
+        if 0 <= time.time() - os.stat(mark).st_mtime < _TIDYING_PERIOD_S:
             return
     with suppress(OSError):
         Path(mark).touch()
@@ -68,7 +70,7 @@ def tidy(runs: str | Path) -> None:
 
 
 def _size_of(folder: Path) -> tuple[int, list[str]]:
-    """Bytes of a run, and its temporary files."""
+    """Size of a run in bytes, and paths of its temporary files."""
     total, leftovers = 0, list[str]()
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
@@ -80,7 +82,7 @@ def _size_of(folder: Path) -> tuple[int, list[str]]:
 
 
 def remove(folder: Path) -> None:
-    """First out of sight as a whole, then bit by bit."""
+    """Delete a run: rename its folder first, so that no reader sees half of it."""
     trash = folder.with_name(f"{_TRASH}{folder.name}-{os.urandom(3).hex()}")
     with suppress(OSError):
         os.rename(folder, trash)
@@ -88,7 +90,7 @@ def remove(folder: Path) -> None:
 
 
 def _sweep(runs: Path) -> None:
-    """Remove what a killed process left: half-removed runs, and folders that never became a run."""
+    """Delete what a killed process left: partly deleted runs, and folders that never became a run."""
     for folder in _children(runs):
         if folder.name.startswith(_TRASH):
             shutil.rmtree(folder, ignore_errors=True)
@@ -100,7 +102,7 @@ def _sweep(runs: Path) -> None:
 
 
 def _sweep_run(leftovers: list[str]) -> None:
-    """Remove temporary files that a killed process left in a run."""
+    """Delete temporary files that a killed process left in a run."""
     for path in leftovers:
         with suppress(OSError):
             if time.time() - os.lstat(path).st_mtime > ABANDONED:

@@ -1,4 +1,4 @@
-"""Recorded runs, read: also those that are still being written, and those that were cut short."""
+"""Read recorded runs, including those that are still being written or were interrupted."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ import numpy as np
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
-from irsim.results.results import RunResult
+from irsim.results.run import RunResult
 from irsim.runs.chunks import Layout, load_chunk, load_events
 from irsim.runs.files import RunError, json_of, plain_file, text_of, unreadable
-from irsim.runs.omissions import lacking
+from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
-from irsim.simulation.trace import Trace, joined
+from irsim.simulation.trace import Trace, join_traces
 
 __all__ = ["Run", "list_runs", "open_run"]
 
@@ -32,8 +32,8 @@ class Run:
     """One recorded run.
 
     Attributes:
-        folder: Where it is.
-        meta: What ``run.json`` says: id, created, seed, scenario, options, horizon, versions, names of the objects …
+        folder: Folder of the run.
+        meta: Content of ``run.json``: id, created, seed, scenario, options, horizon, versions, names of the objects …
     """
 
     folder: Path
@@ -41,12 +41,12 @@ class Run:
 
     @property
     def id(self) -> str:
-        """Its id, which is the name of its folder."""
+        """Id of the run, the name of its folder."""
         return self.folder.name
 
     @property
     def status(self) -> Status:
-        """``running``, ``finished``, ``cancelled``, or ``interrupted``: without a result, and nobody writes it."""
+        """``running``, ``finished``, ``cancelled``, or ``interrupted``: without a result, and no longer written."""
         return status_of(self.folder)
 
     @property
@@ -56,21 +56,23 @@ class Run:
 
     @property
     def options(self) -> dict[str, Any]:
-        """What else decided how it went: ``strict``, ``imports``, ``behavior``."""
+        """Other options of the run: ``strict``, ``imports``, ``behavior``."""
         options = self.meta.get("options")
         return options if isinstance(options, dict) else {}
 
     def index_of(self, name: str) -> int:
-        """Which object has that name.
+        """Index of the object with a name.
 
         Raises:
-            RunError: None; names the nearest one, or some.
+            RunError: No object has that name; the message suggests a similar name, or lists some.
         """
         if name in self.names:
             return self.names.index(name)
         near = nearest(name, self.names)
         some = ", ".join(clean(other, 40) for other in self.names[:5])
-        fix = f"did you mean {clean(near, 40)!r}?" if near else f"there are {some}" + ", …" * (len(self.names) > 5)
+        fix = (
+            f"did you mean {clean(near, 40)!r}?" if near else f"the objects are {some}" + ", …" * (len(self.names) > 5)
+        )
         raise RunError("bad-argument", f"run {self.id} has no object {clean(name)!r}", fix, where="robot")
 
     @property
@@ -80,7 +82,7 @@ class Run:
 
     @cached_property
     def scenario_text(self) -> str:
-        """The scenario as given."""
+        """The scenario as the user wrote it."""
         text = text_of(self.folder, "scenario.yaml")
         if text is None:
             raise unreadable(f"run {self.id} has no scenario.yaml")
@@ -88,9 +90,9 @@ class Run:
 
     @cached_property
     def events(self) -> list[Event]:
-        """What happened, in order; of a run that was cut short, as far as the trace goes."""
+        """The events in order; those of an interrupted run end with its trace."""
         try:
-            events = [Event(**item) for name in self._pieces("trace", "events") for item in self._happened(name)]
+            events = [Event(**item) for name in self._pieces("trace", "events") for item in self._events_in(name)]
         except TypeError as error:
             raise unreadable(f"the events of run {self.id} have been changed: {error}") from None
         if self.result is not None:
@@ -100,7 +102,7 @@ class Run:
 
     @cached_property
     def result(self) -> RunResult | None:
-        """How it ended; None as long as it has not."""
+        """The result; None if the run has not ended."""
         text = text_of(self.folder, RESULT)
         if text is None:
             return None
@@ -111,7 +113,7 @@ class Run:
 
     @cached_property
     def resolved(self) -> dict[str, Any]:
-        """World and objects with all defaults, at their start, as plain data."""
+        """World and objects at the start, with all defaults, as plain data."""
         try:
             return with_options(json_of(self.folder, "resolved.json"))
         except (TypeError, LookupError):
@@ -119,13 +121,13 @@ class Run:
 
     @property
     def notes(self) -> list[str]:
-        """What its record lacks because there was too much of it."""
+        """Notes on what was too large to be recorded."""
         result = self.result
-        return lacking(self.meta, None if result is None else result.steps)
+        return omission_notes(self.meta, None if result is None else result.steps)
 
     @property
     def extent(self) -> str:
-        """Which steps there are, and why no more."""
+        """Which steps were recorded, and why no more, as a message."""
         why = [note for note in self.notes if note.startswith("recorded")]
         return "; ".join([f"it has the steps 0 to {self.last_step}", *why])
 
@@ -136,53 +138,53 @@ class Run:
         return int(self._piece(pieces[-1]).step[-1]) if pieces else -1
 
     def trace(self) -> Trace:
-        """Everything that happened, as arrays; of a run that was cut short, what was written.
+        """The recorded trace; that of an interrupted run ends with its last piece.
 
         Raises:
-            RunError: There is nothing yet, or it has been changed.
+            RunError: No step has been recorded, or a file has been changed.
         """
         pieces = [self._piece(name) for name in self._pieces("trace")]
         if not pieces:
-            raise unreadable(f"run {self.id} was cut short before its first step was kept")
-        trace = joined(pieces)
+            raise unreadable(f"run {self.id} was interrupted before its first step was recorded")
+        trace = join_traces(pieces)
         if (np.diff(trace.step) != 1).any():
             raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
         return trace
 
     def files(self) -> list[str]:
-        """Names of its files."""
+        """Names of the files of the run."""
         return sorted(name for name in self._names() if plain_file(self.folder, name))
 
     def _names(self) -> list[str]:
         try:
             return os.listdir(self.folder)
         except OSError:
-            raise RunError("unknown-run", f"run {self.id} has been let go") from None
+            raise RunError("unknown-run", f"run {self.id} has been deleted") from None
 
     def _pieces(self, *kinds: str) -> list[str]:
-        """Files of these kinds in the order of their numbers.
+        """Names of the pieces of some kinds, in the order of their numbers.
 
         Raises:
-            RunError: One is missing among them.
+            RunError: A piece is missing.
         """
         found = sorted((int(m[2]), m[1], m[0]) for name in self._names() if (m := _PIECE.fullmatch(name)))
         for number, (there, _, _) in enumerate(found):
             if there != number:
-                raise unreadable(f"piece {number:04d} of run {self.id} is missing, or there twice")
+                raise unreadable(f"piece {number:04d} of run {self.id} is missing, or exists twice")
         return [name for _, kind, name in found if kind in kinds]
 
     def _piece(self, name: str) -> Trace:
         sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
         return load_chunk(self._path(name), Layout(self.names, sensors, self.step_time))
 
-    def _happened(self, name: str) -> Any:
-        """Events of a piece of the trace, or of a file of events."""
+    def _events_in(self, name: str) -> Any:
+        """Events in a piece of the trace, or in a file of events."""
         return load_events(self._path(name)) if name.startswith("trace") else json_of(self.folder, name)
 
     def _path(self, name: str) -> Path:
         path = plain_file(self.folder, name)
         if path is None:
-            raise unreadable(f"'{name}' of run {self.id} is no ordinary file")
+            raise unreadable(f"'{name}' of run {self.id} is not an ordinary file")
         return path
 
 
@@ -190,11 +192,11 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
     """Open a recorded run.
 
     Args:
-        folder_or_id: Its id, its folder, or ``last`` for the one begun last.
-        workspace: Folder whose ``.irsim/runs`` holds it; the current directory by default.
+        folder_or_id: Id of the run, its folder, or ``last`` for the run started last.
+        workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
 
     Raises:
-        RunError: There is none, or it can't be read.
+        RunError: There is no such run, or it cannot be read.
     """
     folder = find_run(folder_or_id, workspace)
     meta = json_of(folder, META)
@@ -205,7 +207,7 @@ def open_run(folder_or_id: str | Path, workspace: str | Path | None = None) -> R
 
 
 def list_runs(workspace: str | Path | None = None) -> list[Run]:
-    """The runs of a workspace, the one begun last first; those that can't be read are left out."""
+    """The runs of a workspace, the one started last first; runs that cannot be read are skipped."""
     runs = []
     for folder in run_folders(runs_folder(workspace)):
         try:

@@ -1,4 +1,4 @@
-"""Writes a run while it happens, in pieces that are renamed into place: what is there can be read, whatever happens."""
+"""Record a run while it is simulated, in pieces that are renamed into place, so that the folder is always readable."""
 
 from __future__ import annotations
 
@@ -15,53 +15,55 @@ import numpy as np
 from pydantic_core import to_json
 
 import irsim._core as core
-from irsim.runs.chunks import chunk_of
-from irsim.runs.files import Buffer, Claim, RunError, begun, claim, written
-from irsim.runs.omissions import lacking
+from irsim.common.files import Buffer
+from irsim.runs.chunks import pack_chunk
+from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
+from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
-from irsim.runs.store import BEGUN, FILES, META, RESULT, made_folder, runs_place, used
+from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, runs_path
 from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
     from irsim.env import Env
-    from irsim.results.results import RunResult
+    from irsim.results.run import RunResult
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Recorder", "recording"]
 
-_PIECE = 4_000_000
-"""Bytes of a piece of the trace."""
-_PERIOD = 0.5
-"""Seconds after which a piece is written at the latest."""
-_MOST_TRACE = 200_000_000
-"""Bytes of the trace of one run without its scans; what happens later is told by events and result only."""
-_MOST_SCANS = 80_000_000
-"""Bytes of the scans of one run when they are read; later ones are not kept."""
-_LARGEST_SCAN = 800_000
-"""Bytes of all ranges of one step; of larger ones none are kept, as there would be room for a few steps only."""
-_LARGEST_MAP = 64_000_000
-"""Bytes of a map file; of a larger one no copy is kept."""
-_BETWEEN_PRUNING = 16_000_000
+_PIECE_BYTES = 4_000_000
+"""Size of a piece of the trace."""
+_WRITE_PERIOD_S = 0.5
+"""Time [s] after which a piece is written even if it is small."""
+_MAX_TRACE_BYTES = 200_000_000
+"""Size of the trace of one run without its scans; of later steps only events and the result are recorded."""
+_MAX_SCANS_BYTES = 80_000_000
+"""Size in memory of the recorded scans of one run; later scans are not recorded."""
+_MAX_SCAN_BYTES = 800_000
+"""Size of all ranges of one step; larger scans are not recorded, as they would fill the limit within a few steps."""
+_MAX_MAP_BYTES = 64_000_000
+"""Size of a map file up to which the run keeps a copy of it."""
+_PRUNING_INTERVAL_BYTES = 16_000_000
+"""Number of bytes written between two checks whether older runs must be deleted."""
 
 
 class Recorder:
-    """The run of one simulation.
+    """Records the run of one simulation into a folder.
 
     Args:
-        simulation: One world, at its start.
-        horizon: Steps at most.
-        scenario: Its file as the user named it, None for a text.
-        options: What else decides how it goes, as JSON has it.
-        folder: Write here, into a new or empty folder that is never let go; by default into ``.irsim/runs`` of the
-            current directory.
+        simulation: The simulation of one world, at its start.
+        horizon: Greatest number of steps.
+        scenario: Scenario file as the user named it, None for a text.
+        options: Other options of the run, as JSON types.
+        folder: A new or empty folder for the run, which is never deleted; by default a folder in ``.irsim/runs`` of
+            the current directory, which is.
 
     Attributes:
-        folder: Where it is written.
+        folder: Folder of the run.
         run_id: Name of that folder.
 
     Raises:
-        RunError: The folder holds something already, or leads elsewhere.
+        RunError: The folder is not empty, or is a link.
     """
 
     def __init__(
@@ -74,18 +76,18 @@ class Recorder:
         folder: Path | None = None,
     ) -> None:
         self._simulation = simulation
-        self._runs = None if folder is not None else runs_place(make=True)
+        self._runs = None if folder is not None else runs_path(make=True)
         if self._runs is not None:
             tidy(self._runs)
-            self.folder = made_folder(self._runs, "scenario" if scenario is None else _stem(scenario))
+            self.folder = make_run_folder(self._runs, "scenario" if scenario is None else _stem(scenario))
         else:
             assert folder is not None
-            self.folder = str(_new(folder))
+            self.folder = str(_make_empty_folder(folder))
         self.run_id = os.path.basename(self.folder)
         self._claim: Claim | None = None
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
-        self._scans = scans = 0 < self._scan <= _LARGEST_SCAN
-        self._scan_rows = _MOST_SCANS // self._scan if scans else 0  # that may still come
+        self._scans = scans = 0 < self._scan <= _MAX_SCAN_BYTES
+        self._scan_rows = _MAX_SCANS_BYTES // self._scan if scans else 0  # rows that may still be recorded
         self._revision = simulation.revision
         self._log, self._movers = _log_of(simulation, scans)
         self._log.attach(simulation.state)
@@ -93,7 +95,7 @@ class Recorder:
         simulation.log = self._log
         self._pieces = self._events = self._bytes = self._scan_bytes = self._pruned_at = 0
         self._done = False
-        self._due = time.monotonic() + _PERIOD
+        self._due = time.monotonic() + _WRITE_PERIOD_S
         kept, source = sensors(simulation) if scans else [], simulation.scenario.source
         self._meta: dict[str, Any] = {
             "id": self.run_id,
@@ -113,9 +115,9 @@ class Recorder:
             **_versions(),
         }
         try:
-            self._claim = claim(self._path(BEGUN), _text_of(simulation).encode())
-            begun(self._path("resolved.json"), plain_scenario(simulation))
-            self._meta["maps"] = self._kept_maps()
+            self._claim = claim(self._path(SCENARIO_FILE), _text_of(simulation).encode())
+            create_file(self._path("resolved.json"), plain_scenario(simulation))
+            self._meta["maps"] = self._copy_maps()
             self._write_meta()
         except BaseException:
             self._stop()
@@ -123,68 +125,70 @@ class Recorder:
                 remove(Path(self.folder))
             raise
 
-    def _kept_maps(self) -> list[list[str]]:
-        """Copies of the files that the map was read from: somebody may draw another before the run is looked at."""
+    def _copy_maps(self) -> list[list[str]]:
+        """Copy the files of the map, which may change before the run is read, and return their names and copies."""
         kept = list[list[str]]()
         for name, path in self._simulation.scenario.map_files.items():
             ending = os.path.splitext(path)[1]
             file = f"map-{len(kept)}{ending if ending[1:].isalnum() and len(ending) < 11 else ''}"
             try:
-                if os.path.getsize(path) > _LARGEST_MAP:
+                if os.path.getsize(path) > _MAX_MAP_BYTES:
                     continue
                 content = Path(path).read_bytes()
             except OSError as error:
                 raise RunError("file-access", f"'{path}' cannot be read: {error.strerror or error}") from None
-            begun(self._path(file), content)
+            create_file(self._path(file), content)
             kept.append([name, file])
         return kept
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
-        """Let time pass like :meth:`irsim.simulation.simulation.Simulation.advance`, and keep what happens."""
+        """Advance the simulation like :meth:`irsim.simulation.simulation.Simulation.advance`, and record it."""
         done = 0
         while done < steps:
             some = min(steps - done, self._most_steps())
             more = self._simulation.advance(some, until_done=until_done)
             done += more
-            self.look()
+            self.write_if_due()
             if more < some:
                 break
         return done
 
     def _most_steps(self) -> int:
-        """Steps until the next look at the latest: pieces stay small, and scans end at the same step every time."""
+        """Number of steps until a piece may be due: pieces stay small, and scans always end at the same step."""
         if not self._scans:
             return 2**62
-        return max(1, min(_PIECE // self._scan, self._scan_rows - self._log.rows))
+        return max(1, min(_PIECE_BYTES // self._scan, self._scan_rows - self._log.rows))
 
-    def look(self) -> None:
-        """Write a piece if it is time to: to be called now and then, best after every step."""
+    def write_if_due(self) -> None:
+        """Write a piece if it is large or old enough; to be called often, best after every step."""
         if self._simulation.revision != self._revision:
-            raise RunError("unreadable-run", "objects came or went: only runs with the same objects are recorded")
+            raise RunError(
+                "unreadable-run", "objects were added or removed: only runs with the same objects are recorded"
+            )
         if self._scans and self._log.rows >= self._scan_rows:
             self._end_scans()
-        elif self._log.bytes >= _PIECE or time.monotonic() >= self._due:
+        elif self._log.bytes >= _PIECE_BYTES or time.monotonic() >= self._due:
             self._flush()
 
     def finish(self, result: RunResult) -> None:
-        """Write what is left and the result, which is told where its record is; the run is complete."""
+        """Write the last piece and the result, which gets the id and the files of the run."""
         self._flush()
-        result.notes = lacking(self._meta, result.steps)
+        result.notes = omission_notes(self._meta, result.steps)
         result.run_id = self.run_id
         result.artifacts = {name: self._path(name) for name in FILES}
         self._write(RESULT, to_json(result, indent=1))
-        used(self.folder)
+        mark_used(self.folder)
         self._stop()
 
     def close(self, *, cancelled: bool = False) -> None:
-        """End without a result, unless there is one: what happened so far is kept."""
+        """End the recording; if there is no result yet, what was recorded so far is kept."""
         if self._done:
             return
         try:
             self._flush()
             if cancelled:
                 self._write_meta(cancelled=True)
-            used(self.folder)
+            mark_used(self.folder)
         finally:
             self._stop()
 
@@ -195,7 +199,7 @@ class Recorder:
             self._claim.release()
 
     def _end_scans(self) -> None:
-        """Go on without scans."""
+        """Write the last scans and record later steps without them."""
         last = self._log.first + self._log.rows - 1
         self._flush()
         self._scans = False
@@ -212,30 +216,30 @@ class Recorder:
         self._log.detach(self._simulation.state)
 
     def _flush(self) -> None:
-        """Write what is held: how everybody moved and what happened, or only that where no trace is kept any more."""
+        """Write the trace and events since the last piece, or only the events once the trace is too large."""
         events = self._simulation.state.events(0, self._events)
         self._events += len(events)
         names, step_time = self._simulation.names, self._meta["step_time"]
-        told = [_told(event, names, step_time) for event in events]
+        records = [_event_record(event, names, step_time) for event in events]
         log, number = self._log, f"{self._pieces:04d}"
         if log.rows or events:
             self._pieces += 1
         if log.rows:
             movers, pose = self._movers, self._simulation.pose
-            self._write(f"trace-{number}.npz", *chunk_of(log, movers, pose, told))
+            self._write(f"trace-{number}.npz", *pack_chunk(log, movers, pose, records))
             self._bytes += log.bytes
             self._scan_bytes += 4 * log.ranges.size
             self._scan_rows -= log.rows
             last = log.first + log.rows - 1
             log.clear()
-            if self._bytes - self._scan_bytes >= _MOST_TRACE:
+            if self._bytes - self._scan_bytes >= _MAX_TRACE_BYTES:
                 self._scans = False
                 self._detach()
                 self._write_meta(trace_until=last)
         elif events:
-            self._write(f"events-{number}.json", to_json(told))
-        self._due = time.monotonic() + _PERIOD
-        if self._runs is not None and self._bytes - self._pruned_at > _BETWEEN_PRUNING:
+            self._write(f"events-{number}.json", to_json(records))
+        self._due = time.monotonic() + _WRITE_PERIOD_S
+        if self._runs is not None and self._bytes - self._pruned_at > _PRUNING_INTERVAL_BYTES:
             self._pruned_at = self._bytes
             prune(Path(self._runs), keep=self.run_id)
 
@@ -244,7 +248,7 @@ class Recorder:
         self._write(META, to_json(self._meta, indent=1))
 
     def _write(self, name: str, *parts: Buffer) -> None:
-        written(self._path(name), *parts)
+        replace_file(self._path(name), *parts)
 
     def _path(self, name: str) -> str:
         return f"{self.folder}{os.sep}{name}"
@@ -254,14 +258,14 @@ class Recorder:
 def recording(
     env: Env, path: str | Path | None, record: bool | str | Path, *, horizon: int, options: Mapping[str, Any]
 ) -> Iterator[Recorder | None]:
-    """A recorder for the episode of an environment, None if it is not to be recorded; closed whatever happens.
+    """Context with a recorder for the episode of an environment, None if it is not recorded.
 
     Args:
-        env: At its start.
+        env: The environment at its start.
         path: Scenario file, None for a text.
-        record: Whether, or where to.
-        horizon: Steps at most.
-        options: What else decides how it goes: ``strict``, ``imports``, and ``behavior`` if the robots' was replaced.
+        record: Whether to record, or the folder to record to.
+        horizon: Greatest number of steps.
+        options: Other options of the run: ``strict``, ``imports``, and ``behavior`` if that of the robots was replaced.
     """
     if record is False:
         yield None
@@ -283,15 +287,15 @@ def recording(
 
 
 def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
-    """A log of what can move: everybody where Python takes part."""
-    records, everybody = simulation.scenario.objects, simulation.in_python
-    movers = [row for row, record in enumerate(records) if everybody or not record.static]
+    """A log of the objects that can move, and their rows; with Python behaviors or drives any object can."""
+    records, any_can_move = simulation.scenario.objects, simulation.in_python
+    movers = [row for row, record in enumerate(records) if any_can_move or not record.static]
     columns = max((records[row].vel_dim for row in movers), default=0)
     return core.Log(simulation.world, movers, min(3, columns), scans), movers
 
 
-def _told(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
-    """What :func:`irsim.simulation.events.read_events` makes of it, as JSON has it."""
+def _event_record(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
+    """An event of the core as JSON types, with the fields of :func:`irsim.simulation.events.read_events`."""
     kind, step, first, second, x, y = event
     partner = names[second] if second >= 0 else None
     time = step * step_time
@@ -302,8 +306,8 @@ def _stem(scenario: str) -> str:
     return os.path.splitext(os.path.basename(scenario))[0]
 
 
-def _new(folder: Path) -> Path:
-    """A folder that is there and empty."""
+def _make_empty_folder(folder: Path) -> Path:
+    """Make a folder unless it exists already and is empty."""
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise RunError("file-exists", f"'{folder}' exists and is not empty", "name another folder for the run")
     folder.mkdir(parents=True, exist_ok=True)
@@ -311,16 +315,16 @@ def _new(folder: Path) -> Path:
 
 
 def _text_of(simulation: Simulation) -> str:
-    """The scenario as given."""
+    """The scenario as the user wrote it."""
     scenario = simulation.scenario
     return scenario.text if scenario.text is not None else json.dumps(scenario.document, default=str)
 
 
 def _versions() -> dict[str, str]:
-    from irsim import __version__
+    from irsim.common.version import version
 
     return {
-        "irsim": __version__,
+        "irsim": version(),
         "python": platform.python_version(),
         "numpy": np.__version__,
         "platform": platform.platform(),

@@ -1,4 +1,4 @@
-"""A recorded run, simulated once more up to a step: the same seed gives the same, which is checked."""
+"""Simulate a recorded run again up to a step, and check that it reproduces the recording."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 
-__all__ = ["check_same", "has_modules", "replayed", "scenario_of", "step_of"]
+__all__ = ["check_reproduced", "has_modules", "resimulate", "scenario_of", "step_of"]
 
 _MAP = re.compile(r"map-\d{1,3}(\.\w{1,10})?")
 
 
 def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
-    """The scenario of a run to look at, with the maps that it had.
+    """The scenario of a run, with the maps that the run has kept.
 
-    Modules that the run had imported are not: they could be anything by now, and it is only looked at. Behaviors of
-    theirs are unknown here.
+    Modules that the run imported are not imported again, as they may have changed and reading a run must not execute
+    code. Their behaviors are therefore unknown here.
 
     Args:
-        run: Recorded.
-        limits: Of the reader; with a ``root``, files outside are not looked for.
+        run: The recorded run.
+        limits: Limits of the reader; with a ``root``, files outside it are not read.
 
     Raises:
-        RunError: A map that was kept is missing.
-        ScenarioError: It can't be used any more.
+        RunError: A map that the run kept is missing.
+        ScenarioError: The scenario has errors, for example because another file of it has changed.
     """
     limits = limits or DEFAULT_LIMITS
     options = run.options
-    document = load_text(run.scenario_text, path=_place(run, limits), limits=limits)
+    document = load_text(run.scenario_text, path=_scenario_path(run, limits), limits=limits)
     document.maps = _maps(run)
     strict, behavior = bool(options.get("strict")) and not has_modules(run), options.get("behavior")
     if isinstance(behavior, str):
@@ -49,40 +49,41 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     return or_raise(read(document, strict=strict, limits=limits))[0]
 
 
-def replayed(
+def resimulate(
     run: Run, step: int | None = None, *, limits: Limits | None = None, progress: Progress | None = None
 ) -> Env:
-    """An environment at a step of a run; to be ended by the caller.
+    """An environment at a step of a run, which the caller must end.
 
-    It is simulated once more, with all that a world remembers, unless modules of a user took part.
+    The run is simulated again, so that the environment has its complete state. With modules of the user, objects are
+    moved as recorded instead.
 
     Args:
-        run: Recorded.
-        step: Which step; None or -1: the last one.
-        limits: Of the reader.
-        progress: Told how far it is.
+        run: The recorded run.
+        step: The step; None or -1: the last one.
+        limits: Limits of the reader.
+        progress: Callback ``(steps_done, steps_total)``.
 
     Raises:
-        RunError: There is no such step, or simulating it again gives something else, because a map or irsim itself has
-            changed since.
+        RunError: There is no such step, or the simulation does not reproduce the recording, because a map or irsim
+            itself has changed.
     """
     wanted = step_of(run, step)
     env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
     if has_modules(run):
-        _put(run, env, wanted)
+        _move_as_recorded(run, env, wanted)
         return env
     advance(env, wanted, progress, until_done=False)
-    check_same(run, env)
+    check_reproduced(run, env)
     return env
 
 
 def has_modules(run: Run) -> bool:
-    """Whether modules of a user took part, which nobody imports to look at it: it can't be simulated again."""
+    """Whether a run imported modules of the user; it cannot be simulated again, as reading a run imports none."""
     return bool(run.options.get("imports"))
 
 
-def _put(run: Run, env: Env, step: int) -> None:
-    """Move everybody as the record says that they moved; sensors measure, and trails grow, as they did."""
+def _move_as_recorded(run: Run, env: Env, step: int) -> None:
+    """Move all objects as recorded, step by step, so that sensors measure and trails grow as in the run."""
     trace, simulation = run.trace(), env.simulation
     if trace.pose[0].shape != simulation.pose.shape:
         raise RunError("unreadable-run", f"the scenario of run {run.id} has other objects now", "run it again")
@@ -94,7 +95,7 @@ def _put(run: Run, env: Env, step: int) -> None:
 
 
 def step_of(run: Run, step: int | None) -> int:
-    """A step of a run; None or -1 is the last one.
+    """The number of a step, checked; None or -1 is the last step of the run.
 
     Raises:
         RunError: There is no such step.
@@ -106,11 +107,11 @@ def step_of(run: Run, step: int | None) -> int:
     return wanted
 
 
-def check_same(run: Run, env: Env) -> None:
-    """Refuse an environment that is not where the run was at its step.
+def check_reproduced(run: Run, env: Env) -> None:
+    """Check that the poses of an environment are those of the run at the same step.
 
     Raises:
-        RunError: Simulating it again has given something else, because a map or irsim itself has changed since.
+        RunError: They differ, because a map or irsim itself has changed since.
     """
     trace, step = run.trace(), int(env.simulation.count[0])
     row = step - int(trace.step[0])
@@ -122,7 +123,7 @@ def check_same(run: Run, env: Env) -> None:
 
 
 def _maps(run: Run) -> dict[str, str]:
-    """Maps by their names in the scenario, as the run has kept them."""
+    """Name of each map file in the scenario -> the copy that the run has kept."""
     kept = run.meta.get("maps", [])
     try:
         files = [(str(name), plain_file(run.folder, file)) for name, file in kept if _MAP.fullmatch(file)]
@@ -133,8 +134,8 @@ def _maps(run: Run) -> dict[str, str]:
     return {name: str(file) for name, file in files}
 
 
-def _place(run: Run, limits: Limits) -> str | None:
-    """Where the scenario was, so that files it names are found; None if that is not to be looked at."""
+def _scenario_path(run: Run, limits: Limits) -> str | None:
+    """Path of the scenario file, from which other files are found; None if it lies outside the root of the limits."""
     scenario, folder = run.meta.get("scenario"), run.meta.get("folder")
     if not isinstance(scenario, str):
         return None

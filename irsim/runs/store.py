@@ -1,4 +1,4 @@
-"""Where runs are kept: names, folders, and who is writing. Standard library only, no NumPy."""
+"""Folders of runs: their names, dates and status. Uses the standard library only, no NumPy."""
 
 from __future__ import annotations
 
@@ -13,71 +13,81 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.common.text import clean
-from irsim.runs.files import RunError, json_of, locked, plain_file, refusal, written
+from irsim.runs.files import RunError, json_of, lock_file, plain_file, refusal, replace_file
 
 __all__ = [
     "ABANDONED",
     "ARTIFACTS",
-    "BEGUN",
     "FILES",
     "ID",
     "LOCK",
     "META",
     "RESULT",
+    "SCENARIO_FILE",
     "Status",
     "being_written",
     "date_of",
     "dated_folders",
     "find_run",
-    "made_folder",
+    "make_run_folder",
     "mark_cancelled",
+    "mark_used",
     "recent_ids",
     "run_folders",
     "runs_folder",
-    "runs_place",
+    "runs_path",
     "status_of",
-    "used",
 ]
 
 Status = Literal["running", "finished", "cancelled", "interrupted"]
-META, RESULT, LOCK = "run.json", "result.json", "lock"
-BEGUN = "scenario.yaml"
-"""Written once, when a run begins, and locked as long as it is written; ``run.json`` is touched by each use."""
-FILES = (BEGUN, "resolved.json", META, RESULT)
-"""Of every complete run; trace and events are in numbered pieces beside them."""
+META = "run.json"
+"""Metadata of a run; its modification time is the last use of the run."""
+RESULT = "result.json"
+LOCK = "lock"
+"""File of a job that is locked while the job runs."""
+SCENARIO_FILE = "scenario.yaml"
+"""Scenario of a run, written once when the run starts, and locked while the run is written."""
+FILES = (SCENARIO_FILE, "resolved.json", META, RESULT)
+"""Files of every complete run; trace and events are in numbered pieces beside them."""
 ARTIFACTS = (*FILES, "events.json", "trace.json", "trace.csv", "replay.json")
-"""What there is of a run as text: files, and what is made of the pieces."""
-_AGAIN = "runs are let go 24 h after their last use: the same scenario and seed give the same run again"
-_KEPT_IN = ".irsim"
-_LONGEST_STEM = 24
+"""Everything of a run that can be read as text: its files, and what is made of its pieces."""
+_EXPIRY = "runs are deleted 24 h after their last use: the same scenario and seed give the same run again"
+_WORKSPACE_FOLDER = ".irsim"
+_MAX_STEM_LENGTH = 24
+"""Number of characters of a scenario's name in the id of a run."""
 ID = re.compile(r"[a-z0-9][a-z0-9-]{0,40}-[0-9a-f]{6}")
 _NO_SLUG = re.compile(r"[^a-z0-9]+")
-_NAMED = 5
+_MAX_NAMED = 5
+"""Number of recent runs that a message names."""
 ABANDONED = 60.0
-"""Where files cannot be locked: seconds without a sign of life after which nobody writes any more."""
+"""Time [s] without a write after which a run counts as abandoned, on systems that cannot lock files."""
 
 
 def runs_folder(workspace: str | Path | None = None, *, make: bool = False) -> Path:
     """The folder of all runs of a workspace, by default of the current directory.
 
     Args:
-        workspace: Folder whose ``.irsim/runs`` is meant.
-        make: Make it, with a ``.gitignore`` that keeps all of it out of version control.
+        workspace: Folder that contains ``.irsim/runs``.
+        make: Create the folder, with a ``.gitignore`` that keeps it out of version control.
 
     Raises:
-        RunError: ``.irsim`` or ``runs`` is a link or no folder: nothing is read or written through links.
+        RunError: ``.irsim`` or ``runs`` is a link or not a folder: nothing is read or written through links.
     """
-    return Path(runs_place(workspace, make=make))
+    return Path(runs_path(workspace, make=make))
 
 
-def runs_place(workspace: str | Path | None = None, *, make: bool = False) -> str:
-    """:func:`runs_folder` as text: a path object would take longer than a few steps of a small world."""
-    top = os.path.join(os.getcwd() if workspace is None else workspace, _KEPT_IN)
+def runs_path(workspace: str | Path | None = None, *, make: bool = False) -> str:
+    """:func:`runs_folder` as text, because a path object takes longer than a few steps of a small world."""
+    top = os.path.join(os.getcwd() if workspace is None else workspace, _WORKSPACE_FOLDER)
     folder = f"{top}{os.sep}runs"
     for part in (top, folder):
         mode = _mode(part)
         if mode is not None and not stat.S_ISDIR(mode):
-            raise RunError("path-outside-workspace", f"'{part}' is a link or no folder", "put a plain folder there")
+            raise RunError(
+                "path-outside-workspace",
+                f"'{part}' must be a folder, got a link or another kind of file",
+                "put a plain folder there",
+            )
     if make:
         ignore = f"{top}{os.sep}.gitignore"
         try:
@@ -86,21 +96,21 @@ def runs_place(workspace: str | Path | None = None, *, make: bool = False) -> st
         except OSError as error:
             raise refusal(folder, error) from None
         if _mode(ignore) is None:
-            written(ignore, b"*\n")
+            replace_file(ignore, b"*\n")
     return folder
 
 
 def _mode(path: str) -> int | None:
-    """What kind of thing is there, None without any."""
+    """File mode of a path, None if it does not exist."""
     try:
         return os.lstat(path).st_mode
     except OSError:
         return None
 
 
-def made_folder(runs: str | Path, stem: str) -> str:
-    """A new folder for a run: ``<stem as a slug>-<six hexadecimal digits>``."""
-    slug = _NO_SLUG.sub("-", stem.lower())[:_LONGEST_STEM].strip("-") or "scenario"
+def make_run_folder(runs: str | Path, stem: str) -> str:
+    """Create a folder for a run: ``<stem as a slug>-<six hexadecimal digits>``."""
+    slug = _NO_SLUG.sub("-", stem.lower())[:_MAX_STEM_LENGTH].strip("-") or "scenario"
     while True:
         folder = f"{runs}{os.sep}{slug}-{os.urandom(3).hex()}"
         try:
@@ -113,17 +123,22 @@ def made_folder(runs: str | Path, stem: str) -> str:
 
 
 def run_folders(runs: Path) -> list[Path]:
-    """The folders of runs, the one begun last first."""
-    return [folder for _, folder in dated_folders(runs, (BEGUN, META))]
+    """The folders of runs, the one started last first."""
+    return [folder for _, folder in dated_folders(runs, (SCENARIO_FILE, META))]
 
 
 def dated_folders(runs: Path, dated_by: Sequence[str]) -> list[tuple[int, Path]]:
-    """Date [ns] and folder of each run, the latest first, by the date of the first of those files that is there."""
+    """Date [ns] and folder of each run, the latest first.
+
+    Args:
+        runs: Folder of all runs.
+        dated_by: Names of files; the first one that exists gives the date of a run.
+    """
     found: list[tuple[int, str, Path]] = []
     with suppress(FileNotFoundError, NotADirectoryError), os.scandir(runs) as entries:
         for entry in entries:
             if ID.fullmatch(entry.name) and entry.is_dir(follow_symlinks=False):
-                with suppress(OSError):  # it may be let go at this moment
+                with suppress(OSError):  # another process may delete the run at this moment
                     dates = {name: date_of(os.path.join(entry.path, name)) for name in (META, *dated_by)}
                     date = next((dates[name] for name in dated_by if dates[name] is not None), None)
                     if date is not None and dates[META] is not None:
@@ -132,7 +147,7 @@ def dated_folders(runs: Path, dated_by: Sequence[str]) -> list[tuple[int, Path]]
 
 
 def date_of(path: str) -> int | None:
-    """When an ordinary file was written [ns]; None without it."""
+    """Time [ns] at which an ordinary file was written; None if there is no such file."""
     try:
         known = os.lstat(path)
     except OSError:
@@ -140,17 +155,17 @@ def date_of(path: str) -> int | None:
     return known.st_mtime_ns if stat.S_ISREG(known.st_mode) else None
 
 
-def recent_ids(runs: Path, most: int = _NAMED) -> list[str]:
-    """Ids of the runs begun last."""
+def recent_ids(runs: Path, most: int = _MAX_NAMED) -> list[str]:
+    """Ids of the runs started last."""
     return [folder.name for folder in run_folders(runs)[:most]]
 
 
 def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
-    """The folder of a run.
+    """Find the folder of a run.
 
     Args:
-        name: Its id, ``last`` for the one begun last, or (only without a workspace) its folder.
-        workspace: Where its id is looked for; the current directory by default.
+        name: Id of the run, ``last`` for the run started last, or (only without a workspace) its folder.
+        workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
 
     Raises:
         RunError: There is no such run; the message names recent ones.
@@ -164,21 +179,21 @@ def find_run(name: str | Path, workspace: str | Path | None = None) -> Path:
             return folders[0]
     folder = runs / str(name)
     if ID.fullmatch(str(name)) and not folder.is_symlink() and plain_file(folder, META) is not None:
-        used(folder)
+        mark_used(folder)
         return folder
     recent = recent_ids(runs)
-    fix = f"recent ones are {', '.join(recent)}" if recent else "none is kept here"
-    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_AGAIN}")
+    fix = f"recent ones are {', '.join(recent)}" if recent else "there are no runs here"
+    raise RunError("unknown-run", f"there is no run {clean(name)!r}", f"{fix}; {_EXPIRY}")
 
 
-def used(folder: str | Path) -> None:
-    """Note that a run is used at this moment."""
+def mark_used(folder: str | Path) -> None:
+    """Record that a run is used now, which postpones its deletion."""
     with suppress(OSError):
         os.utime(f"{folder}{os.sep}{META}")
 
 
 def status_of(folder: Path) -> Status:
-    """What became of a run. One without a result that nobody writes any more was interrupted."""
+    """Status of a run; a run without a result that no process writes was interrupted."""
     if plain_file(folder, RESULT) is not None:
         return "finished"
     meta = json_of(folder, META)
@@ -190,16 +205,16 @@ def status_of(folder: Path) -> Status:
 
 
 def mark_cancelled(folder: Path) -> None:
-    """Note that somebody has stopped a run on purpose; one that has finished stays finished."""
+    """Record that a run was stopped on purpose; a run that has finished stays finished."""
     meta = json_of(folder, META)
     if not isinstance(meta, dict) or plain_file(folder, RESULT) is not None:
         return
-    written(folder / META, json.dumps({**meta, "cancelled": True}, indent=1).encode())
+    replace_file(folder / META, json.dumps({**meta, "cancelled": True}, indent=1).encode())
 
 
 def being_written(folder: Path) -> bool:
-    """Whether a process that is alive writes a run or a job."""
-    path = plain_file(folder, BEGUN) or plain_file(folder, LOCK)
+    """Whether a running process writes a run or a job."""
+    path = plain_file(folder, SCENARIO_FILE) or plain_file(folder, LOCK)
     if path is None:
         return False
     try:
@@ -207,7 +222,7 @@ def being_written(folder: Path) -> bool:
     except OSError:
         return False
     try:
-        free = locked(descriptor, wait=False)
+        free = lock_file(descriptor, wait=False)
     finally:
         os.close(descriptor)
     if free is None:

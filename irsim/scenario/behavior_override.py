@@ -10,7 +10,7 @@ from typing import Any
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
@@ -35,21 +35,13 @@ _KEPT = ("wander", "loop", "range_low", "range_high", "target_roles")
 """Options that say what a robot does, not how; they are kept when its behavior is replaced."""
 
 
-class BenchmarkError(IrsimError, ValueError):
-    """A benchmark, or an episode with another behavior, that cannot be run as asked.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        message: What is wrong.
-        fix: What to ask for instead.
-        where: The argument at fault; None if it may be one of several.
-    """
+class BenchmarkError(CodedError, ValueError):
+    """A benchmark, or an episode with another behavior, cannot be run as requested."""
 
     code = "bad-argument"
 
     def __init__(self, message: str, fix: str, where: str | None = None) -> None:
-        self.message, self.fix, self.where = message, fix, where
-        super().__init__(f"{self.code}: {message}. Fix: {fix}{'' if fix.endswith('?') else '.'}")
+        super().__init__(self.code, message, fix, where=where)
 
 
 def parse_behavior(text: str) -> dict[str, Any] | None:

@@ -1,1 +1,1 @@
-"""Worlds of the core, stepped from Python."""
+"""Worlds of the core, stepped from Python: building, time, fog, random streams, traces, events and outcomes."""

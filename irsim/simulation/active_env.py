@@ -1,26 +1,42 @@
-"""Which environment was used last: what the names of ``irsim.config`` and ``irsim.util.random`` follow.
+"""Which environment was used last: the names of ``irsim.config`` and ``irsim.util.random`` follow it.
 
 Nothing in the engine reads it; it exists for scripts that use those names (difference D8).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 from weakref import ReferenceType, ref
 
-if TYPE_CHECKING:
-    from irsim.env import Env
+import numpy as np
 
-__all__ = ["last_used", "use"]
+__all__ = ["current_rng", "last_used", "set_current_rng", "use"]
 
-_LAST: list[ReferenceType[Env]] = []
+_LAST: list[ReferenceType[Any]] = []
+_OUTSIDE = [np.random.default_rng()]
+"""The generator of scripts that have not made an environment."""
 
 
-def use(env: Env) -> None:
-    """Remember ``env`` as the one used last; it is not kept alive."""
+def use(env: Any) -> None:
+    """Remember an environment as the one used last, without keeping it alive."""
     _LAST[:] = [ref(env)]
 
 
-def last_used() -> Env | None:
-    """The environment used last, None before the first one and after it is gone."""
+def last_used() -> Any:
+    """The environment used last; None before the first one and after it is gone."""
     return _LAST[0]() if _LAST else None
+
+
+def current_rng() -> Any:
+    """The generator of the environment used last; without one, a generator with a fresh seed."""
+    env = last_used()
+    return _OUTSIDE[0] if env is None else env.rng
+
+
+def set_current_rng(generator: np.random.Generator) -> None:
+    """Replace the generator that :func:`current_rng` returns."""
+    env = last_used()
+    if env is None:
+        _OUTSIDE[0] = generator
+    else:
+        env.simulation.set_rng(generator)

@@ -1,4 +1,4 @@
-"""Resolved scenario → core world: every option of every object handed to the kernel that computes it."""
+"""Builds the world of the core from a resolved scenario, and passes all options to the kernels that use them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.behaviors.follow import Follow
 from irsim.components.maps._grid import MapCells, Walls
-from irsim.objects.shapely_geometry import compound_body
 from irsim.options.registry import (
     BEHAVIORS,
     CUSTOM_GROUP_BEHAVIORS,
@@ -21,6 +20,7 @@ from irsim.options.registry import (
     Feature,
     Registry,
 )
+from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
 
 if TYPE_CHECKING:
@@ -31,20 +31,22 @@ if TYPE_CHECKING:
 __all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
 
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
+"""Name of a collision mode -> its number in the core."""
 PLACEMENT_ATTEMPTS = 1000
+"""Number of positions that are tried for a randomly placed object before the placement fails."""
 _ROLES = {"robot": 0, "obstacle": 1}
 _TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
 _ARRIVE = {"position": 0, "state": 1}
 
 
 def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
-    """Three numbers: ``values`` cut or filled up with ``fill``."""
+    """Return three numbers: ``values``, cut off or padded with ``fill``."""
     row = [float(v) for v in values[:3]]
     return row + [fill] * (3 - len(row))
 
 
 def feature_of(registry: Registry, options: BaseModel) -> Feature:
-    """The registered feature an options model belongs to."""
+    """Return the registered feature that an options model belongs to."""
     feature = registry.get(str(getattr(options, "name", "")))
     if feature is None:
         raise LookupError(f"{type(options).__name__} is not a registered {registry.kind}")
@@ -52,9 +54,12 @@ def feature_of(registry: Registry, options: BaseModel) -> Feature:
 
 
 def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> Any:
-    """The core's options object for ``options``; ``resolved`` fills fields that depend on more than these options.
+    """Return the options object of the core for an options model; None for features computed in Python.
 
-    Returns None for features computed in Python.
+    Args:
+        registry: Registry of the feature.
+        options: The options model.
+        **resolved: Values of fields that depend on more than this model.
     """
     kernel = feature_of(registry, options).kernel
     if kernel is None:
@@ -63,9 +68,10 @@ def kernel_options(registry: Registry, options: BaseModel, **resolved: Any) -> A
 
 
 def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOptions]:
-    """Options of the native behavior that drives each group as a whole: the `group_behavior` of its first member.
+    """Return, for each group that a native behavior drives as a whole, the `group_behavior` of its first member.
 
-    Groups without one, or with one of user code, are left out; their members follow their own `behavior`.
+    Groups without a `group_behavior`, or with one written by the user in Python, are not in the result: their members
+    follow their own `behavior`.
     """
     leaders: dict[int, ObjectRecord] = {}
     for record in records:
@@ -86,12 +92,12 @@ def group_behaviors(records: Sequence[ObjectRecord]) -> dict[int, BehaviorOption
 def build_object(
     record: ObjectRecord, group_behavior: BehaviorOptions | None = None, *, contact: bool = False
 ) -> core.ObjectSpec:
-    """One object of the core's template world.
+    """Build one object of the core.
 
     Args:
         record: The object.
-        group_behavior: What drives its group (:func:`group_behaviors`); wins over its own behavior.
-        contact: Whether contacts will be resolved, which needs the centroid of compounds.
+        group_behavior: Behavior that drives its group (:func:`group_behaviors`); it replaces the object's own.
+        contact: Whether the core resolves contacts, which needs the centroid of compounds.
     """
     if isinstance(record.shape, (MapCells, Walls)):
         parts = record.shape.parts()
@@ -157,7 +163,7 @@ def build_object(
 
 
 def build_route(options: Follow) -> core.RouteOptions:
-    """How the core plans for an object with the behavior ``follow``."""
+    """Build the options of the path of an object with the behavior ``follow``."""
     resolved = {"resolution": getattr(options.planner, "resolution", None) or 0.0}
     return core.RouteOptions(
         planner=kernel_options(PLANNERS, options.planner, **resolved),
@@ -167,16 +173,16 @@ def build_route(options: Follow) -> core.RouteOptions:
 
 
 Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec]]
-"""What was built for a record, by its identity: the record, its group's behavior, the object."""
+"""Cache of built objects: identity of the record -> record, behavior of its group, object of the core."""
 
 
 def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None = None) -> core.World:
-    """``copies`` worlds of the scenario, ready for a :class:`irsim._core.State`.
+    """Build ``copies`` worlds of a scenario, ready for a :class:`irsim._core.State`.
 
     Args:
-        scenario: What to build.
-        copies: Worlds.
-        built: What an earlier call built, taken again for the records that are still there; brought up to date.
+        scenario: The scenario.
+        copies: Number of worlds.
+        built: Cache of an earlier call, whose objects are reused for records that still exist; it is updated.
     """
     groups = group_behaviors(scenario.objects)
     contact = scenario.world.collision_mode == "contact"

@@ -1,4 +1,4 @@
-"""What happened, read from the step itself: arrivals, waypoints, collisions with partner, point and time."""
+"""Events that the core records during a step: arrivals, waypoints, and collisions with partner, point and time."""
 
 from __future__ import annotations
 
@@ -7,20 +7,29 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Event", "collision_of", "first_collisions", "first_events", "partner_of", "passable_names", "read_events"]
+__all__ = [
+    "Event",
+    "first_collisions",
+    "first_events",
+    "is_collision_of",
+    "partner_of",
+    "passable_names",
+    "read_events",
+]
 
 
 class Event(NamedTuple):
-    """One thing that happened.
+    """An event of an episode.
 
     Attributes:
-        kind: ``arrival`` (last goal reached), ``waypoint`` (a goal reached with more to come), ``collision`` (contact
-            of two objects begins; reported once per contact, not per step) or ``no_path`` (``follow`` found none).
+        kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
+            ``collision`` (a contact of two objects begins; reported once per contact, not per step) or ``no_path``
+            (``follow`` has found no path).
         time: Simulated time [s].
-        step: Steps executed when it was seen; 0 is the initial state.
-        object: Name of the object; of the first of the two for a collision.
-        partner: Name of the other object of a collision.
-        x, y: Where [m, world frame]: position of the object, or a point of the contact.
+        step: Number of executed steps at the event; 0 is the initial state.
+        object: Name of the object; for a collision, of the first of the two objects.
+        partner: Name of the second object of a collision.
+        x, y: Position of the object, or a point of the contact [m, world frame].
     """
 
     kind: Literal["arrival", "waypoint", "collision", "no_path"]
@@ -33,12 +42,12 @@ class Event(NamedTuple):
 
 
 def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[Event]:
-    """Events of one world since its last reset, in order.
+    """Return the events of one world since its last reset, in order of time.
 
     Args:
-        simulation: Where to read.
+        simulation: The simulation.
         world: Index of the world.
-        start: Leave out this many of the earliest.
+        start: Number of earliest events to skip.
     """
     name = simulation.names
     step_time = simulation.scenario.world.step_time
@@ -49,7 +58,7 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
 
 
 def first_events(events: list[Event], kind: str) -> dict[str, Event]:
-    """The earliest event of a kind for every object that took part in one."""
+    """Return the earliest event of a kind for each object that took part in one."""
     first: dict[str, Event] = {}
     for event in events:
         if event.kind == kind:
@@ -60,28 +69,28 @@ def first_events(events: list[Event], kind: str) -> dict[str, Event]:
 
 
 def partner_of(event: Event, name: str) -> str | None:
-    """The other one of the two objects of an event."""
+    """Return the name of the other object of an event."""
     return event.partner if event.object == name else event.object
 
 
-def collision_of(event: Event, name: str, passable: set[str]) -> bool:
-    """Whether ``event`` is a collision of the object ``name``: it touched something that is not in ``passable``."""
-    met = event.kind == "collision" and name in (event.object, event.partner)
-    return met and partner_of(event, name) not in passable
+def is_collision_of(event: Event, name: str, passable: set[str]) -> bool:
+    """Whether an event is a collision of the object ``name`` with an object that is not in ``passable``."""
+    has_contact = event.kind == "collision" and name in (event.object, event.partner)
+    return has_contact and partner_of(event, name) not in passable
 
 
 def passable_names(simulation: Simulation) -> set[str]:
-    """Names of the objects that are ``unobstructed``: others pass through them."""
+    """Return the names of the objects that are ``unobstructed``, which means that others pass through them."""
     return {simulation.names[number] for number in simulation.passable}
 
 
 def first_collisions(simulation: Simulation, events: list[Event]) -> dict[str, Event]:
-    """The first collision of every object that had one."""
+    """Return the first collision of each object that had one."""
     passable = passable_names(simulation)
     first: dict[str, Event] = {}
     for event in events:
         if event.kind == "collision":
             for name in (event.object, event.partner):
-                if name is not None and name not in first and collision_of(event, name, passable):
+                if name is not None and name not in first and is_collision_of(event, name, passable):
                     first[name] = event
     return first

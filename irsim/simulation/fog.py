@@ -1,4 +1,4 @@
-"""Fog over the world: the cells that no robot has seen yet."""
+"""The fog over the world: the cells that no robot has seen yet."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 __all__ = ["DEFAULT_RESOLUTION", "FOG_COLOR", "FogMap", "build_fog", "fog_resolution", "fog_shape"]
 
 DEFAULT_RESOLUTION = 0.1
-"""Cell size [m] where neither the scenario nor a map says another."""
+"""Cell size [m] if neither the scenario nor a map gives one."""
 FOG_COLOR = (0.78, 0.78, 0.8)
 _FULL_TURN = 2 * math.pi
 
 
 def fog_shape(width: float, height: float, resolution: float) -> tuple[int, int]:
-    """Cells along x and y: as many as fit best, at least one."""
+    """Return the number of cells along x and y whose size is closest to the resolution; at least one."""
     return max(1, round(width / resolution)), max(1, round(height / resolution))
 
 
 def fog_resolution(scenario: ResolvedScenario) -> float:
-    """Wanted cell size [m]: the scenario's own, else that of its map along x, else the usual one."""
+    """Return the cell size [m] that the scenario asks for: its own, that of its map along x, or the default."""
     world = scenario.world
     if world.fog_map_resolution is not None:
         return float(world.fog_map_resolution)
@@ -37,7 +37,7 @@ def fog_resolution(scenario: ResolvedScenario) -> float:
 
 
 def build_fog(scenario: ResolvedScenario) -> core.Fog | None:
-    """The fog of a scenario, cleared by its robots; None without ``fog_map``."""
+    """Build the fog of a scenario, which its robots clear; None without ``fog_map``."""
     world = scenario.world
     if not world.fog_map:
         return None
@@ -68,13 +68,13 @@ class FogMap:
     Args:
         width: Extent along x [m].
         height: Extent along y [m].
-        resolution: Wanted cell size [m]; the real one divides the extent evenly.
-        world_offset: Lower left corner.
+        resolution: Approximate cell size [m]; the exact size divides the extent evenly.
+        world_offset: Lower left corner [m].
 
     Attributes:
-        cells: (nx, ny) flags, 1 where explored.
-        obstacle_list: Things that :meth:`is_collision` asks: shapely geometries, or anything with a ``geometry``.
-        grid: (nx, ny) occupancies that ``grid_occupied`` and ``is_collision`` ask, None by default.
+        cells: (nx, ny) flags, 1 for explored cells.
+        obstacle_list: Obstacles for :meth:`is_collision`: shapely geometries, or anything with a ``geometry``.
+        grid: (nx, ny) occupancy for ``grid_occupied`` and ``is_collision``; None by default.
 
     Raises:
         ValueError: ``resolution`` is not a positive number.
@@ -88,7 +88,7 @@ class FogMap:
         world_offset: Sequence[float] | None = None,
     ) -> None:
         if not (math.isfinite(resolution) and resolution > 0):
-            raise ValueError(f"the resolution of a fog map is a positive number of metres, not {resolution!r}")
+            raise ValueError(f"the resolution of a fog map must be a positive number [m], got {resolution!r}")
         self.width, self.height, self.resolution = width, height, resolution
         x, y = (0.0, 0.0) if world_offset is None else world_offset[:2]
         self.world_offset = (float(x), float(y))
@@ -100,19 +100,19 @@ class FogMap:
 
     @property
     def explored(self) -> NDArray[np.bool_]:
-        """(nx, ny) which cells have been seen; first axis along x. A read-only copy."""
+        """(nx, ny) whether each cell has been seen, first axis along x; a read-only copy."""
         explored = self.cells.astype(bool)
         explored.setflags(write=False)
         return explored
 
     @property
     def explored_ratio(self) -> float:
-        """Share of the cells that have been seen, 0 to 1."""
+        """Share of cells that have been seen, 0 to 1."""
         return float(np.count_nonzero(self.cells)) / self.cells.size
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Cells along x and y."""
+        """Number of cells along x and y."""
         nx, ny = self.cells.shape
         return nx, ny
 
@@ -122,16 +122,19 @@ class FogMap:
         return float(self._size[0]), float(self._size[1])
 
     def reset(self) -> None:
-        """Cover everything again."""
+        """Mark all cells as unexplored."""
         self.cells[:] = 0
 
     def reveal_from_lidar(self, origin: Any, angles: Any, ranges: Any) -> None:
-        """Mark the cells along the beams of a scan, sampled every half cell, and those where the beams end.
+        """Mark the cells along the beams of a scan, sampled every half cell, and the cells in which the beams end.
 
         Args:
             origin: x, y [m] and heading [rad] of the sensor, world frame.
             angles: (B,) beam angles in the sensor frame [rad].
             ranges: (B,) measured ranges [m].
+
+        Raises:
+            ValueError: A range is not finite.
         """
         x, y, heading = np.asarray(origin, dtype=np.float64).reshape(-1)[:3]
         bearings = heading + np.asarray(angles, dtype=np.float64).reshape(-1)
@@ -139,18 +142,18 @@ class FogMap:
         if not reach.size:
             return
         if not np.isfinite(reach).all():
-            raise ValueError("ranges are finite numbers")
+            raise ValueError("ranges must be finite numbers")
         step = 0.5 * float(self._size.min())
         along = np.minimum(np.arange(int(reach.max() / step) + 2) * step, reach[:, None])
         self._mark(x + along * np.cos(bearings)[:, None], y + along * np.sin(bearings)[:, None])
 
     def reveal_fov(self, origin: Any, fov: float, fov_radius: float) -> None:
-        """Mark the cells whose centre lies in a sector.
+        """Mark the cells whose centre lies in a field of view.
 
         Args:
-            origin: x, y [m] and heading [rad], world frame.
-            fov: Opening angle [rad]; 2 pi or more: all round.
-            fov_radius: Reach [m].
+            origin: x, y [m] and heading [rad] of the robot, world frame.
+            fov: Opening angle [rad]; 2 pi or more stands for all directions.
+            fov_radius: Range [m].
         """
         x, y, heading = np.asarray(origin, dtype=np.float64).reshape(-1)[:3]
         nx, ny = self.cells.shape
@@ -174,7 +177,7 @@ class FogMap:
         )
 
     def is_collision(self, geometry: Any) -> bool:
-        """Whether a shapely geometry leaves the map, or meets an occupied cell or a thing in ``obstacle_list``."""
+        """Whether a shapely geometry leaves the map, or touches an occupied cell or an item of ``obstacle_list``."""
         x0, y0 = self.world_offset
         low_x, low_y, high_x, high_y = geometry.bounds
         if low_x < x0 or low_y < y0 or high_x > x0 + self.width or high_y > y0 + self.height:
@@ -186,10 +189,10 @@ class FogMap:
         return any(geometry.intersects(getattr(thing, "geometry", thing)) for thing in self.obstacle_list)
 
     def plot_clear(self) -> None:
-        """Nothing: the picture of an environment draws its fog by itself."""
+        """Do nothing: the picture of an environment draws the fog, which has no artists of its own."""
 
     def to_rgba(self, color: Sequence[float] = FOG_COLOR, alpha: float = 1.0) -> NDArray[np.float64]:
-        """(nx, ny, 4) colour and opacity of each cell; explored ones are transparent."""
+        """Return the (nx, ny, 4) colour and opacity of each cell; explored cells are transparent."""
         rgba = np.empty((*self.cells.shape, 4))
         rgba[..., :3] = color
         rgba[..., 3] = np.where(self.cells, 0.0, alpha)

@@ -1,4 +1,4 @@
-"""Questions about occupancy grids that need no engine."""
+"""Collision queries on occupancy grids that do not need the core."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 __all__ = ["OCCUPIED", "grid_collision_geometry", "grid_occupied"]
 
 OCCUPIED = 50
-"""Cells with a larger value are occupied."""
+"""Cells with a larger occupancy (0 to 100) are occupied."""
 
 
 def grid_occupied(
@@ -22,19 +22,19 @@ def grid_occupied(
     margin_y: float = 0.0,
     threshold: float = OCCUPIED,
 ) -> bool:
-    """Whether a cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
+    """Whether any cell is occupied in the box from (x - margin_x, y - margin_y) to (x + margin_x, y + margin_y).
 
     Args:
-        grid: (nx, ny) occupancies.
+        grid: (nx, ny) occupancy.
         extent: Lower left and upper right corner of the grid [m].
-        x: Middle of the box along x [m].
-        y: Along y [m].
-        margin_x: Half its side along x [m].
-        margin_y: Along y [m].
-        threshold: Larger values are occupied.
+        x: Centre of the box along x [m].
+        y: Centre of the box along y [m].
+        margin_x: Half the side of the box along x [m].
+        margin_y: Half the side of the box along y [m].
+        threshold: Cells with a larger occupancy are occupied.
 
     Returns:
-        True outside the grid, too.
+        True also for a box that leaves the grid.
     """
     x0, y0, x1, y1 = extent
     if x - margin_x < x0 or y - margin_y < y0 or x + margin_x > x1 or y + margin_y > y1:
@@ -49,13 +49,13 @@ def grid_occupied(
 def grid_collision_geometry(
     grid: Any, grid_reso: Sequence[float], geometry: Any, world_offset: Sequence[float] = (0.0, 0.0)
 ) -> bool:
-    """Whether a shapely geometry meets an occupied cell; touching counts, and cells are closed squares.
+    """Whether a shapely geometry touches or overlaps an occupied cell; the edges of a cell belong to it.
 
     Args:
-        grid: (nx, ny) occupancies, above 50 is occupied; None has none.
-        grid_reso: Extent of a cell along x and y [m].
-        geometry: In the world frame [m].
-        world_offset: Lower left corner [m].
+        grid: (nx, ny) occupancy, occupied above 50; None stands for a grid without occupied cells.
+        grid_reso: Size of a cell along x and y [m].
+        geometry: Geometry in the world frame [m].
+        world_offset: Lower left corner of the grid [m].
     """
     import shapely
 
@@ -66,7 +66,7 @@ def grid_collision_geometry(
     occupied = np.asarray(grid) > OCCUPIED
     nx, ny = occupied.shape
     low_x, low_y, high_x, high_y = geometry.bounds
-    # one cell more on every side: whether an edge touches is decided exactly below
+    # one more cell on each side, because rounding could miss a cell that is only touched; shapely decides exactly
     i0, i1 = (int(np.clip(np.floor((v - x) / dx), -1, nx)) for v in (low_x, high_x))
     j0, j1 = (int(np.clip(np.floor((v - y) / dy), -1, ny)) for v in (low_y, high_y))
     i0, j0 = max(i0 - 1, 0), max(j0 - 1, 0)

@@ -1,4 +1,4 @@
-"""How an episode ended, for each robot and for the team (success only without a collision before arrival)."""
+"""The outcome of an episode, for each robot and for the team; success requires no collision before arrival."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ Outcome = Literal["running", "success", "collision", "timeout"]
 
 
 def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] | None = None) -> dict[str, Outcome]:
-    """Outcome of every robot so far.
+    """Return the outcome of each robot so far.
 
-    ``success``: it arrived and had touched nothing before; ``collision``: it arrived after it had, or it stands because
-    it did; otherwise ``running``, also after a contact that did not stop it.
+    ``success``: the robot has arrived without a collision. ``collision``: the robot has arrived after a collision, or
+    a collision has stopped it. ``running``: any other case, including a collision that did not stop the robot.
 
     Args:
-        simulation: Where to look.
+        simulation: The simulation.
         world: Index of the world.
-        events: Its events, if they have been read already.
+        events: Events of the world, if they have already been read.
     """
     events = read_events(simulation, world) if events is None else events
     arrivals, collisions = first_events(events, "arrival"), first_collisions(simulation, events)
@@ -42,16 +42,16 @@ def robot_outcomes(simulation: Simulation, world: int = 0, events: list[Event] |
 
 
 def outcome_of(simulation: Simulation, world: int = 0, *, time_limit: float | None = None) -> Outcome:
-    """Outcome of the team.
+    """Return the outcome of the team.
 
     Args:
-        simulation: Where to look.
+        simulation: The simulation.
         world: Index of the world.
-        time_limit: Horizon [s]; default ``world.time_limit``. Robots still under way then have timed out.
+        time_limit: Time horizon [s]; default ``world.time_limit``.
 
     Returns:
-        ``running`` until every robot has arrived or stopped or the horizon is reached; then ``success`` if all robots
-        have it, ``collision`` if any robot has that, else ``timeout``.
+        ``running`` until every robot has arrived or stopped, or the time limit is reached. After that, ``success`` if
+        all robots have this outcome, ``collision`` if any robot has that one, and ``timeout`` otherwise.
     """
     limit = simulation.scenario.world.time_limit if time_limit is None else time_limit
     over = limit is not None and simulation.time >= limit - 1e-9

@@ -1,4 +1,4 @@
-"""Named random streams: what is drawn, for whom, depends only on (seed, scene, noise episode, stream, object, draw)."""
+"""Named random streams: each drawn number depends only on (seed, scene, noise episode, stream, object, draw)."""
 
 from __future__ import annotations
 
@@ -13,40 +13,41 @@ if TYPE_CHECKING:
 __all__ = ["MAX_SEED", "check_seed", "fresh_seed", "generator"]
 
 MAX_SEED = 2**64 - 1
+"""Largest seed: 64 bits."""
 
 
 def fresh_seed() -> int:
-    """A seed from the operating system's entropy, short enough to type again."""
+    """Return a seed from the entropy of the operating system, of only 32 bits so that it is easy to retype."""
     return secrets.randbits(32)
 
 
 def check_seed(seed: object) -> int:
-    """``seed`` as an integer of 64 bits.
+    """Return ``seed`` as an integer, after checking that it fits 64 bits.
 
     Raises:
-        TypeError: Not an integer.
-        ValueError: Negative or wider than 64 bits.
+        TypeError: The seed is not an integer.
+        ValueError: The seed is negative or exceeds 64 bits.
     """
     if isinstance(seed, bool) or not hasattr(seed, "__index__"):
-        raise TypeError(f"a seed is a whole number from 0 to 2**64 - 1, not {seed!r}")
+        raise TypeError(f"seed must be a whole number from 0 to 2**64 - 1, got {seed!r}")
     value = int(seed.__index__())
     if not 0 <= value <= MAX_SEED:
-        raise ValueError(f"a seed is a whole number from 0 to 2**64 - 1, not {value}")
+        raise ValueError(f"seed must be a whole number from 0 to 2**64 - 1, got {value}")
     return value
 
 
 def generator(
     seed: int, scene: int, noise: int, stream: str, object_id: int = 0, *, index: int = 0, first: int = 0
 ) -> np.random.Generator:
-    """A NumPy generator on one stream, for code that lives outside the core.
+    """Return a NumPy generator for one stream, for code outside the core.
 
     Args:
         seed: Seed of the world, 64 bits.
-        scene: Counter of ``reset(random=True)``.
-        noise: Counter of ``reset()`` since then.
-        stream: Name in ``irsim._core.STREAMS``.
-        object_id: Whose draws.
-        index: Which of several streams of that name: the place of a sensor among those of its object.
+        scene: Number of calls of ``reset(random=True)``.
+        noise: Number of calls of ``reset()`` in this scene.
+        stream: Name of the stream in ``irsim._core.STREAMS``.
+        object_id: Id of the object that draws.
+        index: Index among several streams of that name, such as that of a sensor among the sensors of its object.
         first: Number of the first block of draws.
     """
     import numpy as np

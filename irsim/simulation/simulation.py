@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,10 @@ from irsim.common.log import Logger
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import PlacementError
 from irsim.simulation.build import COLLISION_MODES, Built, build_world
+from irsim.simulation.protocols import ExternalDrives, StepHooks
 from irsim.simulation.random_streams import generator
 
 if TYPE_CHECKING:
-    from irsim.objects.extensions.drives import PythonDrives
-    from irsim.objects.extensions.hooks import Hooks
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
@@ -26,53 +25,58 @@ __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
 CONTACT = COLLISION_MODES["contact"]
 
 PythonDecision = Callable[["Simulation"], None]
-"""Fills ``command`` of the rows that are its own; called between the native decisions and the motion."""
+"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion."""
 
 PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
-"""Reads the sensors that are its own, in the worlds of the mask (None: all); called after the native sensors."""
+"""Updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
 
 
-def _nobody() -> None:
-    """The owner of a simulation that no environment has made."""
+def _no_owner() -> None:
+    """Stand for the owner of a simulation that does not belong to an environment."""
+
+
+def _no_views(simulation: Simulation, index: int, world: int) -> NoReturn:
+    raise RuntimeError("call irsim.objects.views.views(simulation) to get the objects of a simulation")
 
 
 class Simulation:
     """``copies`` worlds of one scenario; row ``w * objects + i`` is object i of world w.
 
     Args:
-        scenario: What to simulate.
+        scenario: The scenario.
         seeds: (W,) one seed per world.
-        threads: Worlds are shared out over this many threads; results do not depend on it.
-        history: Keep the poses of every step, for trajectories.
+        threads: Number of threads that the worlds are distributed over; results do not depend on it.
+        history: Store the poses of all steps, for trajectories.
 
     Attributes:
-        world, state: The core's fixed and changing part.
-        pose: (R, 3) x, y [m], heading [rad], world frame. A writable view of the core's memory, as are all others.
+        world, state: Constant and changing part of the core.
+        pose: (R, 3) x, y [m], heading [rad], world frame. Like the arrays below, a writable view of the core's memory.
         extra: (R, E) extra state rows (steering angle of Ackermann drives first).
         control: (R, 3) executed control in the command frame, without noise.
         twist: (R, 3) true velocity in the world frame [m/s] and yaw rate [rad/s] of the last step.
-        command, given: (R, 3), (R,) control wanted for the next step, and which rows it is imposed on.
+        command, given: (R, 3), (R,) control wanted for the next step, and whether the caller has imposed it on the row.
         arrived, collided, stopped: (R,) flags, uint8.
-        goal: (R, 3) current goals; NaN where there is none.
-        scans: (owner, first beam, beams) of each native sensor of a world.
-        velocity_slices: (first, rows) of each among the measured velocities.
-        infeasible: (R,) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
-        ids: (N + 1,) id of each object of a world; the last entry, -1, stands for none.
-        names: Name of every object that ever was in it, by id.
-        passable: Ids of those that are ``unobstructed``.
-        decisions: Python behaviors, called in every step; empty in worlds that have none.
-        measurements: Python sensors, called after every step, reset and refresh; empty in worlds that have none.
-        drives: Drives written in Python; None where there are none.
-        hooks: Objects with steps, or parts of steps, of their own; None where there are none.
-        scene_drawn: Called with the indices of worlds that have begun their next scene.
-        report: Told once about what goes wrong in code of users and does not end the run.
-        revision: Grows whenever objects come, go or change their shape.
-        log: Writes down every step of the first world while somebody records it.
-        owner: Gives the environment it belongs to, or None.
-        user: Whose draws ``rng`` gives: 0 those of an environment; an object on its own has a number of its own.
+        goal: (R, 3) present goals; NaN without a goal.
+        scans: (owner, first beam, number of beams) of each native sensor of a world.
+        velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
+        infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`).
+        ids: (N + 1,) id of each object of a world; the last entry, -1, stands for no object.
+        names: Id -> name of every object that is or was in the simulation.
+        passable: Ids of the objects that are ``unobstructed``.
+        decisions: Python behaviors, called in every step.
+        measurements: Python sensors, called after every step, reset and refresh.
+        drives: Drives written in Python, or None.
+        hooks: Objects that override a step or parts of it in Python, or None.
+        scene_drawn: Callbacks that receive the indices of worlds that have begun their next scene.
+        report: Callback for messages about faults in user code that do not end the run; each message comes once.
+        revision: Number that grows whenever objects are added, removed or change their shape.
+        log: Recorder of every step of the first world, or None.
+        owner: Returns the environment that the simulation belongs to, or None.
+        make_view: Makes the object at an index of a world for ``views``; set by :mod:`irsim.objects.views`.
+        user: Object id in the random stream of ``rng``: 0 for an environment, another number for a lone object.
 
     Raises:
-        PlacementError: A random object found no room.
+        PlacementError: A random object could not be placed.
     """
 
     def __init__(
@@ -88,8 +92,8 @@ class Simulation:
         self.copies = len(seeds)
         self.decisions: list[PythonDecision] = []
         self.measurements: list[PythonMeasurement] = []
-        self.drives: PythonDrives | None = None
-        self.hooks: Hooks | None = None
+        self.drives: ExternalDrives | None = None
+        self.hooks: StepHooks | None = None
         self.scene_drawn: list[Callable[[Sequence[int]], None]] = []
         self.report: Callable[[str], None] = Logger("ERROR").error_once
         self.names: dict[int, str] = {}
@@ -101,13 +105,15 @@ class Simulation:
         self._reseeded = False
         self.user = 0
         self.log: core.Log | None = None
-        self.owner: Callable[[], Any] = _nobody
+        self.owner: Callable[[], Any] = _no_owner
+        self.make_view: Callable[[Simulation, int, int], Any] = _no_views
+        self._views: dict[int, list[Any]] = {}
         self._rng: tuple[tuple[int, int, int], np.random.Generator] | None = None
         self._bind(world, core.State(world, np.asarray(seeds, dtype=np.uint64), history))
         self._check_placement()
 
     def _bind(self, world: core.World, state: core.State) -> None:
-        """Look at this part of the core from now on."""
+        """Replace the world and the state of the core."""
         self.world, self.state = world, state
         self.objects = world.objects
         self.pose, self.extra, self.control, self.twist = state.pose, state.extra, state.control, state.twist
@@ -130,11 +136,11 @@ class Simulation:
         self.passable |= {record.id for record in records if record.unobstructed}
 
     def exchange(self, scenario: ResolvedScenario, origins: Sequence[tuple[Simulation, int]]) -> None:
-        """Go on with other objects.
+        """Continue with other objects.
 
         Args:
-            scenario: The present one but for its objects.
-            origins: For each of them, the simulation of one world and the row that hold its present state.
+            scenario: The present scenario with other objects.
+            origins: For each of these objects, a simulation and the row in it that holds the object's present state.
         """
         world = build_world(scenario, built=self._built)
         world.collision_mode = self.world.collision_mode
@@ -144,7 +150,7 @@ class Simulation:
         self._bind(world, state)
 
     def restore(self, scenario: ResolvedScenario) -> None:
-        """Start the next scene with these objects; the first one if there is a new seed."""
+        """Start the next scene with the objects of a scenario; after a new seed, the first scene."""
         seed, scene, _ = self.key()
         world = build_world(scenario, built=self._built)
         world.collision_mode = self.world.collision_mode
@@ -159,7 +165,7 @@ class Simulation:
         self._check_placement()
 
     def reshape(self, row: int, parts: Sequence[core.Part], seed: int = 0) -> None:
-        """Give an object another body until the next scene is drawn; ``seed`` is for random parts."""
+        """Replace the body of an object until the next scene is drawn; ``seed`` determines random parts."""
         self.state.reshape(row, parts, seed)
         self.revision += 1
 
@@ -199,17 +205,17 @@ class Simulation:
             self.log.add(state)
 
     def step_external(self) -> None:
-        """Count a period in which the caller moved the objects: collisions, arrivals and sensors are evaluated."""
+        """Advance by one period in which the caller has moved the objects: evaluate collisions, arrivals, sensors."""
         core.advance(self.world, self.state, 1, threads=self.threads, external=True)
         self.measure()
 
     def measure(self, mask: NDArray[np.bool_] | None = None) -> None:
-        """Let Python sensors measure, in the worlds of the mask."""
+        """Call the Python sensors, in the worlds of the mask."""
         for measure in self.measurements:
             measure(self, mask)
 
     def refresh(self) -> None:
-        """Evaluate collisions and sensors anew after objects were moved; time does not advance."""
+        """Evaluate collisions and sensors again after objects were moved; time does not advance."""
         self.state.refresh()
         self.measure()
 
@@ -218,44 +224,55 @@ class Simulation:
         """Whether Python code takes part in every step."""
         return bool(self.decisions or self.measurements or self.drives is not None or self.hooks is not None)
 
+    # objects ---------------------------------------------------------------------------------------------------------
+    def views(self, world: int = 0) -> list[Any]:
+        """Return the objects of one world as scripts see them; the first call makes them with ``make_view``."""
+        if world not in self._views:
+            self._views[world] = [self.make_view(self, index, world) for index in range(self.objects)]
+        return self._views[world]
+
+    def keep_views(self, shown: Sequence[Any]) -> None:
+        """Replace the objects that scripts see, in a simulation with a single world."""
+        self._views = {0: list(shown)}
+
     # one row ----------------------------------------------------------------------------------------------------------
     def impose(self, row: int, control: NDArray[np.float64] | Sequence[float]) -> None:
-        """Command a row in the next step, whatever its behavior."""
+        """Impose a control on a row for the next step, instead of the one that its behavior decides."""
         self.command[row, : min(3, len(control))] = control[:3]
         if len(control) > 3 and self.drives is not None and (wide := self.drives.wide(row)) is not None:
             wide.command[:] = control
         self.given[row] = 1
 
     def command_of(self, row: int, size: int) -> NDArray[np.float64]:
-        """(size,) the command of a row."""
+        """Return the (size,) command of a row."""
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.command[row, :size] if wide is None else wide.command
 
     def control_of(self, row: int, size: int) -> NDArray[np.float64]:
-        """(size,) the executed control of a row."""
+        """Return the (size,) executed control of a row."""
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.control[row, :size] if wide is None else wide.control
 
     def drive_of(self, row: int, size: int) -> NDArray[np.float64]:
-        """(size,) what the drive of a row does in ``collision_mode: contact``, before contacts interfere."""
+        """Return the (size,) control of the drive of a row, before contacts (``collision_mode: contact``) change it."""
         wide = self.drives.wide(row) if self.drives is not None and size > 3 else None
         return self.state.drive[row, :size] if wide is None else wide.drive
 
     def feeling(self) -> AbstractContextManager[None]:
-        """While contacts change velocities: drives written in Python feel it."""
+        """Return a context for resolving contacts, in which drives written in Python follow the changed velocities."""
         return nullcontext() if self.drives is None else self.drives.feeling()
 
     def row_state(self, row: int, size: int) -> NDArray[np.float64]:
-        """(size,) pose and extra rows of a row, a copy."""
+        """Return a copy of the (size,) pose and extra state of a row."""
         return np.concatenate([self.pose[row], self.extra[row, : size - 3]])
 
     def set_row_state(self, row: int, values: NDArray[np.float64]) -> None:
-        """Put a row elsewhere."""
+        """Set the pose and extra state of a row."""
         self.pose[row] = values[:3]
         self.extra[row, : len(values) - 3] = values[3:]
 
     def decide_alone(self, view: Any) -> NDArray[np.float64]:
-        """(vel_dim,) what the behavior of one object wants now."""
+        """Return the (vel_dim,) control that the behavior of one object decides now."""
         for decide in self.decisions:
             if view.index in getattr(decide, "objects", ()):
                 return np.asarray(decide.control(view), dtype=np.float64).reshape(-1)  # type: ignore[attr-defined]
@@ -266,27 +283,27 @@ class Simulation:
         return self.drives.control_alone(view.row, wanted)
 
     def move_alone(self, row: int) -> None:
-        """One period of one object, as commanded."""
+        """Move one object by one period with its command."""
         core.limit_row(self.world, self.state, row)
         core.integrate_row(self.world, self.state, row)
         if self.drives is not None:
             self.drives.move_row(row)
 
     def first_scan(self, index: int) -> int:
-        """Number of the first native sensor of an object among those of its world; its others follow."""
+        """Return the index of the first native sensor of an object among those of its world; its others follow."""
         return self._first_scan.get(index, 0)
 
     # all rows ---------------------------------------------------------------------------------------------------------
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
-        """Advance by up to ``steps`` periods without coming back to Python in between where no Python takes part.
+        """Advance by up to ``steps`` periods, in a single call of the core if no Python code takes part.
 
         Args:
-            steps: Periods.
-            until_done: Let a world rest once each of its robots has arrived or stopped.
+            steps: Largest number of periods.
+            until_done: End a world once each of its robots has arrived or stopped.
 
         Returns:
-            Periods executed by the world that went on longest.
+            Number of periods that the last world to end has executed.
         """
         if not self.in_python:
             return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
@@ -304,14 +321,14 @@ class Simulation:
         return np.asarray(ended.all(axis=1))
 
     def reset(self, mask: NDArray[np.bool_] | None = None, *, next_scene: bool = False) -> None:
-        """Put worlds back to their start.
+        """Return worlds to their initial state.
 
         Args:
-            mask: (W,) which worlds; all by default.
-            next_scene: Draw the next scene (random shapes, placements, goals) instead of keeping this one.
+            mask: (W,) worlds to reset; default: all.
+            next_scene: Draw the next scene (random shapes, placements, goals) instead of keeping the present one.
 
         Raises:
-            PlacementError: A random object found no room in the next scene.
+            PlacementError: A random object could not be placed in the next scene.
         """
         self._reseeded = False
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
@@ -320,30 +337,30 @@ class Simulation:
         if self.drives is not None:
             self.drives.reset(np.flatnonzero(chosen).tolist())
         if next_scene:
-            for told in self.scene_drawn:
-                told(np.flatnonzero(chosen).tolist())
+            for callback in self.scene_drawn:
+                callback(np.flatnonzero(chosen).tolist())
         self.measure(mask)
 
     def reseed(self, seeds: Sequence[int] | NDArray[np.uint64], mask: NDArray[np.bool_] | None = None) -> None:
-        """New seeds; the next reset of these worlds begins again at their first scene."""
+        """Set new seeds; the next reset of these worlds starts again with their first scene."""
         chosen = self._all if mask is None else np.asarray(mask, dtype=np.uint8)
         self._reseeded = True
         self.state.reseed(np.asarray(seeds, dtype=np.uint64), chosen)
 
     def key(self, world: int = 0) -> tuple[int, int, int]:
-        """(seed, scene, noise episode) of a world."""
+        """Return (seed, scene, noise episode) of a world."""
         return int(self.state.seed[world]), int(self.state.scene[world]), int(self.state.noise[world])
 
     @property
     def rng(self) -> np.random.Generator:
-        """A NumPy generator for user code; it starts anew with every reset, from the key of the first world."""
+        """A NumPy generator for user code; each reset restarts it from the key of the first world."""
         key = self.key()
         if self._rng is None or self._rng[0] != key:
             self._rng = key, generator(*key, stream="user", object_id=self.user)
         return self._rng[1]
 
     def set_rng(self, rng: np.random.Generator) -> None:
-        """Give user code another generator, until the next reset."""
+        """Replace the generator of user code until the next reset."""
         self._rng = self.key(), rng
 
     @property

@@ -1,4 +1,7 @@
-"""How much work a step of a scenario is, estimated from the scenario and its start alone: never by a clock."""
+"""Estimates the computing work of one step from the scenario and its initial state, without measuring time.
+
+The estimate is deterministic, so a limit on work stops the same run at the same step on every machine.
+"""
 
 from __future__ import annotations
 
@@ -18,67 +21,89 @@ from irsim.simulation.simulation import Simulation
 __all__ = ["UNIT", "step_work"]
 
 UNIT = 3.0
-"""Microseconds that one unit of work takes or less, on a core of 2020 or later: an object that a behavior moves."""
-_BEAM, _DEEP, _NOISE, _BODY, _EDGE, _CELL = 0.003, 0.004, 0.025, 0.02, 0.01, 0.0006
-"""Of a beam; of it per square root of the bodies in reach, a beam meets some of them; of its noise; of a scan per body
-and per edge in reach; of a beam per cell of fog that it passes [µs]."""
-_CORNER = 0.012
-"""Of each further corner of what moves [µs]."""
-_PAIR = {"rvo": 0.5, "sfm": 0.12}
-"""Of a neighbour in reach, where a behavior looks at each [µs]."""
-_WALL = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12}
-"""Of a body in reach that stands [µs]."""
-_PYTHON = 90.0
-"""Of one part of a step that Python computes [µs]."""
-_PLAN_CELL = {"astar": 0.003, "jps": 0.01}
-"""Of a plan, per cell of the world [µs]."""
-_PLAN_SAMPLE, _PLAN_EDGE = 1.0, 2.0
-"""Of a plan, per sample of a tree and per edge of a graph [µs]."""
-_GOAL_STEPS = 100
-"""Who wanders plans anew after about so many steps."""
-_MOST_CORNERS = 16
-"""Bodies with more corners may be large: they count as in reach everywhere."""
+"""Time [µs] that one unit of work takes at most on a processor core of 2020 or later.
+
+One unit is the work of one object that a behavior moves.
+"""
+_BEAM_US = 0.003
+"""Time of one beam [µs]."""
+_BEAM_DEPTH_US = 0.004
+"""Time of one beam per square root of the number of bodies in range [µs]: a beam passes close to some of them."""
+_BEAM_NOISE_US = 0.025
+"""Time of the noise of one beam [µs]."""
+_SCAN_BODY_US = 0.02
+"""Time of a scan per body in range [µs]."""
+_SCAN_EDGE_US = 0.01
+"""Time of a scan per edge in range [µs]."""
+_FOG_CELL_US = 0.0006
+"""Time of one beam per cell of fog that it passes [µs]."""
+_CORNER_US = 0.012
+"""Time of each corner after the first of a moving body [µs]."""
+_NEIGHBOR_US = {"rvo": 0.5, "sfm": 0.12}
+"""Time per moving neighbor in range, for behaviors that consider each neighbor [µs]."""
+_STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12}
+"""Time per static body in range [µs]."""
+_PYTHON_PART_US = 90.0
+"""Time of each part of a step that Python computes [µs]."""
+_PLAN_CELL_US = {"astar": 0.003, "jps": 0.01}
+"""Time of a plan per cell of the world [µs]."""
+_PLAN_SAMPLE_US = 1.0
+"""Time of a plan per sample of a tree [µs]."""
+_PLAN_EDGE_US = 2.0
+"""Time of a plan per edge of a graph [µs]."""
+_WANDER_REPLAN_STEPS = 100
+"""Number of steps after which a wandering robot replans, on average."""
+MAX_SMALL_BODY_CORNERS = 16
+"""A body with more corners is possibly large, so it counts as in range everywhere."""
 
 Floats = NDArray[np.float64]
 
 
 def step_work(scenario: ResolvedScenario, simulation: Simulation) -> float:
-    """Work of one step of the only world of a simulation, in units; one per object at least.
+    """Estimate the work of one step of a simulation with a single world, in units; at least one per object.
 
     Args:
-        scenario: What is simulated.
-        simulation: At the start: who is near whom there counts.
+        scenario: The scenario of the simulation.
+        simulation: The simulation in its initial state, whose distances between objects are used.
     """
     records = scenario.objects
     place: Floats = simulation.state.pose[: len(records), :2]
     corners = np.array(_corners(records), dtype=np.int64)
-    still = np.array([record.static for record in records], dtype=bool)
+    static = np.array([record.static for record in records], dtype=bool)
     near = _Nearness(place, corners)
-    work = _CORNER * float((corners[~still] - 1).sum())
+    work = _CORNER_US * float((corners[~static] - 1).sum())
     for row, record in enumerate(records):
         if record.sensors:
-            work += sum(_scan(scenario, sensor, row, near) for sensor in record.sensors)
+            work += sum(_scan_time(scenario, sensor, row, near) for sensor in record.sensors)
         if not record.static:
-            work += _behavior(scenario, record, row, near, still)
+            work += _behavior_time(scenario, record, row, near, static)
     parts = len(simulation.measurements) + len(simulation.decisions)
     parts += sum(part is not None for part in (simulation.drives, simulation.hooks))
-    return len(records) + (work + _PYTHON * parts) / UNIT
+    return len(records) + (work + _PYTHON_PART_US * parts) / UNIT
 
 
 class _Nearness:
-    """How many are near each object at the start.
+    """Number of bodies near each object in the initial state.
 
     Attributes:
         place: (N, 2) positions [m].
-        corners: (N,) of each body.
+        corners: (N,) number of corners of each body.
     """
 
     def __init__(self, place: Floats, corners: NDArray[np.int64]) -> None:
         self.place, self.corners = np.nan_to_num(place), corners
         self._known: dict[tuple[float, str], Floats] = {}
 
-    def about(self, reach: float, what: str, weight: Callable[[], NDArray[Any]]) -> Floats:
-        """(N,) sum of a weight per object over those within a distance, estimated by squares of that size."""
+    def estimate(self, reach: float, what: str, weight: Callable[[], NDArray[Any]]) -> Floats:
+        """Estimate the (N,) sums of a weight over the objects within a distance of each object.
+
+        The estimate counts objects in squares of that size, because exact distances of all pairs take too long.
+
+        Args:
+            reach: Distance [m].
+            what: Name of the weight, which identifies it in the cache.
+            weight: Returns the (N,) weights.
+        """
         key = (reach, what)
         if key not in self._known:
             value = weight().astype(float)
@@ -93,7 +118,7 @@ class _Nearness:
 
 
 def _corners(records: list[ObjectRecord]) -> list[int]:
-    """How many corners each body has, 1 of a disc."""
+    """Return the number of corners of each body; a disc counts as 1."""
     known: dict[int, int] = {}
     for record in records:
         key = id(record.shape)
@@ -108,56 +133,58 @@ def _corners_of(part: Any) -> int:
     return 1
 
 
-def _scan(scenario: ResolvedScenario, sensor: Any, row: int, near: _Nearness) -> float:
-    """Of one sensor [µs]."""
+def _scan_time(scenario: ResolvedScenario, sensor: Any, row: int, near: _Nearness) -> float:
+    """Estimate the time of one sensor per step [µs]."""
     beams = getattr(sensor, "number", 0)
     if not beams:
         return 0.0
     reach = float(getattr(sensor, "range_max", math.inf))
-    bodies = float(near.about(reach, "bodies", lambda: np.ones(len(near.corners)))[row])
-    small = near.about(reach, "edges", lambda: np.where(near.corners > _MOST_CORNERS, 0, near.corners))[row]
-    edges = float(small) + float(near.corners[near.corners > _MOST_CORNERS].sum())
-    noise = _NOISE if getattr(sensor, "noise", False) else 0.0
+    bodies = float(near.estimate(reach, "bodies", lambda: np.ones(len(near.corners)))[row])
+    is_large = near.corners > MAX_SMALL_BODY_CORNERS
+    edges = float(near.estimate(reach, "edges", lambda: np.where(is_large, 0, near.corners))[row])
+    edges += float(near.corners[is_large].sum())
+    noise = _BEAM_NOISE_US if getattr(sensor, "noise", False) else 0.0
     fog = 0.0
     if scenario.world.fog_map:
         longest = min(reach, math.hypot(scenario.world.width, scenario.world.height))
-        fog = _CELL * 2 * longest / fog_resolution(scenario)
-    return beams * (_BEAM + _DEEP * math.sqrt(bodies) + noise + fog) + _BODY * bodies + _EDGE * edges
+        fog = _FOG_CELL_US * 2 * longest / fog_resolution(scenario)
+    beam = _BEAM_US + _BEAM_DEPTH_US * math.sqrt(bodies) + noise + fog
+    return beams * beam + _SCAN_BODY_US * bodies + _SCAN_EDGE_US * edges
 
 
-def _behavior(
-    scenario: ResolvedScenario, record: ObjectRecord, row: int, near: _Nearness, still: NDArray[np.bool_]
+def _behavior_time(
+    scenario: ResolvedScenario, record: ObjectRecord, row: int, near: _Nearness, static: NDArray[np.bool_]
 ) -> float:
-    """Of who decides [µs]."""
+    """Estimate the time of the behavior of one object per step [µs]."""
     behavior: Any = record.behavior if record.group_behavior is None else record.group_behavior
     work = 0.0
     if getattr(behavior, "name", "") == "follow":
-        work += UNIT + _plans(scenario, behavior, record, bool(still.any()))
+        work += UNIT + _replanning_time(scenario, behavior, record, bool(static.any()))
         behavior = behavior.local
     name = getattr(behavior, "name", "")
-    if name not in _WALL:
+    if name not in _STATIC_BODY_US:
         return work
     reach = float(getattr(behavior, "neighborDist" if name == "orca" else "neighbor_threshold", math.inf))
-    walls = near.about(reach, "still", lambda: still)[row]
-    others = near.about(reach, "moving", lambda: ~still)[row]
-    return work + _WALL[name] * float(walls) + _PAIR.get(name, 0.0) * float(others)
+    static_bodies = near.estimate(reach, "static", lambda: static)[row]
+    neighbors = near.estimate(reach, "moving", lambda: ~static)[row]
+    return work + _STATIC_BODY_US[name] * float(static_bodies) + _NEIGHBOR_US.get(name, 0.0) * float(neighbors)
 
 
-def _plans(scenario: ResolvedScenario, behavior: Any, record: ObjectRecord, anything: bool) -> float:
-    """Of the plans that come again and again, per step [µs]; where nothing stands every way is straight."""
-    often = 1.0 / _GOAL_STEPS if record.wander else 0.0
+def _replanning_time(scenario: ResolvedScenario, behavior: Any, record: ObjectRecord, has_static: bool) -> float:
+    """Estimate the time of repeated plans per step [µs]; without static bodies each path is a straight line."""
+    plans_per_step = 1.0 / _WANDER_REPLAN_STEPS if record.wander else 0.0
     if behavior.replan is not None:
-        often = max(often, min(1.0, scenario.world.step_time / behavior.replan))
-    return often * _plan(scenario, behavior.planner) if anything else 0.0
+        plans_per_step = max(plans_per_step, min(1.0, scenario.world.step_time / behavior.replan))
+    return plans_per_step * _plan_time(scenario, behavior.planner) if has_static else 0.0
 
 
-def _plan(scenario: ResolvedScenario, planner: Any) -> float:
-    """Of one plan [µs]."""
-    if planner.name in _PLAN_CELL:
+def _plan_time(scenario: ResolvedScenario, planner: Any) -> float:
+    """Estimate the time of one plan [µs]."""
+    if planner.name in _PLAN_CELL_US:
         if planner.resolution is None and scenario.grid is not None:
-            return _PLAN_CELL[planner.name] * math.prod(scenario.grid.size)
+            return _PLAN_CELL_US[planner.name] * math.prod(scenario.grid.size)
         size = planner.resolution or 0.1
-        return _PLAN_CELL[planner.name] * scenario.world.width * scenario.world.height / size**2
+        return _PLAN_CELL_US[planner.name] * scenario.world.width * scenario.world.height / size**2
     if hasattr(planner, "n_sample"):
-        return float(_PLAN_EDGE * planner.n_sample * planner.n_knn)
-    return _PLAN_SAMPLE * float(getattr(planner, "max_iter", 500))
+        return float(_PLAN_EDGE_US * planner.n_sample * planner.n_knn)
+    return _PLAN_SAMPLE_US * float(getattr(planner, "max_iter", 500))

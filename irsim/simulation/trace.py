@@ -1,4 +1,4 @@
-"""Everything that happened in an episode, as arrays."""
+"""Traces: states, controls and flags of all objects over an episode, as arrays."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import irsim._core as core
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Rollout", "Trace", "joined", "next_rows", "present_row", "record", "record_rollout", "sensors"]
+__all__ = ["Rollout", "Trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -45,19 +45,19 @@ class Rollout:
 
 @dataclass(frozen=True)
 class Trace:
-    """Arrays over T rows and N objects; row 0 is the state at the start, each further row that after one more step.
+    """Arrays over T rows and N objects; row 0 is the initial state, each further row the state after one more step.
 
     Attributes:
-        step: (T,) steps executed, 0 at the start of the episode.
+        step: (T,) number of executed steps, 0 at the start of the episode.
         time: (T,) simulated time [s].
         pose: (T, N, 3) x, y [m], heading [rad], world frame.
-        control: (T, N, 3) control executed in the step that led to the row, command frame, zero padded; of a run that
-            was read back, to single precision.
-        goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN where there is none.
+        control: (T, N, 3) control executed in the step that led to the row, command frame, zero padded. In a recorded
+            run it has single precision.
+        goal: (T, N, 3) present goal x, y [m], heading [rad]; NaN without a goal.
         arrived, collided, stopped: (T, N) flags.
-        ranges: (T, B) ranges [m] of each sensor, infinite where a beam hit nothing; by ``<object name>/<number of the
-            sensor among the object's native ones>``. Empty if scans were not kept; of a recorded run that was too large
-            to keep all of them there are as many rows as were kept.
+        ranges: (T, B) ranges [m] of each sensor, infinite for a beam that hit nothing. The keys are ``<object
+            name>/<number of the sensor among the native sensors of the object>``. Empty if scans were not recorded; a
+            recorded run has fewer than T rows if it was too large to store all of them.
         names: Names of the objects, in order.
         step_time: Period [s].
     """
@@ -79,32 +79,35 @@ class Trace:
 
 
 def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
-    """Advance the only world of ``simulation`` and keep everything, the present state included.
+    """Advance a simulation with a single world and return its trace, including the present state.
 
     Args:
-        simulation: One world.
-        steps: Periods at most.
+        simulation: The simulation.
+        steps: Largest number of periods.
         until_done: End once every robot has arrived or stopped.
-        scans: Keep what native range sensors measure, too.
+        scans: Also record the measurements of native range sensors.
 
     Raises:
         ValueError: ``steps`` is negative.
     """
-    return joined([present_row(simulation, scans), next_rows(simulation, steps, until_done=until_done, scans=scans)])
+    return join_traces(
+        [present_row(simulation, scans), next_rows(simulation, steps, until_done=until_done, scans=scans)]
+    )
 
 
 def present_row(simulation: Simulation, scans: bool = False) -> Trace:
-    """The present state of the only world of ``simulation``, as a trace of one row."""
+    """Return the present state of a simulation with a single world as a trace of one row."""
     return _trace(simulation, int(simulation.count[0]), _present(simulation, scans), 1, scans)
 
 
 def next_rows(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
-    """Advance like :func:`record`; the trace holds the rows after the present one, none if nothing was left to do.
+    """Advance like :func:`record`, and return the rows after the present one.
 
-    Rows are written inside the core where no Python takes part.
+    The trace is empty if the episode was already over. If no Python code takes part in the steps, the core writes all
+    rows at once, which is faster.
     """
     if steps < 0:
-        raise ValueError(f"steps is 0 or more, not {steps}")
+        raise ValueError(f"steps must be 0 or more, got {steps}")
     begin = int(simulation.count[0])
     if not simulation.in_python:
         kept = core.rollout(simulation.world, simulation.state, steps, until_done=until_done, returns=scans)
@@ -129,8 +132,8 @@ def next_rows(simulation: Simulation, steps: int, *, until_done: bool = True, sc
     return _trace(simulation, begin + 1, columns, len(columns[0]), scans)
 
 
-def joined(parts: Sequence[Trace]) -> Trace:
-    """Traces that follow each other as one."""
+def join_traces(parts: Sequence[Trace]) -> Trace:
+    """Concatenate traces that follow each other in time."""
     if len(parts) == 1:
         return parts[0]
     first = parts[0]
@@ -143,13 +146,13 @@ def joined(parts: Sequence[Trace]) -> Trace:
 
 
 def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:
-    """Advance the only world of ``simulation`` by up to ``steps`` periods and keep poses, controls and flags."""
+    """Advance a simulation with a single world by up to ``steps`` periods; return poses, controls and flags."""
     rows = next_rows(simulation, steps, until_done=until_done)
     return Rollout(rows.time, rows.pose, rows.control, rows.arrived, rows.collided, rows.names)
 
 
 def _present(simulation: Simulation, scans: bool) -> list[NDArray[Any]]:
-    """Pose, control, goal, flags and ranges as they are, each with a leading axis of one."""
+    """Return the present pose, control, goal, flags and ranges, each with a leading axis of length 1."""
     flags = (simulation.arrived, simulation.collided, simulation.stopped)
     ranges = np.zeros(0, dtype=np.float32)
     if scans:
@@ -181,7 +184,7 @@ def _trace(simulation: Simulation, begin: int, columns: Sequence[NDArray[Any]], 
 
 
 def sensors(simulation: Simulation) -> list[tuple[str, slice]]:
-    """Every sensor with beams as ``<object>/<number>``, and which of the ranges of a world are its own."""
+    """Return, for each sensor with beams, its key ``<object>/<number>`` and the slice of its beams in the ranges."""
     records = simulation.scenario.objects
     numbers: dict[int, int] = {}
     found = []

@@ -1,6 +1,6 @@
-"""What every registered feature must hold, built-in or plug-in: call these from your own tests.
+"""Checks that every registered feature must pass, built-in or plug-in; plug-in authors call them from their tests.
 
-Each function raises AssertionError with what is missing.
+Each function raises an AssertionError that names the problem.
 """
 
 from __future__ import annotations
@@ -30,11 +30,10 @@ __all__ = [
 ]
 
 _UNITLESS_NAMES = ("color",)
-_DRAWING = ("plot", "alpha", "color")
 
 
 def check_documented(feature: Feature) -> None:
-    """The options model and each of its fields say what they are."""
+    """Check that the options model and each of its fields have a docstring."""
     assert feature.options.__doc__, f"{feature.name}: the options model has no docstring"
     docs = field_docs(feature.options)
     missing = [name for name in feature.options.model_fields if not docs.get(name)]
@@ -42,7 +41,7 @@ def check_documented(feature: Feature) -> None:
 
 
 def check_units(feature: Feature) -> None:
-    """Every number in the schema carries ``x-unit`` (``1`` for pure numbers); whole numbers are counts."""
+    """Check that every number in the schema has ``x-unit`` (``1`` for pure numbers); integers are counts."""
     schema = feature.options.model_json_schema()
     missing = [
         name
@@ -53,7 +52,7 @@ def check_units(feature: Feature) -> None:
 
 
 def check_defaults(feature: Feature) -> None:
-    """The defaults are valid values, and what is required is said so."""
+    """Check that the defaults are valid values, unless a field is required."""
     model = feature.options
     required = [name for name, info in model.model_fields.items() if info.is_required()]
     if not required:
@@ -61,11 +60,11 @@ def check_defaults(feature: Feature) -> None:
 
 
 def check_kernel(feature: Feature) -> None:
-    """A native kernel has fields of the same names as the options (those that need resolving included)."""
+    """Check that each field of a native kernel has an option of the same name."""
     if feature.kernel is None:
         return
     unknown = set(getattr(feature.kernel, "fields", ())) - set(feature.options.model_fields)
-    assert not unknown, f"{feature.name}: the kernel has fields that the options lack: {sorted(unknown)}"
+    assert not unknown, f"{feature.name}: fields of the kernel without an option: {sorted(unknown)}"
 
 
 def scenario_with(
@@ -79,16 +78,16 @@ def scenario_with(
     shift: tuple[float, float] = (0.0, 0.0),
     order: tuple[int, ...] = (0, 1, 2),
 ) -> str:
-    """A small world in which three robots with the given features cross among two obstacles.
+    """Return the text of a scenario in which three robots with the given features cross between two obstacles.
 
     Args:
         drive: Name of the kinematics.
-        shape: Shape mapping, YAML.
-        behavior: Behavior mapping, YAML.
-        sensor: Sensor mapping, YAML.
-        group: Put the behavior under ``group_behavior``.
-        turn: Turn the whole scene about the origin [rad].
-        shift: Then move it [m].
+        shape: Shape mapping as YAML.
+        behavior: Behavior mapping as YAML.
+        sensor: Sensor mapping as YAML.
+        group: Use the behavior as ``group_behavior``.
+        turn: Angle by which the whole scene is rotated about the origin [rad].
+        shift: Translation of the scene after the rotation [m].
         order: Order in which the robots are declared.
     """
     places = [((1.0, 1.0, 0.2), (8.0, 7.0)), ((8.5, 1.5, 2.0), (2.0, 8.0)), ((1.5, 8.5, -0.7), (8.5, 2.5))]
@@ -119,7 +118,7 @@ def scenario_with(
 
 
 def simulate(text: str, steps: int = 40, seed: int = 7) -> tuple[Simulation, NDArray[np.float64]]:
-    """The simulation of a scenario text after ``steps``, and its poses (steps, N, 3)."""
+    """Simulate the text of a scenario; return the simulation and the poses (steps, N, 3)."""
     scenario, _ = or_raise(read(text, strict=True))
     simulation = Simulation(scenario, [seed])
     poses = []
@@ -130,7 +129,7 @@ def simulate(text: str, steps: int = 40, seed: int = 7) -> tuple[Simulation, NDA
 
 
 def check_same_seed(**features: Any) -> None:
-    """The same seed gives the same episode, bit for bit."""
+    """Check that the same seed gives the same episode, bit for bit."""
     text = scenario_with(**features)
     (one, first), (two, second) = simulate(text), simulate(text)
     assert np.array_equal(first, second), f"{features}: the same seed gave another episode"
@@ -138,7 +137,7 @@ def check_same_seed(**features: Any) -> None:
 
 
 def check_finite(**features: Any) -> None:
-    """Nothing non-finite comes out."""
+    """Check that all poses, controls, velocities and ranges are finite."""
     simulation, poses = simulate(scenario_with(**features))
     for name in ("control", "twist", "ranges"):
         assert np.isfinite(getattr(simulation, name)).all(), f"{features}: {name} is not finite"
@@ -146,28 +145,28 @@ def check_finite(**features: Any) -> None:
 
 
 def check_declaration_order(tolerance: float = 1e-9, **features: Any) -> None:
-    """The order in which objects are declared does not matter, to rounding."""
-    _, straight = simulate(scenario_with(**features))
+    """Check that the order in which objects are declared does not change the motion, except for rounding."""
+    _, original = simulate(scenario_with(**features))
     _, shuffled = simulate(scenario_with(order=(2, 0, 1), **features))
-    assert np.allclose(shuffled[:, :3], straight[:, [2, 0, 1]], atol=tolerance), (
-        f"{features}: declaration order matters"
+    assert np.allclose(shuffled[:, :3], original[:, [2, 0, 1]], atol=tolerance), (
+        f"{features}: the declaration order changes the motion"
     )
 
 
 def check_turned_world(tolerance: float = 1e-6, steps: int = 15, **features: Any) -> None:
-    """Turning and shifting the world turns and shifts the answer."""
+    """Check that rotating and shifting the world rotates and shifts the motion."""
     turn, shift = 0.75, (3.0, -2.0)
     _, plain = simulate(scenario_with(**features), steps)
     _, moved = simulate(scenario_with(turn=turn, shift=shift, **features), steps)
     c, s = np.cos(turn), np.sin(turn)
     expected = plain[..., :2] @ np.array([[c, s], [-s, c]]) + np.array(shift)
-    assert np.allclose(moved[..., :2], expected, atol=tolerance), f"{features}: a turned world gives another motion"
+    assert np.allclose(moved[..., :2], expected, atol=tolerance), f"{features}: a rotated world gives another motion"
     heading = np.angle(np.exp(1j * (moved[..., 2] - plain[..., 2] - turn)))
-    assert np.allclose(heading, 0, atol=tolerance), f"{features}: a turned world gives other headings"
+    assert np.allclose(heading, 0, atol=tolerance), f"{features}: a rotated world gives other headings"
 
 
 def simulated_drives() -> list[str]:
-    """Names of the drives that move objects."""
+    """Return the names of the drives that move objects."""
     return [feature.name for feature in KINEMATICS.features() if feature.kernel is not None]
 
 

@@ -1,1 +1,1 @@
-"""What is right and wrong with a scenario, and what differs between two."""
+"""Validation of a scenario: findings, repairs, feasibility, a dry run, and the comparison with another scenario."""

@@ -1,4 +1,4 @@
-"""A first look at what happens: some seeded steps, of which nothing is kept but what is worth telling."""
+"""Dry run: simulate the first steps of a scenario with a fixed seed and summarise what happens, without a recording."""
 
 from __future__ import annotations
 
@@ -13,28 +13,37 @@ from numpy.typing import NDArray
 from irsim.common.text import seconds
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
-from irsim.episodes.out_of_bounds import MOST_LEFT, left_told, left_world
-from irsim.episodes.run_report import has_one_end, others_arrived
-from irsim.episodes.stuck import circling, gets_nowhere_since, in_the_way, jam_told, jammed, lacks_heading
-from irsim.results.results import DryRun, EventRecord, Stuck
+from irsim.episodes.explanation import has_one_end, others_arrived_message
+from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, exits_message, find_exits
+from irsim.episodes.stuck import (
+    find_circling,
+    find_jammed,
+    find_obstruction,
+    heading_message,
+    jam_message,
+    no_progress_since,
+)
+from irsim.results.run import EventRecord
+from irsim.results.validation import DryRun, Stuck
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
-from irsim.simulation.events import Event, collision_of, partner_of, passable_names
+from irsim.simulation.events import Event, is_collision_of, partner_of, passable_names
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.step_cost import step_work
-from irsim.simulation.trace import Trace, joined, next_rows, present_row
+from irsim.simulation.trace import Trace, join_traces, next_rows, present_row
 
 __all__ = ["BUDGET", "SECONDS", "dry_run"]
 
 BUDGET = 300_000
 """Work of a dry run: steps times objects, weighted by cost (:mod:`irsim.simulation.step_cost`); about a second.
-It is also the number of rows in memory for a moment."""
+It also bounds the number of trace rows held in memory."""
 SECONDS = 5.0
-"""After which it ends whatever was estimated, told as such: several times what its work takes [s]."""
-_CHUNK = 0.1
-"""Time between two looks at the clock, where one step does not take longer [s]."""
-_MOST = 10
+"""Computing time [s] after which a dry run ends and says so, several times what its budget usually takes."""
+_CLOCK_PERIOD_S = 0.1
+"""Computing time [s] between two looks at the clock, unless a single step takes longer."""
+_MAX_LISTED = 10
+"""Number of collisions, and of stuck robots, that the result lists one by one."""
 
 Flags = NDArray[np.bool_]
 
@@ -48,19 +57,19 @@ def dry_run(
     steps: int | None = None,
     limits: Limits | None = None,
 ) -> DryRun:
-    """Simulate the first steps of a scenario and say what happens.
+    """Simulate the first steps of a scenario and summarise what happens.
 
     Args:
-        scenario: What to try.
-        seed: Over the scenario's own; with neither, 0: the same look every time.
-        budget: Work at most, estimated from the scenario: who gives the same gets the same steps on every machine.
-        seconds: For which it goes on after its first step, in which routes are planned, so that what a budget does not
-            foresee ends too.
-        steps: Steps at most; default: those of a whole episode.
-        limits: Of a run.
+        scenario: The scenario.
+        seed: Overrides the scenario's own seed. Without either, the seed is 0, so every dry run is the same.
+        budget: Greatest work, estimated from the scenario: the same budget gives the same steps on every machine.
+        seconds: Computing time [s] after which the dry run ends even within its budget, counted from the end of the
+            first step, in which routes are planned.
+        steps: Greatest number of steps; default: those of a whole episode.
+        limits: Limits of a run.
 
     Raises:
-        PlacementError: A random object finds no room with this seed.
+        PlacementError: There is no free place for a random object with this seed.
     """
     if seed is None:
         seed = scenario.world.seed if scenario.world.seed is not None else 0
@@ -69,16 +78,21 @@ def dry_run(
         horizon, source = horizon_of(scenario, env, None, limits or DEFAULT_LIMITS)
         affordable = max(1, int(budget / max(1.0, step_work(scenario, env.simulation))))
         wanted = min(horizon, affordable if steps is None else min(steps, affordable))
-        trace, late = _recorded(env.simulation, wanted, seconds)
-        return _told(env, scenario, trace, seed, None if source == "limits" else horizon, seconds if late else None)
+        trace, late = _simulate(env.simulation, wanted, seconds)
+        return _summarise(
+            env, scenario, trace, seed, None if source == "limits" else horizon, seconds if late else None
+        )
     finally:
         env.end(ending_time=0.0)
 
 
-def _recorded(simulation: Simulation, steps: int, seconds: float) -> tuple[Trace, bool]:
-    """What happens until everybody is done, or the steps or seconds are over; and whether it was the seconds.
+def _simulate(simulation: Simulation, steps: int, seconds: float) -> tuple[Trace, bool]:
+    """Simulate until the episode is done, or the steps or seconds are used up.
 
-    The first step is free.
+    The seconds count from the end of the first step.
+
+    Returns:
+        The trace, and whether the seconds ended it.
     """
     parts, done, size, end, late = [present_row(simulation)], 0, 1, math.inf, False
     while done < steps:
@@ -93,23 +107,35 @@ def _recorded(simulation: Simulation, steps: int, seconds: float) -> tuple[Trace
             break
         if end == math.inf:
             end = now + seconds
-        size = max(1, min(2 * size, int(size * _CHUNK / max(now - begin, 1e-9))))
-    return joined(parts), late
+        size = max(1, min(2 * size, int(size * _CLOCK_PERIOD_S / max(now - begin, 1e-9))))
+    return join_traces(parts), late
 
 
-def _told(
+def _summarise(
     env: Env, scenario: ResolvedScenario, trace: Trace, seed: int, horizon: int | None, cut: float | None
 ) -> DryRun:
+    """The result of a dry run.
+
+    Args:
+        env: The environment after the last step.
+        scenario: The scenario.
+        trace: What happened.
+        seed: Seed of the dry run.
+        horizon: Steps of a whole episode; None if only the limits bound it.
+        cut: Computing time [s] that ended the dry run, None if it ended for another reason.
+    """
     steps = len(trace) - 1
     events, passable = env.events, passable_names(env.simulation)
     robots = [index for index, item in enumerate(scenario.objects) if item.role == "robot"]
     names = {scenario.objects[index].name for index in robots}
-    hits = [e for e in events if any(collision_of(e, name, passable) for name in names)]
+    hits = [e for e in events if any(is_collision_of(e, name, passable) for name in names)]
     arrived = list(dict.fromkeys(e.object for e in events if e.kind == "arrival" and e.object in names))
     parked = [record.name for record in scenario.robots() if scenario.is_parked(record)]
-    held = jammed(env.simulation, events)
-    stuck, count = _stuck(env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held)
-    left = left_world(scenario, lambda row: trace.pose[:, row], steps)
+    held = find_jammed(env.simulation, events)
+    stuck, count = _find_stuck(
+        env, trace, [row for row in robots if scenario.objects[row].name not in parked], events, held
+    )
+    left = find_exits(scenario, lambda row: trace.pose[:, row], steps)
     ended: Literal["done", "horizon", "budget"] = "budget"
     if bool(env.simulation.done()[0]):
         ended = "done"
@@ -123,58 +149,66 @@ def _told(
         ended=ended,
         summary="; ".join(
             [
-                _begin(trace, len(robots), arrived, parked, ended, cut),
-                *_troubles(hits, stuck, count),
+                _progress_message(trace, len(robots), arrived, parked, ended, cut),
+                *_problem_messages(hits, stuck, count),
                 *filter(
                     None,
-                    (others_arrived(scenario, events), jam_told(env.simulation, held), left_told(scenario, left)),
+                    (
+                        others_arrived_message(scenario, events),
+                        jam_message(env.simulation, held),
+                        exits_message(scenario, left),
+                    ),
                 ),
             ]
         ),
         arrived=arrived,
-        collisions=[EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MOST]],
+        collisions=[
+            EventRecord(**{key: getattr(e, key) for key in EventRecord.model_fields}) for e in hits[:_MAX_LISTED]
+        ],
         stuck=stuck,
-        left=left[:MOST_LEFT],
+        left=left[:MAX_LISTED_EXITS],
         parked=parked,
         jammed=list(held),
     )
 
 
-def _stuck(
+def _find_stuck(
     env: Env, trace: Trace, robots: Sequence[int], events: Sequence[Event], held: dict[str, Event]
 ) -> tuple[list[Stuck], int]:
-    """Robots under way that get nowhere at the end of the trace, the first ones, and how many there are."""
+    """Find robots that make no progress at the end of the trace: the first ones, and their number."""
     found, count = list[Stuck](), 0
     records, views = env.scenario.objects, {view.row: view for view in env.robot_list}
     for index in robots:
         if trace.arrived[-1, index]:
             continue
         record, place = records[index], trace.pose[-1, index]
-        since = gets_nowhere_since(trace.pose[:, index, :2], trace.step_time, views[index].max_speed)
+        since = no_progress_since(trace.pose[:, index, :2], trace.step_time, views[index].max_speed)
         doing: Literal["stands", "circles its goal"] = "stands"
         why = None
         if since is None:
-            begin = _present_goal(trace, index)
-            circle = circling(trace.pose[begin:, index], trace.goal[-1, index, :2]) if has_one_end(record) else None
+            begin = _first_row_of_goal(trace, index)
+            circle = (
+                find_circling(trace.pose[begin:, index], trace.goal[-1, index, :2]) if has_one_end(record) else None
+            )
             if circle is None:
                 continue
-            since, doing, why = begin + circle.since, "circles its goal", circle.told
+            since, doing, why = begin + circle.since, "circles its goal", circle.message
         count += 1
-        if len(found) < _MOST:
-            why = why or _why(record, trace, index, events) or _blocked(env, trace, index, held)
+        if len(found) < _MAX_LISTED:
+            why = why or _certain_cause(record, trace, index, events) or _likely_cause(env, trace, index, held)
             time, (x, y) = float(trace.time[since]), (float(value) for value in place[:2])
             found.append(Stuck(name=record.name, doing=doing, since=time, x=x, y=y, why=why))
     return found, count
 
 
-def _present_goal(trace: Trace, index: int) -> int:
-    """The row since which an object has the goal that it has at the end."""
+def _first_row_of_goal(trace: Trace, index: int) -> int:
+    """First row from which on an object has the goal that it has at the end."""
     others = np.flatnonzero((trace.goal[:, index, :2] != trace.goal[-1, index, :2]).any(axis=1))
     return int(others[-1]) + 1 if others.size and others[-1] + 1 < len(trace) else 0
 
 
-def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]) -> str | None:
-    """A cause that is certain."""
+def _certain_cause(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]) -> str | None:
+    """Why a robot makes no progress, where the record or the events say so."""
     if trace.stopped[-1, index] or trace.collided[-1, index]:
         hit = next((e for e in events if e.kind == "collision" and record.name in (e.object, e.partner)), None)
         if hit is not None:
@@ -182,39 +216,39 @@ def _why(record: ObjectRecord, trace: Trace, index: int, events: Sequence[Event]
     if record.kinematics is None or record.static:
         return "it is static" if record.kinematics is not None else "it has no kinematics"
     if record.behavior is None and record.group_behavior is None:
-        return "it has no behavior (none needed if it is meant to stand or a program drives it)"
+        return "it has no behavior (not needed if it is meant to stay or a program drives it)"
     if not any(record.vel_max):
         return "its vel_max is zero"
     if any(e.kind == "no_path" and e.object == record.name for e in events):
         return "there is no path to its goal"
-    return lacks_heading(record, trace.pose[-1, index], trace.goal[-1, index])
+    return heading_message(record, trace.pose[-1, index], trace.goal[-1, index])
 
 
-def _blocked(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
-    """What stands close to it at the end, or that there is no telling."""
-    near = in_the_way(env.simulation, index, held, trace.pose[-1])
+def _likely_cause(env: Env, trace: Trace, index: int, held: dict[str, Event]) -> str:
+    """Why a robot probably makes no progress: an object close to it, else its behavior."""
+    near = find_obstruction(env.simulation, index, held, trace.pose[-1])
     if near is None:
         return "its behavior keeps it where it is"
-    return near.told if near.held else f"{near.told}, in the way of its behavior"
+    return near.message if near.held else f"{near.message}, in the way of its behavior"
 
 
-def _begin(
+def _progress_message(
     trace: Trace, robots: int, arrived: Sequence[str], parked: Sequence[str], ended: str, cut: float | None
 ) -> str:
-    """How far it went and who arrived; why no farther, where a clock said so."""
+    """How much time was simulated, how many robots arrived, and whether the computing time ended the dry run."""
     time = seconds(trace.time[-1])
     begin = f"in the first {time} only: " if ended == "budget" else f"in {time}: "
     if cut is not None:
         begin = (
-            f"in the first {time} only, after which {cut:g} s of computing were over (steps are slower than estimated; "
-            "the next look may get farther or less far): "
+            f"in the first {time} only, after which {cut:g} s of computing time were used up (steps are slower than "
+            "estimated; the next dry run may end earlier or later): "
         )
     still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked (cannot move, no goal written)"
     return begin + (f"{len(arrived)} of {robots} robots arrived" if robots else "no robots") + (still if parked else "")
 
 
-def _troubles(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list[str]:
-    """Who collided and who gets nowhere."""
+def _problem_messages(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list[str]:
+    """Messages about collisions and about robots that make no progress."""
     parts = []
     if hits:
         first = hits[0]
@@ -224,5 +258,5 @@ def _troubles(hits: Sequence[Event], stuck: Sequence[Stuck], count: int) -> list
     if stuck:
         parts.append(f"'{stuck[0].name}' {stuck[0].doing} since {seconds(stuck[0].since)}: {stuck[0].why}")
     if count > 1:
-        parts.append(f"{count - 1} more get{'s' * (count == 2)} nowhere")
+        parts.append(f"{count - 1} more make{'s' * (count == 2)} no progress")
     return parts

@@ -8,12 +8,14 @@ from irsim.diagnostics.diagnostic import format_path
 from irsim.diagnostics.errors import PlacementError
 from irsim.episodes.episode import as_finding, source_of
 from irsim.episodes.scene_summary import counts_of, in_words
-from irsim.results.results import DryRun, Finding, Fix, ScenarioDiff, ValidationReport
+from irsim.results.diff import ScenarioDiff
+from irsim.results.findings import Finding
+from irsim.results.validation import DryRun, Fix, ValidationReport
 from irsim.scenario.autofix import repair_text
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_path
-from irsim.validation.feasibility import survey
+from irsim.validation.feasibility.check import feasibility_findings
 
 __all__ = ["diff", "fix", "report_of", "validate"]
 
@@ -32,56 +34,56 @@ def validate(
     """Check a scenario without running it.
 
     Args:
-        path: The file.
-        text: Or its text.
+        path: Path of the scenario file.
+        text: Text of the scenario, instead of ``path``.
         strict: What IR-SIM would ignore is an error (default) or a warning.
-        base: A file to compare with: ``changes`` then tells what differs from it.
-        base_text: Or its text.
-        simulate: Also try it, if it is valid: ``dry_run`` then tells what happened in some steps.
-        seed: Of what is tried and compared; default: the scenario's own, else 0.
+        base: Path of a file to compare with: ``changes`` then lists the differences from it.
+        base_text: Text to compare with, instead of ``base``.
+        simulate: Also simulate the first steps of a valid scenario: ``dry_run`` then summarises them.
+        seed: Seed of the dry run and of the comparison; default: the scenario's own, else 0.
         limits: Tighter or wider limits of the loader and of a run.
 
     Raises:
-        ScenarioNotFoundError: No such file.
-        ValueError: Neither or both of ``path`` and ``text``, or both of ``base`` and ``base_text``.
+        ScenarioNotFoundError: There is no such file.
+        ValueError: Neither or both of ``path`` and ``text`` are given, or both of ``base`` and ``base_text``.
     """
     most = limits or DEFAULT_LIMITS
-    reading = read(source_of(path, text, limits), strict=strict, limits=most, survey=survey)
+    reading = read(source_of(path, text, limits), strict=strict, limits=most, survey=feasibility_findings)
     report = report_of(reading, str(path) if path is not None else "(text)")
     if base is not None or base_text is not None:
         from irsim.validation.diff.compare import compare
 
-        other = read(source_of(base, base_text, limits), strict=strict, limits=most, survey=survey)
+        other = read(source_of(base, base_text, limits), strict=strict, limits=most, survey=feasibility_findings)
         report.changes = compare(other, reading, seed=seed)
         _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:
-        report.dry_run = _tried(report, reading, seed, limits)
+        report.dry_run = _dry_run_or_findings(report, reading, seed, limits)
     return report
 
 
 def fix(
     path: str | Path | None = None, *, text: str | None = None, strict: bool = True, limits: Limits | None = None
 ) -> tuple[str, ValidationReport]:
-    """Make every repair of a scenario that needs no guessing. Writes nothing.
+    """Make every repair of a scenario that needs no guessing, without writing a file.
 
     Args:
-        path: The file.
-        text: Or its text.
+        path: Path of the scenario file.
+        text: Text of the scenario, instead of ``path``.
         strict: What IR-SIM would ignore is an error (default) or a warning.
         limits: Tighter or wider limits of the loader.
 
     Returns:
-        The repaired text, comments and layout as they were, and the report on it: ``fixes`` has what was done. A repair
-        that would lose comments is left to you; the finding's ``fix`` says so.
+        The repaired text, with its comments and layout, and the report on it: ``fixes`` lists the repairs. A repair
+        that would lose comments is not made; the ``fix`` of its finding says what to change.
 
     Raises:
-        ScenarioNotFoundError: No such file.
-        ValueError: Neither or both of ``path`` and ``text``.
+        ScenarioNotFoundError: There is no such file.
+        ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     most = limits or DEFAULT_LIMITS
     source = source_of(path, text, limits)
     document = source if isinstance(source, Document) else load_path(source, most)
-    if document.text is None:  # not even read
+    if document.text is None:  # the file could not be read
         return "", report_of(read(document, strict=strict, limits=most), str(path))
     mended = repair_text(document.text, name=document.name, path=document.path, strict=strict, limits=most)
     report = report_of(mended.reading, str(path) if path is not None else "(text)")
@@ -101,19 +103,19 @@ def diff(
     seed: int | None = None,
     limits: Limits | None = None,
 ) -> ScenarioDiff:
-    """What differs between two scenarios: by key in the files, by object in the worlds they become.
+    """Compare two scenarios: their files by key, and the worlds built from them by object.
 
     Args:
-        before: A file.
-        after: Another.
-        before_text: Or the text of the first.
-        after_text: Or the text of the second.
-        seed: Both worlds are built with it; default: the scenario's own, else 0.
+        before: Path of the first file.
+        after: Path of the second file.
+        before_text: Text of the first scenario, instead of ``before``.
+        after_text: Text of the second scenario, instead of ``after``.
+        seed: Seed with which both worlds are built; default: the scenario's own, else 0.
         limits: Tighter or wider limits of the loader.
 
     Raises:
-        ScenarioNotFoundError: No such file.
-        ValueError: Neither or both of a path and a text.
+        ScenarioNotFoundError: There is no such file.
+        ValueError: Neither or both of a path and a text are given.
     """
     from irsim.validation.diff.compare import compare
 
@@ -124,7 +126,7 @@ def diff(
 
 
 def report_of(reading: Reading, file: str) -> ValidationReport:
-    """What reading a scenario gave, as a report."""
+    """The report on a scenario that has been read."""
     findings = [as_finding(d) for d in reading.diagnostics]
     count = {s: sum(f.severity == s for f in findings) for s in ("error", "warning", "hint")}
     scenario, counts = reading.scenario, dict[str, int]()
@@ -148,14 +150,16 @@ def report_of(reading: Reading, file: str) -> ValidationReport:
 
 
 def _mark_old(findings: list[Finding], base: Reading) -> None:
-    """Note which findings the scenario that was compared with has too: same code, and same place or words."""
-    known = {(item.code, told) for item in base.diagnostics for told in (format_path(item.path), item.message)}
+    """Mark the findings that the base scenario also has: those of the same code with the same path or message."""
+    known = {(item.code, text) for item in base.diagnostics for text in (format_path(item.path), item.message)}
     for finding in findings:
         finding.in_base = bool({(finding.code, finding.path), (finding.code, finding.message)} & known)
 
 
-def _tried(report: ValidationReport, reading: Reading, seed: int | None, limits: Limits | None) -> DryRun | None:
-    """The dry run; a seed that finds no room is a finding more."""
+def _dry_run_or_findings(
+    report: ValidationReport, reading: Reading, seed: int | None, limits: Limits | None
+) -> DryRun | None:
+    """The dry run; None if a random object has no free place with the seed, which is added to the findings."""
     from irsim.validation.dry_run import dry_run
 
     assert reading.scenario is not None

@@ -19,10 +19,10 @@ __all__ = ["main"]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Serve until standard input ends, or, over HTTP, until told to end.
+    """Serve until standard input is closed or, over HTTP, until the process is terminated.
 
     Args:
-        arguments: Of the command line.
+        arguments: Arguments of the command line.
     """
     options = _parser().parse_args(arguments)
     workspace: Path = options.workspace
@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         except HttpRefused as refused:
             _parser().error(str(refused))
         return
-    # Ctrl-C ends the process at once, without waiting for input that a thread is reading; workers notice and end too.
+    # Ctrl-C ends the process at once, without waiting for the thread that reads input; workers then end, too.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     server.run("stdio")
 
@@ -60,7 +60,7 @@ def _parser() -> argparse.ArgumentParser:
         type=Path,
         default=Path(),
         metavar="DIR",
-        help="folder that scenarios are read from; nothing outside it is (default: the current one)",
+        help="folder that scenarios are read from; no file outside it is read (default: the current folder)",
     )
     parser.add_argument(
         "--enable-write",
@@ -72,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
         type=_address,
         metavar="[HOST:]PORT",
         help="serve over streamable HTTP at http://HOST:PORT/mcp (default host: 127.0.0.1, which only this machine "
-        "reaches; any other needs a token, and 0.0.0.0 and [::] need --allow-host, too); port 0 is any that is free",
+        "reaches; any other needs a token, and 0.0.0.0 and [::] need --allow-host, too); port 0 chooses a free port",
     )
     parser.add_argument(
         "--token-file",
@@ -86,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="NAME",
-        help="name or address that HTTP clients connect to, beside HOST: required where HOST is 0.0.0.0 or [::], since "
+        help="name or address that HTTP clients connect to, besides HOST: required if HOST is 0.0.0.0 or [::], since "
         "requests that name another host are refused; may be given several times",
     )
     for name, most, what in (
@@ -94,12 +94,14 @@ def _parser() -> argparse.ArgumentParser:
         ("--max-objects", standard.objects, "robots and obstacles of a scenario"),
         ("--max-work", standard.work, "steps times objects of one run"),
     ):
-        parser.add_argument(name, type=_positive, default=most, metavar="N", help=f"most {what} (default: {most})")
+        parser.add_argument(
+            name, type=_positive, default=most, metavar="N", help=f"maximum number of {what} (default: {most})"
+        )
     return parser
 
 
 class _Version(argparse.Action):
-    """Reads the version only when it is asked for."""
+    """Imports the version only when it is requested."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from irsim import __version__
@@ -120,7 +122,7 @@ def _address(text: str) -> Address:
 def _positive(text: str) -> int:
     number = int(text)
     if number < 1:
-        raise argparse.ArgumentTypeError(f"{text} is not positive")
+        raise argparse.ArgumentTypeError(f"must be positive, got {text}")
     return number
 
 

@@ -1,4 +1,4 @@
-"""What clients can offer while an argument of a prompt or a resource is typed."""
+"""Completions: values that clients can offer while a user types an argument of a prompt or a resource."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ from irsim_mcp.services import Services
 
 __all__ = ["add_completions"]
 
-_MOST = 100
+_MAX_VALUES = 100
+"""Number of values that one completion offers."""
 
 
 def add_completions(server: MCPServer, services: Services) -> None:
-    """Register all of them with a server."""
+    """Register the completions with a server."""
     workspace = services.workspace
     choices: dict[tuple[str, str], Callable[[], Iterable[str]]] = {
         ("design_scenario", "kinematics"): drives,
@@ -48,7 +49,7 @@ def add_completions(server: MCPServer, services: Services) -> None:
             with suppress(OSError):
                 known = choices[of, argument.name]()
         found = [choice for choice in known if choice.startswith(argument.value) and clean(choice, 1000) == choice]
-        return Completion(values=found[:_MOST], total=len(found), has_more=len(found) > _MOST)
+        return Completion(values=found[:_MAX_VALUES], total=len(found), has_more=len(found) > _MAX_VALUES)
 
-    completing: Callable[[], Callable[..., Any]] = server.completion  # has no types of its own
+    completing: Callable[[], Callable[..., Any]] = server.completion  # the SDK declares no types for it
     completing()(complete)

@@ -1,4 +1,4 @@
-"""Documentation as resources: ``irsim://docs/{topic}``, at most 1 MB at a time. The tools do not depend on it."""
+"""Documentation as resources: ``irsim://docs/{topic}``, at most 1 MB per read. The tools work without it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from irsim.diagnostics.diagnostic import nearest
 __all__ = ["DOC", "add_docs", "topics"]
 
 DOC = "irsim://docs/{topic}{?offset,limit}"
-_MOST_BYTES = 1_000_000
+_MAX_BYTES = 1_000_000
 _README = "readme"
 
 
@@ -26,10 +26,8 @@ def topics() -> list[str]:
 
 
 def add_docs(server: MCPServer) -> None:
-    """Register the template and each page with a server."""
-    description = (
-        "A page of the documentation as Markdown. At most 1 MB at a time: offset and limit, in characters, give a part."
-    )
+    """Register the resource template and each page with a server."""
+    description = "A page of the documentation as Markdown. At most 1 MB per read: offset and limit select characters."
     server.resource(DOC, name="docs", title="Documentation", description=description, mime_type="text/markdown")(page)
     for topic in topics():
         server.add_resource(
@@ -38,18 +36,18 @@ def add_docs(server: MCPServer) -> None:
                 uri=f"irsim://docs/{topic}",
                 name=f"docs-{topic}",
                 title=f"Documentation: {topic}",
-                description="?offset=…&limit=… gives a part, counted in characters.",
+                description="?offset=…&limit=… selects a part, counted in characters.",
                 mime_type="text/markdown",
             )
         )
 
 
-def page(topic: str, offset: int = 0, limit: int = _MOST_BYTES) -> str:
+def page(topic: str, offset: int = 0, limit: int = _MAX_BYTES) -> str:
     """A page of the documentation, or a part of it."""
     if offset < 0 or limit < 1:
-        raise ResourceNotFoundError("bad-argument: offset is 0 or more, limit 1 or more (both in characters).")
-    part = _text(topic)[offset : offset + min(limit, _MOST_BYTES)]
-    return part.encode()[:_MOST_BYTES].decode(errors="ignore")
+        raise ResourceNotFoundError("bad-argument: offset must be at least 0, limit at least 1 (both in characters).")
+    part = _text(topic)[offset : offset + min(limit, _MAX_BYTES)]
+    return part.encode()[:_MAX_BYTES].decode(errors="ignore")
 
 
 def _text(topic: str) -> str:
@@ -63,13 +61,13 @@ def _text(topic: str) -> str:
     pages = _pages()
     if topic not in pages:
         near = nearest(topic, topics())
-        fix = f"Did you mean {near}?" if near else f"There are {', '.join(topics())}."
-        raise ResourceNotFoundError(f"unknown-topic: no page is called {clean(topic)!r}. {fix}")
+        fix = f"Did you mean {near}?" if near else f"The pages are {', '.join(topics())}."
+        raise ResourceNotFoundError(f"unknown-topic: there is no page {clean(topic)!r}. {fix}")
     return pages[topic].read_text(encoding="utf-8")
 
 
 def _pages() -> dict[str, Path]:
-    """Files of the pages by name; of two that have the same the skill comes before it."""
+    """Files of the pages by name; of two pages with the same name, the second has its skill as prefix."""
     found: dict[str, Path] = {}
     for path in sorted(resources.skills_directory().glob("*/references/*.md")):
         name = path.stem if path.stem not in found else f"{path.parents[1].name}-{path.stem}"

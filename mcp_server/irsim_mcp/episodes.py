@@ -1,4 +1,4 @@
-"""The episodes of a finished benchmark, as a table in pages, and the call that runs one of them again."""
+"""The episodes of a finished benchmark as a table in pages, and the call that runs one of them again."""
 
 from __future__ import annotations
 
@@ -9,19 +9,20 @@ from typing import Any
 from irsim.common.text import clean
 from irsim_mcp.errors import failure
 
-__all__ = ["again", "check_finished", "episodes_table"]
+__all__ = ["call_to_repeat", "check_finished", "episodes_table"]
 
 _COLUMNS = ("scenario", "behavior", "seed", "outcome", "time", "steps", "path_length", "min_clearance", "failed")
-_FAILED = 3
-"""Robots of which a row tells what became."""
+_MAX_FAILURES = 3
+"""Number of robots without success that a row lists."""
 _DECIMALS = 3
+"""Decimals of numbers in the table."""
 
 
 def check_finished(state: Mapping[str, Any]) -> None:
-    """See that a job has a result.
+    """Check that a job has a result.
 
     Raises:
-        ToolError: It has none, or none yet.
+        ToolError: The job has no result, or none yet.
     """
     if "result" not in state:
         fix = "get_job waits for it" if state["status"] == "running" else "call benchmark again"
@@ -30,15 +31,15 @@ def check_finished(state: Mapping[str, Any]) -> None:
 
 
 def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> dict[str, Any]:
-    """The episodes, those without success first, in the form of the tables of runs.
+    """The episodes of a benchmark, those without success first, in the form of the tables of runs.
 
     Args:
-        state: What is known of a benchmark that has a result.
-        limit: Rows at most.
-        cursor: ``next_cursor`` of the page before.
+        state: State of the job of a benchmark that has a result.
+        limit: Greatest number of rows.
+        cursor: ``next_cursor`` of the previous page.
 
     Raises:
-        ToolError: The cursor is none.
+        ToolError: The cursor is invalid.
     """
     from irsim.results.labels import labels_of
 
@@ -61,12 +62,12 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
         "every": 1,
         "next_cursor": str(shown) if shown < len(episodes) else None,
         "notes": [clean(f"{label} is {text}", 300) for text, label in labels.items() if label != text],
-        "again": again(result, episodes[start]) if rows else "",
+        "again": call_to_repeat(result, episodes[start]) if rows else "",
     }
 
 
-def again(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
-    """The call that runs an episode again, for a scenario given as text with a word for the text."""
+def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
+    """The call that runs an episode again; a placeholder stands for a scenario that was given as text."""
     name, behavior = episode["scenario"], episode["behavior"]
     steps = re.search(r" --steps (\d+)", result["reproduce"])
     text = re.fullmatch(r"\(text(?: (\d+))?\)", name)
@@ -82,7 +83,7 @@ def again(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
 
 def _row(episode: Mapping[str, Any], labels: Mapping[str, str]) -> list[Any]:
     fates = [f"{name}: {fate}" for name, fate in list(episode["failures"].items())]
-    more = f"; {len(fates) - _FAILED} more" if len(fates) > _FAILED else ""
+    more = f"; {len(fates) - _MAX_FAILURES} more" if len(fates) > _MAX_FAILURES else ""
     metrics = [episode["metrics"].get(key) for key in ("path_length", "min_clearance")]
     return [
         episode["scenario"],
@@ -92,7 +93,7 @@ def _row(episode: Mapping[str, Any], labels: Mapping[str, str]) -> list[Any]:
         round(episode["sim_time"], _DECIMALS),
         episode["steps"],
         *(None if value is None else round(value, _DECIMALS) for value in metrics),
-        clean("; ".join(fates[:_FAILED]) + more, 300) or None,
+        clean("; ".join(fates[:_MAX_FAILURES]) + more, 300) or None,
     ]
 
 
@@ -100,6 +101,6 @@ def _start(cursor: str | None, total: int) -> int:
     if cursor is None:
         return 0
     if not (cursor.isascii() and cursor.isdigit() and int(cursor[:12]) < total):
-        fix = "use next_cursor of the page before"
-        raise failure("bad-argument", f"{clean(cursor)!r} is no cursor", where="cursor", fix=fix)
+        fix = "use next_cursor of the previous page"
+        raise failure("bad-argument", f"{clean(cursor)!r} is not a valid cursor", where="cursor", fix=fix)
     return int(cursor)

@@ -1,4 +1,4 @@
-"""Errors of tools: one line that says what is wrong, where, and what to do about it."""
+"""Errors of tools: one line that says what is wrong, where, and how to fix it."""
 
 from __future__ import annotations
 
@@ -9,24 +9,25 @@ from irsim.diagnostics.codes import CODES, TOOL_CODES
 
 __all__ = ["failure"]
 
-_LONGEST = 400
+_MAX_LENGTH = 400
+"""Number of characters of an error."""
 
 
 def failure(code: str, what: str, *, where: str | None = None, fix: str | None = None) -> ToolError:
     """An error to raise: ``code: what (where). Fix: …``, at most 400 characters.
 
     Args:
-        code: Name in the closed list of :mod:`irsim.diagnostics.codes`.
-        what: What is wrong; cut if the line gets too long.
-        where: Argument or path it is about.
+        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
+        what: What is wrong; shortened if the line gets too long.
+        where: The argument or path that is wrong.
         fix: What to change.
     """
     if code not in CODES and code not in TOOL_CODES:
-        raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes.py")
+        raise LookupError(f"undocumented error code {code!r}: add it to irsim/diagnostics/codes/")
     place = f" ({clean(where)})" if where else ""
     remedy = f" Fix: {_sentence(fix)}" if fix else ""
-    room = _LONGEST - len(f"{code}: {place}.{remedy}")
-    return ToolError(clean(f"{code}: {clean(_one_line(what), max(40, room))}{place}.{remedy}", _LONGEST))
+    left = _MAX_LENGTH - len(f"{code}: {place}.{remedy}")
+    return ToolError(clean(f"{code}: {clean(_one_line(what), max(40, left))}{place}.{remedy}", _MAX_LENGTH))
 
 
 def _one_line(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Serving over HTTP: who may connect, and how the server is started."""
+"""Serve over HTTP, and decide which clients may connect."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ __all__ = ["PATH", "TOKEN_VARIABLE", "Address", "HttpRefused", "address", "serve
 PATH = "/mcp"
 TOKEN_VARIABLE = "IRSIM_MCP_TOKEN"
 _LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
-_SHORTEST_TOKEN = 16
-_LONGEST_TOKEN = 1024
-_CLOSING_SECONDS = 2
+_MIN_TOKEN_LENGTH = 16
+_MAX_TOKEN_LENGTH = 1024
+_SHUTDOWN_SECONDS = 2
+"""Time that open requests have to end when the server is terminated [s]."""
 _TOKEN = re.compile(r"[A-Za-z0-9._~+/=-]+")
 _ANYWHERE = ("0.0.0.0", "::")
 
 
 class HttpRefused(ValueError):
-    """Options with which it would not be safe to serve."""
+    """Options with which serving would be unsafe or impossible."""
 
 
 class Address(NamedTuple):
-    """Where to listen."""
+    """Host and port to listen at."""
 
     host: str
     port: int
@@ -50,7 +51,7 @@ class Address(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The host as it stands in an address."""
+        """The host as it appears in a URL."""
         return f"[{self.host}]" if ":" in self.host else self.host
 
 
@@ -58,7 +59,7 @@ def address(text: str) -> Address:
     """Read ``[HOST:]PORT``; without a host it is 127.0.0.1.
 
     Args:
-        text: Such as ``8000``, ``127.0.0.1:8000`` or ``[::1]:8000``; port 0 is any that is free.
+        text: Text such as ``8000``, ``127.0.0.1:8000`` or ``[::1]:8000``; port 0 chooses a free port.
     """
     host, _, port = text.rpartition(":")
     if ":" in host and not (host.startswith("[") and host.endswith("]")):
@@ -70,10 +71,10 @@ def address(text: str) -> Address:
 
 
 def token_from(file: Path | None) -> str | None:
-    """The token that clients must send: first line of a file, else of the variable ``IRSIM_MCP_TOKEN``, else none.
+    """The token that clients must send: content of a file, else of the variable ``IRSIM_MCP_TOKEN``, else None.
 
     Raises:
-        HttpRefused: It cannot be read, or is none that is hard to guess.
+        HttpRefused: The file cannot be read, or the token is too short or has invalid characters.
     """
     if file is not None:
         try:
@@ -85,16 +86,16 @@ def token_from(file: Path | None) -> str | None:
         text, source = os.environ[TOKEN_VARIABLE].strip(), TOKEN_VARIABLE
     else:
         return None
-    if not _SHORTEST_TOKEN <= len(text) <= _LONGEST_TOKEN or not _TOKEN.fullmatch(text):
+    if not _MIN_TOKEN_LENGTH <= len(text) <= _MAX_TOKEN_LENGTH or not _TOKEN.fullmatch(text):
         raise HttpRefused(
-            f"{source}: a token is one line of {_SHORTEST_TOKEN} or more letters, digits and ._~+/=-; "
+            f"{source}: a token must be one line of at least {_MIN_TOKEN_LENGTH} letters, digits and ._~+/=-; "
             'python -c "import secrets; print(secrets.token_urlsafe(32))" makes one'
         )
     return text
 
 
 def _security(where: Address, names: Sequence[str]) -> TransportSecuritySettings:
-    """Which values of Host and Origin are let in; pages of other sites are not."""
+    """Values of Host and Origin that are accepted, which excludes pages of other sites."""
     from mcp.server.transport_security import TransportSecuritySettings
 
     own = _LOOPBACK if where.loopback else ()
@@ -109,13 +110,13 @@ def application(server: MCPServer, where: Address, token: str | None, names: Seq
     """The server as a web application.
 
     Args:
-        server: What is served.
-        where: Where it is going to listen.
-        token: What clients must send as a bearer token.
-        names: Names or addresses that clients know it by, beside the one it listens at.
+        server: The server.
+        where: Host and port at which it will listen.
+        token: Bearer token that clients must send.
+        names: Names or addresses by which clients reach the server, besides the host it listens at.
 
     Raises:
-        HttpRefused: Others than this machine could connect without a token, or by a name that nobody has told.
+        HttpRefused: Other machines could connect without a token, or the names by which they connect are missing.
     """
     if not where.loopback and token is None:
         raise HttpRefused(
@@ -133,46 +134,46 @@ def application(server: MCPServer, where: Address, token: str | None, names: Seq
 
 
 class _WithToken:
-    """Lets in who sends the token.
+    """Passes on the requests that have the token, and refuses all others.
 
     Args:
-        app: What is behind it.
-        token: What is asked for.
+        app: The application behind it.
+        token: The required token.
     """
 
     def __init__(self, app: ASGIApp, token: str) -> None:
         self._app, self._expected = app, token.encode()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] == "lifespan" or (scope["type"] == "http" and self._known(scope)):
+        if scope["type"] == "lifespan" or (scope["type"] == "http" and self._has_token(scope)):
             await self._app(scope, receive, send)
             return
         from starlette.responses import PlainTextResponse
 
         response = PlainTextResponse(
-            "this server wants a token: send the header Authorization: Bearer TOKEN",
+            "this server requires a token: send the header Authorization: Bearer TOKEN",
             status_code=401,
             headers={"WWW-Authenticate": "Bearer"},
         )
         await response(scope, receive, send)
 
-    def _known(self, scope: Scope) -> bool:
+    def _has_token(self, scope: Scope) -> bool:
         sent = [value for name, value in scope["headers"] if name == b"authorization"]
         if len(sent) != 1:
             return False
-        scheme, _, token = sent[0].partition(b" ")  # the scheme in any case: RFC 9110, section 11.1
+        scheme, _, token = sent[0].partition(b" ")  # the scheme is case-insensitive: RFC 9110, section 11.1
         return scheme.lower() == b"bearer" and hmac.compare_digest(token.lstrip(b" "), self._expected)
 
 
 def serve(server: MCPServer, where: Address, token: str | None, names: Sequence[str] = ()) -> None:
-    """Serve until the process is told to end (see :func:`application`); says on standard error where."""
+    """Serve until the process is terminated (see :func:`application`); writes the URL to standard error."""
     import socket
 
     import uvicorn
 
     app = application(server, where, token, names)
     config = uvicorn.Config(
-        app, log_level="warning", server_header=False, timeout_graceful_shutdown=_CLOSING_SECONDS, ws="none"
+        app, log_level="warning", server_header=False, timeout_graceful_shutdown=_SHUTDOWN_SECONDS, ws="none"
     )
     family = socket.AF_INET6 if ":" in where.host else socket.AF_INET
     with socket.socket(family) as listening:

@@ -1,7 +1,7 @@
-"""Runs in a worker process: reads one job from standard input, does it, writes the answer to standard output.
+"""Runs in a worker process: read one job from standard input, do it, write the answer to standard output.
 
-The answer is one JSON object per line: ``{"progress": [done, total]}`` now and then, and at last either
-``{"result": …}`` or ``{"error": …}``.
+The answer has one JSON object per line: ``{"progress": [done, total]}`` now and then, ``{"run": id}`` when a recording
+starts, and at the end either ``{"result": …}`` or ``{"error": …}``.
 """
 
 from __future__ import annotations
@@ -20,15 +20,18 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
-_PROGRESS_PERIOD = 0.5
-_MOST_FINDINGS = 3
-_FILES = 256
+_PROGRESS_PERIOD_S = 0.5
+"""Least time between two progress messages [s]."""
+_MAX_FINDINGS = 3
+"""Number of errors of a scenario that an answer lists."""
+_MAX_FILES = 256
+"""Number of files that a worker may have open."""
 
 
 def main() -> None:
     """Do the job and exit."""
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever prints, does not print into the answer
+    os.dup2(2, 1)  # what libraries print must not mix with the answer
     job = json.loads(sys.stdin.buffer.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
     _limit(job["resources"])
@@ -42,18 +45,18 @@ def main() -> None:
         result = _TASKS[job["task"]](job, _Progress(answer))
         answer(f'{{"result": {result}}}')
     except Exception as error:
-        answer(json.dumps({"error": _described(error)}))
-    os._exit(0)  # at once: nothing here needs tidying up
+        answer(json.dumps({"error": _error_data(error)}))
+    os._exit(0)  # at once: there is nothing to clean up
 
 
 def _end_with_parent() -> None:
-    """Standard input stays open as long as the server lives."""
+    """End this process when standard input is closed, that is, when the server has ended."""
     sys.stdin.buffer.read()
     os._exit(1)
 
 
 def _limit(resources: dict[str, int]) -> None:
-    """Bound what this process may use, where the system has the means."""
+    """Limit the resources of this process, on systems that support it."""
     if os.name != "posix":
         return
     import resource
@@ -62,7 +65,7 @@ def _limit(resources: dict[str, int]) -> None:
         resource.RLIMIT_AS: resources["memory"],
         resource.RLIMIT_CPU: resources["cpu"],
         resource.RLIMIT_FSIZE: resources["written"],
-        resource.RLIMIT_NOFILE: _FILES,
+        resource.RLIMIT_NOFILE: _MAX_FILES,
         resource.RLIMIT_CORE: 0,
     }
     for kind, most in bounds.items():
@@ -73,7 +76,7 @@ def _limit(resources: dict[str, int]) -> None:
 
 
 class _Progress:
-    """Passes progress on, not too often."""
+    """Writes progress messages, not too often."""
 
     def __init__(self, answer: Callable[[str], None]) -> None:
         self._answer, self._next = answer, 0.0
@@ -81,11 +84,11 @@ class _Progress:
     def __call__(self, done: int, total: int) -> None:
         now = time.monotonic()
         if now >= self._next:
-            self._next = now + _PROGRESS_PERIOD
+            self._next = now + _PROGRESS_PERIOD_S
             self._answer(json.dumps({"progress": [done, total]}))
 
     def recorded(self, run_id: str) -> None:
-        """Tell how the run is called that has begun."""
+        """Write the id of the run whose recording has started."""
         self._answer(json.dumps({"run": run_id}))
 
 
@@ -103,16 +106,16 @@ def _validate(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
-    """The text of a file that is not there yet; what it names is looked for beside that."""
+    """Validate the text of a file that is not written yet; files that it names are sought relative to its path."""
     from irsim.episodes.scene_summary import counts_of, in_words
     from irsim.scenario.open import or_raise
     from irsim.scenario.read import read
     from irsim.scenario.yaml.document import load_text
-    from irsim.validation.feasibility import survey
+    from irsim.validation.feasibility.check import feasibility_findings
 
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
-    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=survey))
+    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=feasibility_findings))
     warnings = sum(item.severity == "warning" for item in found)
     return json.dumps({"contents": in_words(counts_of(scenario), sensors=False), "warnings": warnings})
 
@@ -155,22 +158,22 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
     import base64
 
     from irsim.api.film_strip import moments_of
-    from irsim.api.take_snapshot import drawn
+    from irsim.api.take_snapshot import snapshot_of_env
     from irsim.runs import open_run
     from irsim.runs.files import RunError
-    from irsim.runs.resimulation import check_same, has_modules, replayed, step_of
+    from irsim.runs.resimulation import check_reproduced, has_modules, resimulate, step_of
 
     arguments, moments = job["arguments"], None
     run = open_run(arguments["run_id"], job["workspace"])
     if arguments["strip"] is not None:
         if has_modules(run):
-            what = "a run with modules of one's own is not simulated again, which a strip would need"
-            raise RunError("bad-argument", what, "ask for one step at a time", where="strip")
+            what = "a run with user modules is never simulated again, which a strip would need"
+            raise RunError("bad-argument", what, "draw one step at a time", where="strip")
         moments = moments_of(step_of(run, arguments["steps"] or None), arguments["strip"])
-    env = replayed(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
+    env = resimulate(run, arguments["steps"] if moments is None else 0, limits=_limits(job), progress=progress)
     if arguments["draw"]:
         os.chdir(os.path.dirname(__file__))  # Matplotlib obeys a matplotlibrc in the current directory
-    result = drawn(
+    result = snapshot_of_env(
         env,
         run.meta.get("scenario"),
         size=arguments["size"],
@@ -183,7 +186,7 @@ def _run_snapshot(job: dict[str, Any], progress: _Progress) -> str:
         progress=progress,
     )
     if not has_modules(run):
-        check_same(run, env)
+        check_reproduced(run, env)
     png = base64.b64encode(result.png).decode()
     return f'{{"png": "{png}", "scene": {result.model_dump_json()}}}'
 
@@ -218,18 +221,18 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
 
 
 def _logged(job: dict[str, Any], progress: _Progress) -> str:
-    """The result of the episodes that a benchmark had when it was stopped, written beside its log."""
+    """Write the result of the episodes that a stopped benchmark had completed, beside its log."""
     from irsim.benchmarks import logged
-    from irsim.runs.files import written
+    from irsim.runs.files import replace_file
 
-    written(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
+    replace_file(job["arguments"]["to"], logged(job["arguments"]["log"]).model_dump_json().encode())
     return "null"
 
 
 def _lookup(job: dict[str, Any], progress: _Progress) -> str:
-    from irsim_mcp.reference import explained
+    from irsim_mcp.reference import explanation
 
-    return json.dumps({"text": explained(**job["arguments"])})
+    return json.dumps({"text": explanation(**job["arguments"])})
 
 
 def _schema(job: dict[str, Any], progress: _Progress) -> str:
@@ -253,7 +256,7 @@ _TASKS: dict[str, Callable[[dict[str, Any], _Progress], str]] = {
 }
 
 
-def _described(error: Exception) -> dict[str, Any]:
+def _error_data(error: Exception) -> dict[str, Any]:
     """An exception as data."""
     from irsim.diagnostics.diagnostic import format_path
     from irsim.diagnostics.errors import IrsimError, PlacementError, ScenarioError, ScenarioNotFoundError
@@ -271,11 +274,11 @@ def _described(error: Exception) -> dict[str, Any]:
                 "line": item.line,
                 "file": item.file,
             }
-            for item in errors[:_MOST_FINDINGS]
+            for item in errors[:_MAX_FINDINGS]
         ]
         return {"code": "invalid-scenario", "errors": len(errors), "first": named}
     if isinstance(error, ScenarioNotFoundError):
-        return {"code": "file-not-found", "what": "the scenario file is gone"}
+        return {"code": "file-not-found", "what": "the scenario file no longer exists"}
     if isinstance(error, IrsimError):
         code = getattr(error, "code", "invalid-input")
         what = getattr(error, "message", str(error))

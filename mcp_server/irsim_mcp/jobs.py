@@ -1,8 +1,8 @@
-"""Work that takes longer than a call: processes that go on, and what is known of them on disk.
+"""Jobs: work that takes longer than a call, in processes that outlive the call, with their state on disk.
 
-A job is a folder ``<workspace>/.irsim/jobs/<id>`` in the form of those of runs: ``run.json`` says how far it is, a lock
-says that somebody looks after it, ``result.json`` comes last. One without a result that nobody
-looks after any more was interrupted. Processes end with the server, whatever ends that; what they had done is kept.
+A job is a folder ``<workspace>/.irsim/jobs/<id>`` like that of a run: ``run.json`` has its progress, a lock shows that
+a server is in charge of it, ``result.json`` is written at the end. A job without a result of which no server is in
+charge was interrupted. The processes end with their server; the episodes they had completed are kept.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from typing import Any
 import anyio
 
 from irsim.common.text import clean
-from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, written
+from irsim.runs.files import Claim, RunError, claim, json_of, plain_file, replace_file
 from irsim.runs.pruning import DAY, prune, remove
 from irsim.runs.store import (
     LOCK,
     META,
     RESULT,
-    made_folder,
+    make_run_folder,
     mark_cancelled,
     recent_ids,
     run_folders,
@@ -43,27 +43,30 @@ from irsim_mcp.worker import HEAD, Progress, Workers, process_options
 
 __all__ = ["Jobs"]
 
-_KEPT = "jobs"
+_JOBS_FOLDER = "jobs"
 _STEM = "benchmark"
 _CANCEL = "cancel"
+"""File that asks the server in charge of a job to stop it."""
 _QUOTA = 200 * 1000 * 1000
+"""Size in bytes of all jobs of a workspace."""
 PARTIAL = "partial.json"
-"""The result of the episodes that were done when the job was stopped; made of its log when somebody asks first."""
+"""The result of the episodes that a stopped job had completed, made from its log when it is first requested."""
 _LOG = "episodes.jsonl"
-"""Every episode, from the moment that it is done."""
-_PERIOD = 0.5
-"""Seconds between looks at what others want and notes of how far it is."""
-_AFTER = 10
-"""Seconds of computing beyond those of a job: it is ended by the clock, unless nobody looks any more."""
-_POLL = 0.1
+"""Every episode of a job, written as soon as it is done."""
+_PERIOD_S = 0.5
+"""Time between two checks for cancellation, and between two notes of the progress [s]."""
+_EXTRA_CPU_SECONDS = 10
+"""Processor time beyond the limit of a job, which ends it even if its server no longer watches the clock."""
+_POLL_S = 0.1
+"""Time between two looks at the state of a job that a call waits for [s]."""
 
 
 class Jobs:
     """The jobs of one workspace; several servers may share it.
 
     Args:
-        workspace: The folder they stay in.
-        limits: What they may use.
+        workspace: The folder outside which jobs read no files.
+        limits: Resources that jobs may use.
     """
 
     def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
@@ -71,18 +74,18 @@ class Jobs:
         self._workers = Workers(workspace, limits)
 
     def start(self, task: str, arguments: Mapping[str, Any], total: int) -> str:
-        """Begin a job.
+        """Start a job.
 
         Args:
-            task: What to do, a name in :mod:`irsim_mcp.job`.
-            arguments: Arguments of it, as JSON has them.
-            total: How many episodes there are.
+            task: Name of the task in :mod:`irsim_mcp.job`.
+            arguments: Arguments of the task, as JSON types.
+            total: Number of episodes.
 
         Returns:
-            Its id.
+            Id of the job.
 
         Raises:
-            ToolError: As many are running as there may be.
+            ToolError: The maximum number of jobs is running.
         """
         folder = self._folder()
         prune(folder, quota=_QUOTA, age=DAY)
@@ -90,10 +93,10 @@ class Jobs:
         if len(running) >= self._limits.jobs:
             raise failure(
                 "busy",
-                f"{len(running)} jobs are running, which is as many as there may be: {', '.join(running)}",
+                f"{len(running)} jobs are running, which is the maximum: {', '.join(running)}",
                 fix="wait for one with get_job, or cancel it with get_job cancel=true",
             )
-        job = Path(made_folder(folder, _STEM))
+        job = Path(make_run_folder(folder, _STEM))
         held = claim(job / LOCK)
         about = {"id": job.name, "created": time.time(), "done": 0, "total": total}
         _note(job, about)
@@ -105,24 +108,24 @@ class Jobs:
             "resources": {
                 "memory": self._limits.memory,
                 "written": self._limits.written,
-                "cpu": self._limits.job_seconds * (os.cpu_count() or 1) + _AFTER,
+                "cpu": self._limits.job_seconds * (os.cpu_count() or 1) + _EXTRA_CPU_SECONDS,
             },
         }
         _Keeper(job, held, about, work, self._limits.job_seconds).start()
         return job.name
 
     async def wait(self, job_id: str, seconds: float, progress: Progress | None = None) -> dict[str, Any]:
-        """What is known of a job, once it has ended or the time is over.
+        """Wait until a job ends or the time is over, and return its state.
 
         Args:
-            job_id: Which one.
-            seconds: How long to wait for its end.
-            progress: Told how far it is.
+            job_id: Id of the job.
+            seconds: Greatest time to wait for its end [s].
+            progress: Callback ``(episodes_done, episodes_total)``.
 
         Returns:
             ``id``, ``status`` (running, finished, failed, cancelled, interrupted), ``done``, ``total``, and ``result``
-            (of a job that was stopped: of the episodes that were kept; ``why`` and ``fix``, unless somebody wanted it)
-            or ``error`` where there is one.
+            or ``error`` if there is one. The result of a stopped job is that of its completed episodes; if it was not
+            cancelled, ``why`` and ``fix`` say why it stopped.
 
         Raises:
             ToolError: There is no such job.
@@ -132,40 +135,40 @@ class Jobs:
         while True:
             state = _state(job)
             if state["status"] != "running":
-                return await self._told(job)
+                return await self._state_with_partial_result(job)
             if time.monotonic() >= until:
                 return state
             if progress is not None:
                 await progress(state["done"], state["total"])
-            await anyio.sleep(min(_POLL, max(0.0, until - time.monotonic())))
+            await anyio.sleep(min(_POLL_S, max(0.0, until - time.monotonic())))
 
     def cancel(self, job_id: str) -> None:
-        """Have a job stopped, whichever server looks after it."""
+        """Have a job stopped, whichever server is in charge of it."""
         job = self._find(job_id)
         if status_of(job) == "running":
             with suppress(OSError):
                 os.close(os.open(job / _CANCEL, os.O_CREAT | os.O_WRONLY, 0o600))
 
     def known(self, job_id: str) -> bool:
-        """Whether there is a job of that id."""
+        """Whether there is a job with an id."""
         try:
-            folder = runs_folder(self._workspace.root).with_name(_KEPT)
+            folder = runs_folder(self._workspace.root).with_name(_JOBS_FOLDER)
         except RunError:
             return False
         return any(job.name == job_id for job in run_folders(folder))
 
     async def state(self, job_id: str) -> dict[str, Any] | None:
-        """What is known of a job, as :meth:`wait` says it; None if there is none of that id."""
-        return await self._told(self._find(job_id)) if self.known(job_id) else None
+        """State of a job, as :meth:`wait` returns it; None if there is no such job."""
+        return await self._state_with_partial_result(self._find(job_id)) if self.known(job_id) else None
 
     def forget(self, job_id: str) -> None:
-        """Let go of a job that has ended and was told of."""
+        """Delete a job that has ended and whose result the caller has."""
         job = self._find(job_id)
         if status_of(job) != "running":
             remove(job)
 
-    async def _told(self, job: Path) -> dict[str, Any]:
-        """What is known of a job; of one that was stopped with the result of the episodes that it had."""
+    async def _state_with_partial_result(self, job: Path) -> dict[str, Any]:
+        """State of a job; that of a stopped job includes the result of its completed episodes."""
         state = _state(job)
         if state["status"] in ("cancelled", "interrupted") and state["done"] and "result" not in state:
             files = {"log": str(job / _LOG), "to": str(job / PARTIAL)}
@@ -177,9 +180,11 @@ class Jobs:
 
     def _folder(self) -> Path:
         try:
-            folder = runs_folder(self._workspace.root, make=True).with_name(_KEPT)
+            folder = runs_folder(self._workspace.root, make=True).with_name(_JOBS_FOLDER)
             if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
-                raise failure("path-outside-workspace", f"{str(folder)!r} is a link or no folder", fix="remove it")
+                raise failure(
+                    "path-outside-workspace", f"{str(folder)!r} must be a folder, got a link or a file", fix="remove it"
+                )
             folder.mkdir(exist_ok=True)
         except RunError as error:
             raise failure(error.code, error.message, fix=error.fix) from None
@@ -193,14 +198,14 @@ class Jobs:
         found = next((job for job in run_folders(folder) if job.name == job_id), None)
         if found is None:
             recent = recent_ids(folder)
-            fix = f"recent ones are {', '.join(recent)}" if recent else "none is kept here"
-            fix += "; jobs are let go after 24 h: benchmark with the same arguments gives the same again"
+            fix = f"recent ones are {', '.join(recent)}" if recent else "there are no jobs here"
+            fix += "; jobs are deleted after 24 h: benchmark with the same arguments gives the same result again"
             raise failure("unknown-job", f"there is no job {clean(job_id)!r}", where="job_id", fix=fix)
         return found
 
 
 def _state(job: Path) -> dict[str, Any]:
-    """What is known of a job."""
+    """State of a job, from its files."""
     status: str = status_of(job)
     about = json_of(job, META)
     state: dict[str, Any] = {"id": job.name, "status": status, "done": 0, "total": 0}
@@ -217,11 +222,11 @@ def _state(job: Path) -> dict[str, Any]:
         state |= {"why": str(about["why"]), "fix": str(about.get("fix") or "call benchmark again for all")}
     if isinstance(partial := json_of(job, PARTIAL), dict):
         return state | {"result": partial, "done": len(partial["episodes"])}
-    return state | {"done": _logged(job)}
+    return state | {"done": _count_logged(job)}
 
 
-def _logged(job: Path) -> int:
-    """How many episodes are in the log of a job."""
+def _count_logged(job: Path) -> int:
+    """Number of episodes in the log of a job."""
     with suppress(OSError):
         if (log := plain_file(job, _LOG)) is not None:
             return max(0, log.read_bytes().count(b"\n") - 1)
@@ -230,37 +235,37 @@ def _logged(job: Path) -> int:
 
 def _note(job: Path, about: Mapping[str, Any]) -> None:
     text = json.dumps(about)
-    with suppress(RunError):  # the folder may have been removed by somebody
-        written(job / META, text.encode())
+    with suppress(RunError):  # another process may have deleted the folder
+        replace_file(job / META, text.encode())
 
 
 class _Keeper(threading.Thread):
-    """Looks after the process of one job until it has ended."""
+    """Starts the process of one job and watches it until it ends."""
 
     def __init__(self, job: Path, held: Claim, about: dict[str, Any], work: dict[str, Any], seconds: float) -> None:
         super().__init__(daemon=True, name=job.name)
         self._job, self._held, self._about, self._work, self._seconds = job, held, about, work, seconds
 
     def run(self) -> None:
-        """Start the process, note how far it is, keep the result."""
+        """Start the process, write its progress and its result."""
         try:
             answer = self._answer()
             if answer is None:
                 mark_cancelled(self._job)
                 return
-            if "what" in answer.get("error", ()) and _logged(self._job):
+            if "what" in answer.get("error", ()) and _count_logged(self._job):
                 why = {"why": answer["error"]["what"], "fix": answer["error"].get("fix")}
                 _note(self._job, {**self._about, **why})
                 return
             text = answer["text"] if "text" in answer else json.dumps(answer)
             with suppress(OSError, RunError):
-                written(self._job / RESULT, text.encode())
+                replace_file(self._job / RESULT, text.encode())
                 (self._job / _LOG).unlink()
         finally:
             self._held.release()
 
     def _answer(self) -> dict[str, Any] | None:
-        """What the process said at last; None if somebody wanted it stopped."""
+        """The answer of the process; None if the job was cancelled."""
         command, options = process_options()
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
         lines: queue.Queue[bytes] = queue.Queue()
@@ -275,7 +280,7 @@ class _Keeper(threading.Thread):
                 if plain_file(self._job, _CANCEL) is not None or not self._job.is_dir():
                     return None
                 with suppress(queue.Empty):
-                    line = lines.get(timeout=_PERIOD)
+                    line = lines.get(timeout=_PERIOD_S)
                     if not line:
                         return _problem("worker-failed", "the process that did the work ended without a result")
                     if line.startswith(b'{"progress"'):
@@ -285,7 +290,7 @@ class _Keeper(threading.Thread):
                         return {"text": line.decode().strip()[len(HEAD) : -1]}
                     else:
                         return dict(json.loads(line))
-            return _problem("out-of-time", f"{self._seconds:g} s of computing were over")
+            return _problem("out-of-time", f"{self._seconds:g} s of computing time were used up")
         finally:
             _stop(process)
 
@@ -295,7 +300,7 @@ def _problem(code: str, what: str) -> dict[str, Any]:
 
 
 def _read(process: subprocess.Popen[bytes], lines: queue.Queue[bytes]) -> None:
-    """Pass on what the process says; an empty line at its end."""
+    """Put the lines of the process into a queue, and an empty line at the end."""
     assert process.stdout is not None
     with suppress(ValueError, OSError):
         for line in process.stdout:
@@ -304,7 +309,7 @@ def _read(process: subprocess.Popen[bytes], lines: queue.Queue[bytes]) -> None:
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:
-    """The process and those that it has started."""
+    """Kill the process and those that it has started."""
     with suppress(ProcessLookupError, PermissionError):
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)

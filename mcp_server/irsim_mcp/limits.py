@@ -1,4 +1,4 @@
-"""What one call may cost: sizes, counts and times beyond which it is refused or stopped."""
+"""Limits of one call: sizes, counts and times beyond which it is refused or stopped."""
 
 from __future__ import annotations
 
@@ -8,52 +8,58 @@ from pathlib import Path
 from irsim.scenario.limits import Limits
 
 __all__ = [
-    "BEHAVIORS",
-    "EPISODES",
-    "RUN_SECONDS",
-    "SCENARIOS",
-    "SEED",
-    "SEEDS",
-    "STEPS",
-    "WAIT_SECONDS",
+    "MAX_BEHAVIORS",
+    "MAX_EPISODES",
+    "MAX_RUN_SECONDS",
+    "MAX_SCENARIOS",
+    "MAX_SEED",
+    "MAX_SEEDS",
+    "MAX_STEPS",
+    "MAX_WAIT_SECONDS",
     "ServerLimits",
     "scenario_limits",
 ]
 
-STEPS = 5_000
-"""Steps of one run."""
-SCENARIOS, BEHAVIORS, SEEDS, EPISODES = 20, 5, 100, 2_000
-"""Of a benchmark."""
-SEED = 2**53 - 1
-"""Largest seed: beyond, not everybody who reads JSON has whole numbers."""
-WAIT_SECONDS = 50
-"""Longest wait for a job in one call."""
-RUN_SECONDS = 45
-"""Wall-clock time of one run; hosts commonly give up on a call after a minute."""
+MAX_STEPS = 5_000
+"""Number of steps of one run."""
+MAX_SCENARIOS = 20
+"""Number of scenarios of a benchmark."""
+MAX_BEHAVIORS = 5
+"""Number of behaviors of a benchmark."""
+MAX_SEEDS = 100
+"""Number of seeds of a benchmark."""
+MAX_EPISODES = 2_000
+"""Number of episodes of a benchmark."""
+MAX_SEED = 2**53 - 1
+"""Largest seed; some JSON readers cannot represent larger whole numbers."""
+MAX_WAIT_SECONDS = 50
+"""Longest time that one call waits for a job."""
+MAX_RUN_SECONDS = 45
+"""Longest wall-clock time of one run; hosts commonly give up on a call after a minute."""
 
 
 @dataclass(frozen=True)
 class ServerLimits:
-    """Limits of the server; those in the first group can be raised on its command line.
+    """Limits of the server; those of the first group can be changed on its command line.
 
     Attributes:
-        robots: Robots of a scenario.
-        objects: Robots and obstacles of a scenario.
-        work: Steps times objects of one run.
-        workers: Processes at work at the same time.
-        yaml_bytes: Size of a scenario.
-        yaml_events: Values and brackets in it, and as many again that aliases may add.
+        robots: Number of robots of a scenario.
+        objects: Number of robots and obstacles of a scenario.
+        work: Number of steps times objects of one run.
+        workers: Number of worker processes at the same time.
+        yaml_bytes: Size of a scenario [bytes].
+        yaml_events: Number of values and brackets of a scenario, and of those that aliases may add.
         yaml_depth: Nesting of lists and mappings.
-        yaml_aliases: Aliases.
-        check_seconds: Wall-clock time of checking a scenario.
-        draw_seconds: Wall-clock time of a picture.
+        yaml_aliases: Number of aliases.
+        check_seconds: Wall-clock time of validating a scenario [s].
+        draw_seconds: Wall-clock time of drawing a picture [s].
         memory: Address space of a worker [bytes].
-        cells: Cells of a map.
-        map_bytes: Size of a map file.
-        written: Size of a file that a worker writes, which only caches of libraries are [bytes].
-        jobs: Jobs that run at the same time in a workspace.
-        job_seconds: Wall-clock time of a job; each of its processes may compute as long on every core.
-        text: Characters of text in one result, about four to a token.
+        cells: Number of cells of a map.
+        map_bytes: Size of a map file [bytes].
+        written: Size of a file that a worker writes [bytes]; only libraries write such files, as caches.
+        jobs: Number of jobs that run at the same time in a workspace.
+        job_seconds: Wall-clock time of a job [s]; each of its processes may compute this long on every core.
+        text: Number of characters of text in one result, about four per token.
     """
 
     robots: int = 1_000
@@ -77,7 +83,7 @@ class ServerLimits:
 
 
 def scenario_limits(limits: ServerLimits, workspace: Path) -> Limits:
-    """The same for the reader and runner of scenarios, who stays inside the workspace."""
+    """The limits of the loader and of a run, which read no files outside the workspace."""
     return Limits(
         bytes=limits.yaml_bytes,
         events=limits.yaml_events,
@@ -87,7 +93,7 @@ def scenario_limits(limits: ServerLimits, workspace: Path) -> Limits:
         objects=limits.objects,
         robots=limits.robots,
         root=str(workspace),
-        steps=STEPS,
+        steps=MAX_STEPS,
         work=limits.work,
         cells=limits.cells,
         map_bytes=limits.map_bytes,

@@ -1,4 +1,4 @@
-"""Telling the client how far the work is: always more, at most once a second."""
+"""Progress notifications for the client: always increasing, at most one per second."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from irsim_mcp.worker import Progress
 
 __all__ = ["reporter"]
 
-_PERIOD = 1.0
+_PERIOD_S = 1.0
+"""Least time between two notifications [s]."""
 
 
 def reporter(context: Context[Any, Any], unit: str) -> Progress:
-    """A function that passes progress on.
+    """A callback that reports progress to the client.
 
     Args:
-        context: Of the call.
-        unit: What is counted.
+        context: Context of the call.
+        unit: Unit of the counted work, such as ``steps``.
     """
     last, due = -1, 0.0
 
@@ -27,7 +28,7 @@ def reporter(context: Context[Any, Any], unit: str) -> Progress:
         nonlocal last, due
         now = time.monotonic()
         if done > last and now >= due:
-            last, due = done, now + _PERIOD
+            last, due = done, now + _PERIOD_S
             await context.report_progress(done, total, f"{done:,} of at most {total:,} {unit}")
 
     return report

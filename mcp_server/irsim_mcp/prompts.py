@@ -1,4 +1,4 @@
-"""Prompts: the ways of working with the tools, for people to start from."""
+"""Prompts: step-by-step instructions for typical tasks with the tools, which users can start."""
 
 from __future__ import annotations
 
@@ -23,16 +23,18 @@ from irsim_mcp.services import Services
 __all__ = ["DIFFICULTIES", "add_prompts", "drives", "template_names"]
 
 DIFFICULTIES = {
-    "easy": "Leave room: ways at least three times as wide as a robot, few obstacles, nothing that moves against it.",
-    "medium": "Ways of about twice the width of a robot, obstacles on the straight line to the goal, a few that move.",
-    "hard": "Tight ways, crossing traffic and a dead end or two; it must still be possible to arrive.",
+    "easy": "Passages at least three times as wide as a robot, few obstacles, no oncoming traffic.",
+    "medium": "Passages about twice as wide as a robot, obstacles on the straight line to the goal, some moving.",
+    "hard": "Narrow passages, crossing traffic and a dead end or two; the goals must still be reachable.",
 }
-_LONGEST_GOAL = 2_000
-_LONGEST_SCENARIO = 300
+_MAX_GOAL_LENGTH = 2_000
+"""Number of characters of a goal that the prompt repeats."""
+_MAX_SCENARIO_LENGTH = 300
+"""Number of characters of a scenario's name."""
 
 
 def drives() -> list[str]:
-    """Names of the drives, without loading them."""
+    """Names of the drives, read from the file names without importing them."""
     folder = Path(irsim.__file__).parent / "components" / "kinematics"
     return sorted(path.stem for path in folder.glob("[a-z]*.py"))
 
@@ -43,7 +45,7 @@ def template_names() -> tuple[str, ...]:
 
 
 def add_prompts(server: MCPServer, services: Services) -> None:
-    """Register all of them with a server."""
+    """Register the prompts with a server."""
 
     def design_scenario(
         goal: Annotated[str, Field(description="What the scene should show or test, in plain words.")],
@@ -53,7 +55,7 @@ def add_prompts(server: MCPServer, services: Services) -> None:
         _one_of("kinematics", kinematics, drives())
         _one_of("difficulty", difficulty, list(DIFFICULTIES))
         return _DESIGN.format(
-            goal=_quoted(goal, _LONGEST_GOAL),
+            goal=_quoted(goal, _MAX_GOAL_LENGTH),
             kinematics=kinematics,
             difficulty=difficulty,
             meaning=DIFFICULTIES[difficulty],
@@ -72,7 +74,7 @@ def add_prompts(server: MCPServer, services: Services) -> None:
     ) -> str:
         if scenario in template_names():
             return _COMPARE.format(what=f"the template {scenario} (lookup gives its YAML; pass that as text)")
-        if len(scenario) > _LONGEST_SCENARIO:
+        if len(scenario) > _MAX_SCENARIO_LENGTH:
             raise failure("bad-argument", "the name of the scenario is too long", where="scenario")
         return _COMPARE.format(what=f"the file {services.workspace.scenario(scenario, 'scenario')}")
 
@@ -80,20 +82,24 @@ def add_prompts(server: MCPServer, services: Services) -> None:
         (
             design_scenario,
             "Design a scenario",
-            "From a wish in plain words to a scenario that is checked and looked at.",
+            "From a goal in plain words to a scenario that is validated, drawn and simulated.",
         ),
-        (debug_run, "Find out why a run failed", "Look into a recorded run, find the cause, change the scenario, try."),
+        (
+            debug_run,
+            "Find out why a run failed",
+            "Inspect a recorded run, find the cause, change the scenario, test it.",
+        ),
         (
             compare_policies,
             "Compare behaviors",
             "A fair comparison: same scenarios, seeds and horizon, with intervals.",
         ),
     ):
-        server.prompt(title=title, description=description)(_explained(function))
+        server.prompt(title=title, description=description)(_with_protocol_errors(function))
 
 
-def _explained(function: Callable[..., str]) -> Callable[..., str]:
-    """With refusals as errors of the protocol, whose text the client shows."""
+def _with_protocol_errors(function: Callable[..., str]) -> Callable[..., str]:
+    """A prompt whose refusals are errors of the protocol, whose text the client shows."""
 
     @functools.wraps(function)
     def prompt(**arguments: Any) -> str:
@@ -109,11 +115,11 @@ def _one_of(name: str, value: str, choices: list[str]) -> None:
     if value not in choices:
         near = nearest(value, choices)
         fix = f"did you mean {near}?" if near else f"give one of {', '.join(choices)}"
-        raise failure("bad-argument", f"{clean(value)!r} is not accepted", where=name, fix=fix)
+        raise failure("bad-argument", f"{clean(value)!r} is not valid", where=name, fix=fix)
 
 
 def _quoted(text: str, longest: int) -> str:
-    """Words of a user between quotation marks, on one line."""
+    """Text of a user on one line, to be put between quotation marks."""
     return clean(" ".join(text.split()).replace('"', "'"), longest)
 
 
@@ -121,44 +127,45 @@ _DESIGN = """\
 Design a scenario for the robot-navigation simulator irsim that serves this goal: "{goal}"
 Robots use the drive {kinematics}. Difficulty: {difficulty}. {meaning}
 
-1. List the elements that the goal asks for (robots, obstacles, who moves, where goals are), with numbers in m and s.
-2. Call lookup without a topic, then with the nearest template; change that rather than starting from nothing.
-3. Call validate_scenario after each edit, and fix what it reports by code and line, until it is valid and each \
-warning is meant.
-4. Call render_snapshot and look: does everything stand where it should, is there a way to each goal?
-5. Call run_episode with a seed. If the outcome is not what the goal wants, inspect_run says why: change it, and go \
-back to 3.
-6. Give the YAML, each element with the lines that express it, the outcome and the seed; say what could not be done."""
+1. List the elements that the goal needs (robots, obstacles, which of them move, positions of goals), with numbers in \
+m and s.
+2. Call lookup without a topic, then with the closest template; change that template rather than starting from scratch.
+3. Call validate_scenario after each edit, and fix what it reports by code and line, until the scenario is valid and \
+each remaining warning is intended.
+4. Call render_snapshot and look: is everything where it should be, is there a path to each goal?
+5. Call run_episode with a seed. If the outcome does not serve the goal, find the cause with inspect_run, change the \
+scenario and go back to 3.
+6. Report the YAML, each element with the lines that express it, the outcome, the seed, and what could not be done."""
 
 _DEBUG = """\
 Find out why the run {run_id} of the robot-navigation simulator irsim went as it did, and what to change.
 
-1. Call inspect_run with run_id={run_id}, then view="collisions" and view="closest": who, with whom, when, how fast.
-2. Call render_snapshot with that run_id and the step shortly before, and look.
-3. Say the cause in one sentence: what was too fast, too narrow, in the way, aimed wrong, or seen too late.
-4. Change the least that cures it. Call validate_scenario, then run_episode with the same seed, then with two others: \
-a cure for one seed only is none.
+1. Call inspect_run with run_id={run_id}, then view="collisions" and view="closest": which objects, when, how fast.
+2. Call render_snapshot with that run_id and the step shortly before the failure, and look.
+3. State the cause in one sentence: what was too fast, too narrow, in the way, misdirected, or seen too late.
+4. Make the smallest change that removes the cause. Call validate_scenario, then run_episode with the same seed, then \
+with two others: a change that helps with one seed only is not a fix.
 5. Report the cause with its evidence (step, objects, distance), the change, and the outcomes before and after."""
 
 _DEBUG_JOB = """\
 Find out why episodes of the benchmark {job_id} of the robot-navigation simulator irsim failed, and what to change.
 
-1. Call get_job with job_id={job_id} until it has ended, then inspect_run with run_id={job_id}: its episodes, those \
-that failed first, and the call of run_episode that runs one again.
-2. Run one of each kind of failure again; each gives a run_id of its own.
-3. Call inspect_run with that run_id, then view="collisions" and view="closest": who, with whom, when, how fast.
-4. Call render_snapshot with that run_id and the step shortly before, and look.
-5. Say the cause in one sentence: what was too fast, too narrow, in the way, aimed wrong, or seen too late.
-6. Change the least that cures it. Call validate_scenario, then benchmark with the same seeds, then with others: a \
-cure for the seeds you looked at only is none.
+1. Call get_job with job_id={job_id} until it has ended, then inspect_run with run_id={job_id}, which lists its \
+episodes, failed ones first, and the call of run_episode that repeats one.
+2. Repeat one episode of each kind of failure; each returns a run_id of its own.
+3. Call inspect_run with that run_id, then view="collisions" and view="closest": which objects, when, how fast.
+4. Call render_snapshot with that run_id and the step shortly before the failure, and look.
+5. State the cause in one sentence: what was too fast, too narrow, in the way, misdirected, or seen too late.
+6. Make the smallest change that removes the cause. Call validate_scenario, then benchmark with the same seeds, then \
+with others: a change that helps only with the seeds you inspected is not a fix.
 7. Report the causes with their evidence (seed, step, objects), the change, and the table before and after."""
 
 _COMPARE = """\
-Compare the behaviors that could drive the robots in {what} of the robot-navigation simulator irsim, fairly.
+Compare fairly the behaviors that could drive the robots in {what} of the robot-navigation simulator irsim.
 
-1. Call validate_scenario on it; it must be valid. lookup lists the behaviors; take those that fit its drive.
-2. Try one seed of each with run_episode (behavior=…), so that nothing fails for a silly reason.
-3. Call benchmark with all of them over at least 20 seeds, the same scenario and horizon for each; get_job waits for it.
-4. Read the intervals: where they overlap the difference is not shown, so say that, or take more seeds.
-5. Look into one failure of each kind with inspect_run and name its cause.
-6. Report the table with intervals, the seeds, what decides between the behaviors, and what was not tested."""
+1. Call validate_scenario on it; it must be valid. lookup lists the behaviors; choose those that fit its drive.
+2. Try one seed of each with run_episode (behavior=…) to rule out trivial failures.
+3. Call benchmark with all of them over at least 20 seeds, with the same scenario and horizon; get_job waits for it.
+4. Read the intervals: where they overlap, the difference is not significant; say so, or use more seeds.
+5. Inspect one failure of each kind with inspect_run and name its cause.
+6. Report the table with intervals, the seeds, what distinguishes the behaviors, and what was not tested."""

@@ -1,4 +1,4 @@
-"""What ``lookup`` and the resources of the schema answer. Runs in workers: it reads the features, and so the engine."""
+"""Answers of ``lookup`` and of the schema resources. Runs in workers, as it imports the components and the engine."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from irsim.lookup import lookup as look_up
 from irsim.runs.files import RunError
 from irsim.scenario.yaml.modeline import without_modeline
 
-__all__ = ["explained", "schema_text"]
+__all__ = ["explanation", "schema_text"]
 
 _INDEX_TITLE = "What lookup knows"
 _INDEX_HELP = (
-    "Ask for any of these, or for a path such as robot.sensors.lidar2d or world.plot. Templates are whole scenarios; "
+    "Look up any of these, or a path such as robot.sensors.lidar2d or world.plot. Templates are whole scenarios; "
     "empty-room is the smallest. Units: m, s, rad; heading 0 looks along +x and grows counter-clockwise."
 )
 
 
-def explained(topic: str, parameters: dict[str, Any] | None) -> str:
-    """What is known of a topic; of a template its YAML with parameters filled in.
+def explanation(topic: str, parameters: dict[str, Any] | None) -> str:
+    """The explanation of a topic; for a template also its YAML with the parameters filled in.
 
     Raises:
-        RunError: Nothing goes by that name, or a parameter is none.
+        RunError: There is no such topic, or a parameter is invalid.
     """
     if parameters:
         return _template(topic.strip(), parameters)
     try:
         answer = look_up(topic)
     except TopicError as error:
-        fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists what there is"
+        fix = f"did you mean {' or '.join(error.near)}?" if error.near else "lookup without a topic lists all topics"
         raise RunError("unknown-topic", error.message, fix, where="topic") from None
     if answer.kind == "template":
         return _template(answer.topic, {})
@@ -39,12 +39,12 @@ def explained(topic: str, parameters: dict[str, Any] | None) -> str:
         return as_text(answer) + (f"\n\nFor example:\n{answer.example}" if answer.example else "")
     if answer.topic:
         return as_text(answer)
-    groups = {**answer.groups, **look_up("templates").groups}  # with what they are for
+    groups = {**answer.groups, **look_up("templates").groups}  # with the purpose of each template
     return f"{as_text(answer.model_copy(update={'title': _INDEX_TITLE, 'groups': groups}))}\n\n{_INDEX_HELP}"
 
 
 def schema_text(section: str) -> str:
-    """JSON Schema of a part of the language; empty for all of it.
+    """JSON Schema of a part of the language; of all of it for an empty ``section``.
 
     Raises:
         RunError: There is no such part.
@@ -53,7 +53,7 @@ def schema_text(section: str) -> str:
         part = schema_part(section)
     except TopicError as error:
         fix = f"did you mean {' or '.join(error.near)}?" if error.near else "irsim://schema/scenario has all of it"
-        raise RunError("unknown-topic", f"no part of the schema is called {section!r}", fix) from None
+        raise RunError("unknown-topic", f"there is no part {section!r} of the schema", fix) from None
     return json.dumps(part, ensure_ascii=False)
 
 

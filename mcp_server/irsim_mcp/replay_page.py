@@ -1,7 +1,7 @@
-"""The replay of a run for hosts of MCP Apps: one static page that reads the run by itself.
+"""The replay of a run for hosts of MCP Apps: one static page that reads the run through its host.
 
-The page is told the result of ``run_episode`` by the host and reads ``irsim://runs/{run_id}/replay.json`` through it.
-It connects to nothing else, so it asks for no domains.
+The host passes the result of ``run_episode`` to the page, which reads ``irsim://runs/{run_id}/replay.json`` through the
+host. It connects to nothing else, so it needs no permitted domains.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from mcp.server.mcpserver.resources import FunctionResource
 
 __all__ = ["PAGE", "replay_app"]
 
-PAGE = "ui://irsim/runs/replay"
+PAGE = "ui://irsim/replay"
 
 
 def replay_app() -> Apps:
@@ -22,7 +22,7 @@ def replay_app() -> Apps:
             uri=PAGE,
             name="replay",
             title="Replay of a run",
-            description="Shows what run_episode simulated; for hosts, not to be read by models.",
+            description="Shows what run_episode simulated; for hosts, not for models to read.",
             mime_type=APP_MIME_TYPE,
             meta={"ui": {"prefersBorder": True}},
             fn=_html,

@@ -1,4 +1,4 @@
-"""Resources: parts of the JSON Schema of scenario files, and the templates. The tools do not depend on them."""
+"""Resources: parts of the JSON Schema of scenario files, and the templates. The tools work without them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SCHEMA, TEMPLATE = "irsim://schema/{section}", "irsim://templates/{name}"
 
 
 def add_resources(server: MCPServer, services: Services) -> None:
-    """Register all of them with a server."""
+    """Register these resources with a server."""
 
     async def schema(section: str) -> str:
         """JSON Schema of a section, key or component of scenario files, such as world or robot.sensors.lidar2d."""

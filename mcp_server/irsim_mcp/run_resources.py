@@ -1,4 +1,4 @@
-"""Recorded runs as resources: ``irsim://runs/{run_id}/{artifact}``, at most 1 MB at a time. Tools do not need them."""
+"""Recorded runs as resources: ``irsim://runs/{run_id}/{artifact}``, at most 1 MB per read. Tools work without them."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ from irsim_mcp.services import Services
 __all__ = ["RUN", "add_run_resources", "media_type", "uri"]
 
 RUN = "irsim://runs/{run_id}/{artifact}{?from_step,to_step,every,robot,offset}"
-_MOST_BYTES = 1_000_000
-
-
+_MAX_BYTES = 1_000_000
+"""Size of the largest part of a run that one read returns."""
 _TYPES = {".json": "application/json", ".csv": "text/csv", ".yaml": "application/yaml"}
 
 
 def media_type(uri: str) -> str | None:
-    """What a part of a run is, by its name; None for other resources. What begins in the middle of a file is text."""
+    """Media type of a part of a run; None for other resources. A part from the middle of a file is plain text."""
     path, _, query = uri.partition("?")
     if not path.startswith("irsim://runs/"):
         return None
@@ -32,12 +31,12 @@ def media_type(uri: str) -> str | None:
 
 
 def uri(run_id: str, artifact: str) -> str:
-    """Address of a part of a run."""
+    """URI of an artifact of a run."""
     return f"irsim://runs/{run_id}/{artifact}"
 
 
 def add_run_resources(server: MCPServer, services: Services) -> None:
-    """Register the template with a server."""
+    """Register the resource template with a server."""
 
     async def run_artifact(
         run_id: str,
@@ -59,16 +58,16 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
                 every=_number("every", every, least=1),
                 robot=robot,
                 offset=_number("offset", offset),
-                most=_MOST_BYTES,
+                most=_MAX_BYTES,
             )
         except ToolError as error:
             raise ResourceNotFoundError(str(error)) from None
         return str(found["text"])
 
     description = (
-        f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB at a time: files and the data of replay.json go "
-        "on with offset (characters), events and traces with from_step (their next_step); every thins a trace, robot "
-        "picks one object and, in trace.json, adds its ranges."
+        f"Part of a recorded run: {', '.join(ARTIFACTS)}. At most 1 MB per read: files and the data of replay.json "
+        "continue with offset (characters), events and traces with from_step (their next_step); every=N takes every "
+        "Nth step of a trace; robot selects one object and, in trace.json, adds its ranges."
     )
     server.resource(RUN, name="run", title="Recorded run", description=description, mime_type="text/plain")(
         run_artifact
@@ -76,12 +75,12 @@ def add_run_resources(server: MCPServer, services: Services) -> None:
 
 
 def _number(name: str, text: str, *, least: int = 0) -> int:
-    """A number of an address.
+    """A whole number in a URI.
 
     Raises:
-        ToolError: It is none, or less than ``least``.
+        ToolError: The text is not a whole number, or it is less than ``least``.
     """
     if not re.fullmatch("[0-9]{1,15}", text) or int(text) < least:
-        fix = f"give a whole number from {least} on"
-        raise failure("bad-argument", f"{name} is {clean(text, 40)!r}", where=name, fix=fix)
+        what = f"{name} must be a whole number from {least} on, got {clean(text, 40)!r}"
+        raise failure("bad-argument", what, where=name, fix=f"give a whole number from {least} on")
     return int(text)

@@ -1,4 +1,4 @@
-"""The workspace: the one folder that scenarios are read from. Only records of runs are written there."""
+"""The workspace: the only folder from which scenarios are read; only recorded runs and jobs are written to it."""
 
 from __future__ import annotations
 
@@ -15,16 +15,19 @@ from irsim_mcp.errors import failure
 __all__ = ["Workspace"]
 
 _SUFFIXES = (".yaml", ".yml")
-_LOOKED_AT = 2000
-_NAMED = 3
-_LONGEST_NAME = 200
+_MAX_LISTED_FILES = 2000
+"""Number of files of each level that are searched for scenarios."""
+_MAX_NAMED = 3
+"""Number of files that a message suggests."""
+_MAX_NAME_BYTES = 200
+"""Length of the longest name of a file."""
 
 
 class Workspace:
-    """A folder, and which of its files a call may name.
+    """The folder of the workspace, with checks of the paths and ids that calls name.
 
     Args:
-        root: The folder; links in its own path are followed once, here.
+        root: The folder; links in its path are resolved once, here.
     """
 
     def __init__(self, root: Path) -> None:
@@ -34,11 +37,11 @@ class Workspace:
         """The path of a scenario file, relative to the workspace.
 
         Args:
-            name: As the caller wrote it.
+            name: The path as the caller wrote it.
             argument: Name of the argument, for errors.
 
         Raises:
-            ToolError: It leads out of the workspace, or there is no such file.
+            ToolError: The path leads out of the workspace, or there is no such file.
         """
         wrong = why_outside(name, self.root)
         if wrong is not None:
@@ -60,18 +63,21 @@ class Workspace:
         """The path of a scenario file that may be written, relative to the workspace.
 
         Raises:
-            ToolError: It leads out of the workspace or through a link, into a hidden folder, or is no YAML file.
+            ToolError: The path leads out of the workspace, through a link or into a hidden folder, or is not that of a
+                YAML file.
         """
         wrong = why_outside(name, self.root)
         if wrong is not None:
             fix = f"name it relative to the workspace {self.root}, such as room.yaml"
             raise failure("path-outside-workspace", f"{clean(name)!r} {wrong}", where="path", fix=fix)
         path = PurePosixPath(name)
-        if path.suffix not in _SUFFIXES or "\\" in name or ":" in name or len(path.name.encode()) > _LONGEST_NAME:
+        if path.suffix not in _SUFFIXES or "\\" in name or ":" in name or len(path.name.encode()) > _MAX_NAME_BYTES:
             fix = "end it with .yaml, such as rooms/a.yaml"
-            raise failure("bad-argument", f"{clean(name)!r} is no name of a scenario file", where="path", fix=fix)
+            raise failure(
+                "bad-argument", f"{clean(name)!r} is not a valid name of a scenario file", where="path", fix=fix
+            )
         if any(part.startswith(".") for part in path.parts):
-            fix = "choose a folder and a name without a dot in front"
+            fix = "choose a folder and a name that do not begin with a dot"
             raise failure("bad-argument", f"{clean(name)!r} is hidden", where="path", fix=fix)
         on_the_way = [self.root.joinpath(*path.parts[: count + 1]) for count in range(len(path.parts))]
         if any(part.is_symlink() for part in on_the_way):
@@ -82,10 +88,10 @@ class Workspace:
         return path.as_posix()
 
     def check_run(self, run_id: str) -> None:
-        """See that a run is recorded here.
+        """Check that a run is recorded in the workspace.
 
         Raises:
-            ToolError: It is not; names recent ones.
+            ToolError: There is no such run; the message names recent ones.
         """
         try:
             find_run(run_id, self.root)
@@ -93,19 +99,19 @@ class Workspace:
             raise failure(error.code, error.message, where="run_id", fix=error.fix) from None
 
     def runs(self) -> list[str]:
-        """Ids of the recorded runs, the one begun last first."""
+        """Ids of the recorded runs, the one started last first."""
         try:
             return [folder.name for folder in run_folders(runs_folder(self.root))]
         except RunError:
             return []
 
     def mark_cancelled(self, run_id: str) -> None:
-        """Note that a run was stopped on purpose."""
+        """Record that a run was stopped on purpose."""
         with suppress(RunError, OSError):
             mark_cancelled(find_run(run_id, self.root))
 
     def _relative(self, name: str) -> str | None:
-        """The name that an absolute path inside the workspace should have had."""
+        """An absolute path inside the workspace as a path relative to it; None for other paths."""
         try:
             found = Path(name).resolve()
             inside = Path(name).is_absolute() and found.is_file() and found.is_relative_to(self.root)
@@ -114,21 +120,21 @@ class Workspace:
         return found.relative_to(self.root).as_posix() if inside else None
 
     def _advice(self, target: Path, argument: str) -> str:
-        """Scenario files that may be meant."""
+        """A fix that suggests scenario files of the workspace."""
         there = self.scenarios()
-        near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _NAMED, 0.5)
+        near = difflib.get_close_matches(target.relative_to(self.root).as_posix(), there, _MAX_NAMED, 0.5)
         if near:
             return f"did you mean {' or '.join(map(repr, map(clean, near)))}?"
-        some = ", ".join(repr(clean(name)) for name in there[:_NAMED])
+        some = ", ".join(repr(clean(name)) for name in there[:_MAX_NAMED])
         text = "pass the text as scenario_yaml" if argument == "scenario_path" else "give its text"
         return f"the workspace has {some}" if some else f"write the file first, or {text}"
 
     def scenarios(self) -> list[str]:
-        """YAML files of the workspace and of its folders."""
+        """YAML files of the workspace and of its immediate folders."""
         found = []
         for pattern in ("*", "*/*"):
             for count, path in enumerate(self.root.glob(pattern)):
-                if count >= _LOOKED_AT:
+                if count >= _MAX_LISTED_FILES:
                     break
                 name = path.relative_to(self.root).as_posix()
                 if path.suffix.lower() in _SUFFIXES and path.is_file() and why_outside(name, self.root) is None:

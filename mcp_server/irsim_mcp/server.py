@@ -1,4 +1,4 @@
-"""The server: its tools and some resources over one workspace."""
+"""The MCP server: its tools, resources and prompts for one workspace."""
 
 from __future__ import annotations
 
@@ -49,42 +49,43 @@ irsim simulates robots that drive in a flat world: walls and obstacles, several 
 is one YAML document with the keys world, robot and obstacle; lengths are m, times s, angles rad, x points right, y up.
 Work in this order: lookup (index, then the nearest template; for a file of the user only what you change) -> edit \
 the YAML -> validate_scenario until valid -> \
-render_snapshot and look -> run_episode -> if it failed, inspect_run, look at that moment, edit, and again. To compare \
+render_snapshot and look -> run_episode -> if it failed, inspect_run, look at that moment, edit and repeat. To compare \
 behaviors: benchmark, then get_job while it runs. Do not guess keys: lookup explains them, misspelt ones are errors. \
 Say what cannot be done instead of leaving it out.
 Scenarios are given as text (scenario_yaml) or as a file (scenario_path) inside the workspace {workspace}. The server \
-writes no files but records below .irsim; {saving}. The same scenario and seed \
+writes no files except recorded runs and jobs below .irsim; {saving}. The same scenario and seed \
 give the same result."""
 _SAVING = {
-    False: "save YAML yourself if it is to be kept",
-    True: "write_scenario saves a scenario that is to be kept",
+    False: "save YAML that must be kept yourself",
+    True: "write_scenario saves a scenario that must be kept",
 }
-_HOUR, _MINUTE = 3_600_000, 60_000
+_HOUR_MS = 3_600_000
+_MINUTE_MS = 60_000
 
 
 class IrsimServer(MCPServer[Any]):
-    """A server that names the nearest tool when there is none of the name asked for."""
+    """A server that suggests similar names for unknown tools and checks the arguments of prompts."""
 
     async def call_tool(
         self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None
     ) -> CallToolResult | InputRequiredResult:
-        """Call a tool."""
+        """Call a tool, or suggest a similar name if there is no such tool."""
         names = [tool.name for tool in await self.list_tools()]
         if name not in names:
             near = difflib.get_close_matches(name, names, 1)
-            fix = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
+            fix = f"did you mean {near[0]}?" if near else f"the tools are {', '.join(names)}"
             raise failure("unknown-tool", f"there is no tool {clean(name)!r}", fix=fix)
         return await super().call_tool(name, arguments, context)
 
     async def list_resource_templates(self) -> list[ResourceTemplate]:
-        """The templates; without a type where each resource has its own."""
+        """The resource templates; that of runs has no media type, as each artifact has its own."""
         listed = await super().list_resource_templates()
         return [one.model_copy(update={"mime_type": None}) if one.uri_template == RUN else one for one in listed]
 
     async def read_resource(
         self, uri: AnyUrl | str, context: Context[Any, Any] | None = None
     ) -> Iterable[ReadResourceContents] | InputRequiredResult:
-        """Read a resource; parts of runs are of the type of their name."""
+        """Read a resource; artifacts of runs have the media type of their name."""
         found = await super().read_resource(uri, context)
         kind = media_type(str(uri))
         if kind is None or isinstance(found, InputRequiredResult):
@@ -94,10 +95,10 @@ class IrsimServer(MCPServer[Any]):
     async def get_prompt(
         self, name: str, arguments: dict[str, Any] | None = None, context: Context[Any, Any] | None = None
     ) -> GetPromptResult | InputRequiredResult:
-        """Fill in a prompt."""
+        """Fill in a prompt after checking its arguments."""
         prompts = {prompt.name: prompt for prompt in await self.list_prompts()}
         if name not in prompts:
-            fix = f"there are {', '.join(prompts)}"
+            fix = f"the prompts are {', '.join(prompts)}"
             raise MCPError(
                 INVALID_PARAMS, str(failure("unknown-prompt", f"there is no prompt {clean(name)!r}", fix=fix))
             )
@@ -105,19 +106,19 @@ class IrsimServer(MCPServer[Any]):
         missing = [argument for argument, needed in known.items() if needed and argument not in (arguments or {})]
         unknown = [clean(argument) for argument in arguments or {} if argument not in known]
         if missing or unknown:
-            wrong = f"lacks {', '.join(missing)}" if missing else f"takes no {', '.join(unknown[:3])}"
-            refused = failure("bad-argument", f"{name} {wrong}", fix=f"it takes {', '.join(known)}")
+            wrong = f"needs {', '.join(missing)}" if missing else f"has no argument {', '.join(unknown[:3])}"
+            refused = failure("bad-argument", f"{name} {wrong}", fix=f"its arguments are {', '.join(known)}")
             raise MCPError(INVALID_PARAMS, str(refused))
         return await super().get_prompt(name, arguments, context)
 
 
 def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing: bool = False) -> IrsimServer:
-    """Make a server.
+    """Build the server of a workspace.
 
     Args:
-        workspace: The folder that scenarios are read from.
-        limits: What a call may cost.
-        writing: Whether scenarios may be written there, too.
+        workspace: The folder from which scenarios are read.
+        limits: Limits of a call.
+        writing: Whether scenarios may also be written to the workspace.
     """
     limits = limits or ServerLimits()
     folder = Workspace(workspace)
@@ -127,8 +128,10 @@ def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing
     if writing:
         tools.append(write_scenario.tool(services))
     lists = ("tools/list", "prompts/list", "resources/list", "resources/templates/list")
-    caching: dict[Any, CacheHint] = {method: CacheHint(ttl_ms=_HOUR, scope="public") for method in lists}
-    caching["resources/read"] = CacheHint(ttl_ms=_MINUTE, scope="private")  # runs go on
+    caching: dict[Any, CacheHint] = {method: CacheHint(ttl_ms=_HOUR_MS, scope="public") for method in lists}
+    caching["resources/read"] = CacheHint(
+        ttl_ms=_MINUTE_MS, scope="private"
+    )  # recorded runs change while they are simulated
     server = IrsimServer(
         "irsim",
         title="irsim: 2D robot navigation",

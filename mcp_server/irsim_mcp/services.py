@@ -1,4 +1,4 @@
-"""What tools and resources work with."""
+"""Services that tools and resources share: workspace, limits, workers and jobs."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pydantic import Field
 
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import Jobs
-from irsim_mcp.limits import SEED, ServerLimits
+from irsim_mcp.json_answer import Found
+from irsim_mcp.limits import MAX_SEED, ServerLimits
 from irsim_mcp.sandbox import Workspace
-from irsim_mcp.whole import Found
 from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
@@ -21,44 +21,46 @@ ScenarioPath = Annotated[str | None, Field(description="Scenario file: path rela
 ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,
-    Field(ge=0, le=SEED, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."),
+    Field(
+        ge=0, le=MAX_SEED, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."
+    ),
 ]
 
 
 RunId = Annotated[str, Field(max_length=100, description="Of run_episode, or a job_id.")]
 
 
-_MOST_KNOWN = 100
-"""Answers about the language that are kept."""
+_MAX_CACHED = 100
+"""Number of answers about the scenario language that are cached."""
 
 
 @dataclass(frozen=True)
 class Services:
-    """One server's folder, limits and workers."""
+    """Workspace, limits, workers and jobs of one server."""
 
     workspace: Workspace
     limits: ServerLimits
     workers: Workers
     jobs: Jobs
     known: dict[str, str] = field(default_factory=dict)
-    """Answers of :meth:`reference`: the language stays what it is as long as the server runs."""
+    """Cached answers of :meth:`reference`; the scenario language does not change while the server runs."""
 
     async def reference(self, task: str, argument: str, **arguments: Any) -> str:
-        """Have a worker answer about the language; what was asked before is known.
+        """Have a worker answer a question about the scenario language, unless the answer is cached.
 
         Args:
-            task: What to ask.
-            argument: Name of the argument, for errors.
+            task: Name of the task.
+            argument: Name of the tool's argument, for errors.
             **arguments: Arguments of the task.
 
         Raises:
-            ToolError: Nothing is known of it.
+            ToolError: There is no answer.
         """
         question = json.dumps([task, arguments], sort_keys=True)
         if question not in self.known:
             answer = await self.workers.read(task, arguments, seconds=self.limits.check_seconds)
             text = str(_result(answer, argument)["text"])
-            if len(self.known) >= _MOST_KNOWN:
+            if len(self.known) >= _MAX_CACHED:
                 del self.known[next(iter(self.known))]
             self.known[question] = text
         return self.known[question]
@@ -73,14 +75,14 @@ class Services:
         progress: Progress | None = None,
         **arguments: Any,
     ) -> Found:
-        """Have a worker do something with a scenario that is given as a file or as text.
+        """Have a worker do a task with a scenario that is given as a file or as text.
 
         Args:
-            task: What to do.
-            scenario_path: The file.
-            scenario_yaml: Or the text; an empty one counts as none.
-            seconds: Wall-clock time it may take.
-            progress: Told how far it is.
+            task: Name of the task.
+            scenario_path: Path of the file.
+            scenario_yaml: Text of the scenario, instead of ``scenario_path``; an empty text counts as None.
+            seconds: Wall-clock time that it may take [s].
+            progress: Callback ``(steps_done, steps_total)``.
             **arguments: Further arguments of the task.
 
         Raises:
@@ -93,14 +95,14 @@ class Services:
     async def text_job(
         self, task: str, text: str, argument: str, *, path: str, seconds: float, **arguments: Any
     ) -> Found:
-        """Have a worker do something with the text of a file that is not written yet.
+        """Have a worker do a task with the text of a file that is not written yet.
 
         Args:
-            task: What to do.
-            text: The YAML.
-            argument: Name of the argument, for errors.
-            path: The file it is going to be, relative to the workspace.
-            seconds: Wall-clock time it may take.
+            task: Name of the task.
+            text: The YAML text.
+            argument: Name of the tool's argument, for errors.
+            path: Path to which the text will be written, relative to the workspace.
+            seconds: Wall-clock time that it may take [s].
             **arguments: Further arguments of the task.
 
         Raises:
@@ -113,13 +115,13 @@ class Services:
     async def run_job(
         self, task: str, run_id: str, *, seconds: float, progress: Progress | None = None, **arguments: Any
     ) -> Found:
-        """Have a worker do something with a recorded run.
+        """Have a worker do a task with a recorded run.
 
         Args:
-            task: What to do.
-            run_id: Which run of the workspace.
-            seconds: Wall-clock time it may take.
-            progress: Told how far it is.
+            task: Name of the task.
+            run_id: Id of a run of the workspace.
+            seconds: Wall-clock time that it may take [s].
+            progress: Callback ``(steps_done, steps_total)``.
             **arguments: Further arguments of the task.
 
         Raises:
@@ -130,10 +132,10 @@ class Services:
         return _result(answer, "run_id")
 
     def base(self, base: str | None) -> dict[str, Any]:
-        """Arguments for the scenario to compare with; none if there is none.
+        """Arguments of a task for the scenario to compare with; empty without one.
 
         Args:
-            base: A file in the workspace, or YAML text (which has more than one line, or a mapping in braces).
+            base: A file in the workspace, or YAML text (with several lines, or a mapping).
 
         Raises:
             ToolError: The path is refused, or the text is too long.
@@ -147,7 +149,7 @@ class Services:
     def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
         if bool(scenario_path) == bool(scenario_yaml):
             given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"
-            fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
+            fix = "give either scenario_yaml (the YAML text) or scenario_path (a file in the workspace)"
             raise failure("bad-argument", f"{given} given", fix=fix)
         if scenario_path:
             return {"path": self.workspace.scenario(scenario_path)}
@@ -155,7 +157,7 @@ class Services:
         return {"text": self._text(scenario_yaml, "scenario_yaml")}
 
     def scenario_source(self, given: str, argument: str = "scenarios") -> str:
-        """A scenario given as a file of the workspace or, with a line break, as text.
+        """Check a scenario given as a file of the workspace or, with a line break, as text.
 
         Raises:
             ToolError: The path is refused, or the text too large.
@@ -167,7 +169,7 @@ class Services:
         if size > self.limits.yaml_bytes:
             raise failure(
                 "file-too-large",
-                f"{size:,} bytes; a scenario may have {self.limits.yaml_bytes:,}",
+                f"a scenario must have at most {self.limits.yaml_bytes:,} bytes, got {size:,}",
                 where=argument,
                 fix="write groups of objects with 'number' and 'distribution' instead of one by one",
             )
@@ -175,7 +177,11 @@ class Services:
 
 
 def _result(answer: dict[str, Any], argument: str) -> Found:
-    """What a worker found out; raises what went wrong, about an argument."""
+    """The result in a worker's answer.
+
+    Raises:
+        ToolError: The answer is an error, which names ``argument`` as its cause unless it names another.
+    """
     if "error" in answer:
         raise _as_failure(answer["error"], argument)
     result = Found(answer["result"])
@@ -184,7 +190,7 @@ def _result(answer: dict[str, Any], argument: str) -> Found:
 
 
 def line_of(item: dict[str, Any]) -> str:
-    """Where in the text a problem is, if it is in the text."""
+    """The line of a problem, in words; empty if it has none."""
     return "" if item["line"] is None else f" line {item['line']}"
 
 
@@ -199,6 +205,6 @@ def _as_failure(error: dict[str, Any], source: str) -> Exception:
             where=argument,
             fix="validate_scenario lists every problem with its fix",
         )
-    ours = error["code"] == "internal-error"  # nothing that was given is to blame
+    ours = error["code"] == "internal-error"  # no argument is wrong
     where = error.get("where") or (None if ours else argument)
     return failure(error["code"], error["what"], where=where, fix=error.get("fix"))

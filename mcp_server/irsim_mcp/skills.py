@@ -1,4 +1,4 @@
-"""Skills over MCP (SEP-2640): the folders of ``skills/``, each file with its digest, for hosts that load them."""
+"""Skills over MCP (SEP-2640): the folders of ``skills/``, with a digest of each file, for hosts that load them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Skills(Extension):
     """Lists the skills and serves their files.
 
     Args:
-        folder: Where they are, one folder each; those of this package by default.
+        folder: Folder with one folder per skill; default: the skills of this package.
     """
 
     identifier = "io.modelcontextprotocol/skills"
@@ -70,7 +70,7 @@ class Skills(Extension):
 
     async def _list(self, context: ServerRequestContext[Any, Any], params: PaginatedRequestParams) -> dict[str, Any]:
         if params.cursor:
-            refused = failure("bad-argument", "there is one page of skills only", where="cursor", fix="leave it out")
+            refused = failure("bad-argument", "there is only one page of skills", where="cursor", fix="leave it out")
             raise MCPError(INVALID_PARAMS, str(refused))
         return {"skills": [_entry(folder) for folder in self._folders], **_CACHED}
 
@@ -79,12 +79,12 @@ class Skills(Extension):
             if params.uri == _uri(folder, _MAIN):
                 return {"skill": _entry(folder), **_CACHED}
         names = ", ".join(_uri(folder, _MAIN) for folder in self._folders)
-        refused = failure("unknown-skill", f"there is no skill {clean(params.uri)!r}", fix=f"there are {names}")
+        refused = failure("unknown-skill", f"there is no skill {clean(params.uri)!r}", fix=f"the skills are {names}")
         raise MCPError(INVALID_PARAMS, str(refused))
 
 
 def skill_folders(folder: Path) -> list[Path]:
-    """The folders that hold a skill, by name."""
+    """The folders that contain a skill, sorted by name."""
     return sorted(path.parent for path in folder.glob(f"*/{_MAIN}"))
 
 
@@ -108,7 +108,7 @@ def _media_type(name: str) -> str:
 
 
 def _content(path: Path, media_type: str) -> str | bytes:
-    """The file as it is: text keeps its line ends, so that digests fit."""
+    """The unchanged content of a file; text keeps its line endings, so that it matches the digest."""
     data = path.read_bytes()
     return data.decode("utf-8") if media_type.startswith(_TEXT) else data
 
@@ -126,14 +126,14 @@ def _resource(folder: Path, name: str, path: Path) -> FunctionResource:
 
 
 def _description(main: Path) -> str:
-    """The description in the head of a skill, read without a parser of YAML, which is not loaded at start."""
+    """The description in the head of a skill, read without a YAML parser, whose import would slow down the start."""
     head = _HEAD.match(main.read_text(encoding="utf-8"))
     found = _DESCRIPTION.search(head[1]) if head else None
     return " ".join(found[1].split()).strip("\"'") if found else ""
 
 
 def _entry(folder: Path) -> dict[str, Any]:
-    """A skill as clients get it: where it is, its head, all its files with digests."""
+    """A skill as clients get it: its URI, its head, and all its files with digests."""
     head = _HEAD.match((folder / _MAIN).read_text(encoding="utf-8"))
     frontmatter = resources.read_yaml(head[1]) if head else {}
     files = []

@@ -1,4 +1,4 @@
-"""Tools that take no argument they do not know, and whose errors are one line each."""
+"""Tools that refuse unknown arguments and whose errors are one line each."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ from irsim_mcp.errors import failure
 
 __all__ = ["StrictTool", "strict"]
 
-_SHOWN = 60
+_MAX_SHOWN = 60
+"""Number of characters of a wrong value that a message shows."""
 _KINDS = {
     "integer": "an integer",
     "number": "a number",
@@ -32,17 +33,17 @@ _PLURALS = {"integer": "integers", "number": "numbers", "string": "texts"}
 
 
 class StrictTool(Tool):
-    """Refuses unknown arguments instead of ignoring them, and explains bad ones in our own words."""
+    """A tool that refuses unknown arguments instead of ignoring them, and says which values are valid."""
 
     async def run(self, arguments: dict[str, Any], context: Context[Any, Any], convert_result: bool = False) -> Any:
-        """Check the arguments, call the function."""
+        """Check the arguments and call the function."""
         known = list(self.parameters["properties"])
         for name in arguments:
             if name not in known:
                 near = nearest(name, known)
                 fix = f"did you mean {near}?" if near else f"{self.name} takes {', '.join(known)}"
                 raise failure("unknown-argument", f"there is no argument {clean(name)!r}", where=self.name, fix=fix)
-        given = {name: _unpacked(value, self.parameters["properties"][name]) for name, value in arguments.items()}
+        given = {name: _unpack(value, self.parameters["properties"][name]) for name, value in arguments.items()}
         self._check(given)
         try:
             return await super().run(given, context, convert_result)
@@ -56,7 +57,7 @@ class StrictTool(Tool):
             raise ToolError(str(error).removeprefix(f"Error executing tool {self.name}: ")) from None
 
     def _check(self, arguments: Mapping[str, Any]) -> None:
-        """All arguments against the schema, as strictly as JSON is: true is no 1, "10" no 10."""
+        """Check all arguments against the schema as strictly as JSON: true is not 1, and "10" is not 10."""
         from jsonschema import Draft202012Validator
 
         given = {name: value for name, value in arguments.items() if value is not None}
@@ -64,7 +65,7 @@ class StrictTool(Tool):
         if missing:
             fix = "; ".join(f"{name}: {_accepted(self.parameters['properties'][name])}" for name in missing)
             raise failure("bad-argument", f"{' and '.join(missing)} must be given", where=self.name, fix=fix)
-        wrong: dict[str, Any] = {}  # of each argument the first
+        wrong: dict[str, Any] = {}  # the first error of each argument
         for error in Draft202012Validator(self.parameters).iter_errors(given):
             wrong.setdefault(str(error.absolute_path[0]), error)
         if not wrong:
@@ -73,9 +74,9 @@ class StrictTool(Tool):
         accepted = {place: _accepted(error.schema, error.instance) for place, error in errors.items()}
         if len(errors) == 1:
             ((where, error),) = errors.items()
-            what, fix = f"{_shown(error.instance)} is not accepted", accepted[where]
+            what, fix = f"{_shown(error.instance)} is not valid", accepted[where]
         else:
-            what = "; ".join(f"{place} does not accept {_shown(error.instance)}" for place, error in errors.items())
+            what = "; ".join(f"{place} must not be {_shown(error.instance)}" for place, error in errors.items())
             where, fix = self.name, "; ".join(f"{place}: {text}" for place, text in accepted.items())
         raise failure("bad-argument", what, where=where, fix=fix)
 
@@ -85,22 +86,22 @@ class StrictTool(Tool):
         name = path[0] if path else self.name
         return failure(
             "bad-argument",
-            f"{_shown(arguments.get(name))} is not accepted: {first['msg'].lower()}",
+            f"{_shown(arguments.get(name))} is not valid: {first['msg'].lower()}",
             where=".".join(path) or self.name,
             fix=_accepted(self.parameters["properties"].get(name, {})),
         )
 
 
 class _AsGiven(FuncMetadata):
-    """Arguments as they came: the SDK would read a scenario that is written as JSON text."""
+    """Metadata that leaves arguments unchanged: the SDK would parse a scenario that is written as JSON text."""
 
     def pre_parse_json(self, data: dict[str, Any]) -> dict[str, Any]:
-        """Leave everything as it is."""
+        """Return the arguments unchanged."""
         return data
 
 
-def _unpacked(value: Any, schema: Mapping[str, Any]) -> Any:
-    """Some hosts pack lists and objects into text."""
+def _unpack(value: Any, schema: Mapping[str, Any]) -> Any:
+    """Parse a list or object that is given as JSON text, as some hosts do."""
     if isinstance(value, str) and schema.get("type") in ("array", "object"):
         try:
             return json.loads(value)
@@ -110,7 +111,7 @@ def _unpacked(value: Any, schema: Mapping[str, Any]) -> Any:
 
 
 def _shown(value: Any) -> str:
-    return clean(json.dumps(value, ensure_ascii=False, default=str), _SHOWN)
+    return clean(json.dumps(value, ensure_ascii=False, default=str), _MAX_SHOWN)
 
 
 def strict(
@@ -127,12 +128,12 @@ def strict(
     """Make a tool of a function.
 
     Args:
-        function: Its parameters become the arguments.
-        title: For people.
-        description: For models: what, when, what comes back, what to do next.
-        read_only: Whether it changes nothing.
-        idempotent: Whether the same call again gives the same.
-        destructive: Whether it may destroy something.
+        function: The function, whose parameters become the arguments of the tool.
+        title: Title for users.
+        description: Description for models: what it does, when to use it, what it returns, what to do next.
+        read_only: Whether the tool changes nothing.
+        idempotent: Whether repeating a call has no further effect.
+        destructive: Whether it may overwrite or delete something.
         open_world: Whether it reaches beyond this machine.
         page: Resource that shows its results, for hosts of MCP Apps.
     """
@@ -154,14 +155,14 @@ def strict(
     tool.parameters = {**_slim(tool.parameters), "additionalProperties": False}
     if tool.fn_metadata.output_schema is not None:
         output = _slim(tool.fn_metadata.output_schema)
-        output.pop("description", None)  # the tool's own says more
+        output.pop("description", None)  # the description of the tool says more
         tool.fn_metadata.output_schema = output
     assert isinstance(tool, StrictTool)
     return tool
 
 
 def _slim(schema: Any) -> Any:
-    """A schema without what tells a model nothing: titles, empty defaults, null beside the type of what is optional."""
+    """A schema without parts that do not help a model: titles, empty defaults, null as type of optional arguments."""
     if isinstance(schema, list):
         return [_slim(item) for item in schema]
     if not isinstance(schema, dict):
@@ -184,7 +185,7 @@ def _slim(schema: Any) -> Any:
 
 
 def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
-    """What an argument takes, in words; of many names the one that was meant."""
+    """What an argument accepts, in words; for many names only the one most similar to the given value."""
     if "enum" in schema:
         near = nearest(given, schema["enum"]) if isinstance(given, str) and len(schema["enum"]) > 2 else None
         return f"did you mean {near}?" if near else f"give one of {', '.join(map(str, schema['enum']))}"

@@ -1,4 +1,4 @@
-"""Work in processes of their own: one for each call, with limits, gone when the call is over for whatever reason."""
+"""Worker processes: one for each call, with limited resources, killed when the call ends for any reason."""
 
 from __future__ import annotations
 
@@ -24,16 +24,19 @@ from irsim_mcp.sandbox import Workspace
 __all__ = ["HEAD", "Progress", "Workers", "missing_limits", "process_options"]
 
 Progress = Callable[[int, int], Awaitable[None]]
-"""Told (steps done, steps at most)."""
+"""Callback ``(steps_done, steps_total)``."""
 
 HEAD = '{"result": '
-"""What the line with the result begins with; it ends with a brace."""
-_LONGEST_ANSWER = 16 * 1024**2
-_STARTING = 1.0
-"""Seconds that starting a process takes, added to the time of the work."""
-_READERS = 2
-_POLL = 0.02
-_KEPT = (
+"""Beginning of the line with the result, which ends with a brace."""
+_MAX_ANSWER_BYTES = 16 * 1024**2
+"""Size of the longest line of an answer."""
+_START_SECONDS = 1.0
+"""Time that starting a process takes [s], added to the time of the work."""
+_MAX_READERS = 2
+"""Number of processes for short work at the same time."""
+_POLL_S = 0.02
+"""Time between two looks whether a process for short work is free [s]."""
+_INHERITED = (
     ("APPDATA", "LOCALAPPDATA", "PATHEXT", "SYSTEMDRIVE", "SYSTEMROOT", "TEMP", "TMP", "USERPROFILE")
     if os.name == "nt"
     else (
@@ -48,21 +51,23 @@ _KEPT = (
         "XDG_CONFIG_HOME",
     )
 )
+"""Environment variables that a worker inherits."""
 _SET = {
     "MPLBACKEND": "Agg",
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
-    "PYDANTIC_DISABLE_PLUGINS": "__all__",  # it would look for them in the metadata of every installed package
+    "PYDANTIC_DISABLE_PLUGINS": "__all__",  # it would search the metadata of every installed package for plug-ins
 }
+"""Environment variables that are set for a worker."""
 
 
 class Workers:
-    """At most so many processes at a time; the next call is told to come back.
+    """Starts worker processes, up to a limit beyond which calls are refused as ``busy``.
 
     Args:
-        workspace: The folder they stay in.
-        limits: What they may use.
+        workspace: The folder outside which workers read no files.
+        limits: Resources that workers may use.
     """
 
     def __init__(self, workspace: Workspace, limits: ServerLimits) -> None:
@@ -70,9 +75,9 @@ class Workers:
         self._at_work = self._reading = 0
 
     async def read(self, task: str, arguments: Mapping[str, Any], *, seconds: float) -> dict[str, Any]:
-        """The same as :meth:`call` for short work that takes nobody's place: a few at a time, the others wait."""
-        while self._reading >= _READERS:
-            await anyio.sleep(_POLL)
+        """Like :meth:`call`, for short work, which does not count towards the limit: further calls wait."""
+        while self._reading >= _MAX_READERS:
+            await anyio.sleep(_POLL_S)
         self._reading += 1
         try:
             return await self._work({"task": task, "arguments": dict(arguments)}, seconds, None)
@@ -82,23 +87,23 @@ class Workers:
     async def call(
         self, task: str, arguments: Mapping[str, Any], *, seconds: float, progress: Progress | None = None
     ) -> dict[str, Any]:
-        """Do something in a process of its own and wait for the result.
+        """Do a task in a process of its own and wait for the result.
 
-        The process is killed when the time is over, when the call is cancelled and when the server ends.
+        The process is killed when its time is used up, when the call is cancelled and when the server ends.
 
         Args:
-            task: What to do, a name in :mod:`irsim_mcp.job`.
-            arguments: Arguments of it, as JSON has them.
-            seconds: Wall-clock time it may take.
-            progress: Told how far it is.
+            task: Name of the task in :mod:`irsim_mcp.job`.
+            arguments: Arguments of the task, as JSON types.
+            seconds: Wall-clock time that it may take [s].
+            progress: Callback ``(steps_done, steps_total)``.
 
         Raises:
-            ToolError: There are too many at work, the work failed, or time was over.
+            ToolError: Too many processes are running, the task failed, or its time was used up.
         """
         if self._at_work >= self._limits.workers:
             raise failure(
                 "busy",
-                f"{self._at_work} calls are being worked on, which is as many as there may be",
+                f"{self._at_work} calls are being processed, which is the maximum",
                 fix="wait until one of them has returned, then call again",
             )
         self._at_work += 1
@@ -113,7 +118,7 @@ class Workers:
         job["resources"] = {
             "memory": self._limits.memory,
             "written": self._limits.written,
-            "cpu": int(seconds + _STARTING) + 2,
+            "cpu": int(seconds + _START_SECONDS) + 2,
         }
         command, options = process_options()
         process = await anyio.open_process(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, **options)
@@ -121,7 +126,7 @@ class Workers:
         run: str | None = None
         cancelled = False
         try:
-            with anyio.move_on_after(seconds + _STARTING):
+            with anyio.move_on_after(seconds + _START_SECONDS):
                 assert process.stdin is not None
                 assert process.stdout is not None
                 with suppress(OSError, anyio.BrokenResourceError):
@@ -129,7 +134,7 @@ class Workers:
                 lines = BufferedByteReceiveStream(process.stdout)
                 while True:
                     try:
-                        line = await lines.receive_until(b"\n", _LONGEST_ANSWER)
+                        line = await lines.receive_until(b"\n", _MAX_ANSWER_BYTES)
                         message = json.loads(line)
                     except (anyio.EndOfStream, anyio.IncompleteRead, anyio.DelimiterNotFound):
                         await process.wait()
@@ -142,7 +147,7 @@ class Workers:
                     reached = (message["progress"][0], message["progress"][1])
                     if progress is not None:
                         await progress(*reached)
-            raise _gone(process.returncode, seconds, reached, run)
+            raise _failure_of(process.returncode, seconds, reached, run)
         except anyio.get_cancelled_exc_class():
             cancelled = True
             raise
@@ -163,31 +168,31 @@ async def _end(process: Process) -> None:
     await process.aclose()
 
 
-def _gone(code: int | None, seconds: float, reached: tuple[int, int] | None, run: str | None) -> Exception:
+def _failure_of(code: int | None, seconds: float, reached: tuple[int, int] | None, run: str | None) -> Exception:
     """The error for a process that gave no result; ``code`` is None if it had to be stopped."""
-    kept = "" if run is None else f"; inspect_run run_id={run} shows how far it came"
+    kept = "" if run is None else f"; inspect_run run_id={run} shows the steps until then"
     done = "" if reached is None else f" after {reached[0]:,} of {reached[1]:,} steps"
     if code is None or (os.name == "posix" and code == -signal.SIGXCPU):
         fix = "use fewer objects or lidar beams"
         if reached is not None:
             fix = f"ask for fewer steps (about {max(1, reached[0] * 9 // 10):,} fit), or {fix}"
-        return failure("out-of-time", f"{seconds:g} s of computing were over{done}", fix=fix + kept)
+        return failure("out-of-time", f"{seconds:g} s of computing time were used up{done}", fix=fix + kept)
     fix = "use fewer objects or lidar beams; if it happens with a small scenario too, please report it"
     return failure("worker-failed", f"the process that did the work ended with code {code}{done}", fix=fix + kept)
 
 
 def process_options() -> tuple[list[str], dict[str, Any]]:
-    """Command of a worker, and how to start it: with few variables, in a session of its own."""
+    """Command of a worker, and options to start it with few environment variables in a session of its own."""
     return _command(), {
         "stderr": None,
         "cwd": Path(__file__).parent,
-        "env": {name: os.environ[name] for name in _KEPT if name in os.environ} | _SET,
+        "env": {name: os.environ[name] for name in _INHERITED if name in os.environ} | _SET,
         "start_new_session": True,
     }
 
 
 def _command() -> list[str]:
-    """Isolated: neither the workspace nor the user's environment decides what is imported."""
+    """Command that starts Python isolated, so that neither workspace nor environment affects what is imported."""
     isolated = [sys.executable, "-I", "-X", "utf8"]
     site = _user_site()
     if str(Path(__file__)).startswith(site + os.sep):  # installed with pip --user, which -I leaves out
@@ -202,7 +207,7 @@ def _user_site() -> str:
 
 
 def missing_limits() -> list[str]:
-    """What workers can't be kept from on this system, in words."""
+    """Messages about limits that cannot be enforced on this system."""
     if os.name == "posix":
         return []
-    return ["memory and processor time of a worker are not limited here, only its running time"]
+    return ["memory and processor time of a worker are not limited on this system, only its running time"]

@@ -1,4 +1,4 @@
-"""Writing a file below a folder, at once and never through a link, whoever else changes the folder meanwhile."""
+"""Write a file below a folder atomically and never through a link, even if others change the folder meanwhile."""
 
 from __future__ import annotations
 
@@ -19,36 +19,38 @@ _TEMPORARY = ".new-"
 
 
 def write_file(root: Path, name: str, data: bytes, overwrite: bool) -> bool:
-    """Write a file by way of a temporary one, so that nobody ever sees half of it.
+    """Write a file by renaming a temporary one, so that no reader ever sees half of it.
 
     Args:
-        root: The folder to stay in.
-        name: Path of the file relative to it, with ``/``, already checked; folders that are missing are made.
-        data: What to write.
-        overwrite: Whether a file of that name may be replaced.
+        root: The folder outside which nothing is written.
+        name: Checked path of the file relative to it, with ``/``; missing folders are created.
+        data: Content of the file.
+        overwrite: Whether an existing file may be replaced.
 
     Returns:
-        Whether one was.
+        Whether a file was replaced.
 
     Raises:
-        ToolError: The file exists, something on the way is a link or no folder, or the system refuses.
+        ToolError: The file exists, a part of the path is a link or not a folder, or the operating system refuses.
     """
     *folders, last = name.split("/")
     try:
-        with _descended(root, folders) as (folder, descriptor):
-            return _written(folder, descriptor, last, data, overwrite)
+        with _open_folder(root, folders) as (folder, descriptor):
+            return _write_into(folder, descriptor, last, data, overwrite)
     except FileExistsError:
         what = f"{clean(name)!r} exists already"
-        raise failure("file-exists", what, where="path", fix="overwrite=true replaces it; or choose another") from None
+        raise failure(
+            "file-exists", what, where="path", fix="overwrite=true replaces it; or choose another name"
+        ) from None
     except OSError as error:
         what = f"{clean(name)!r} cannot be written: {error.strerror or error}"
-        fix = "use folders that are no links, and check permissions and the space left"
+        fix = "use folders that are not links, and check permissions and free space"
         raise failure("file-access", what, where="path", fix=fix) from None
 
 
 @contextmanager
-def _descended(root: Path, folders: list[str]) -> Iterator[tuple[Path, int | None]]:
-    """The folder to write in, and a descriptor of it where the system can work with those."""
+def _open_folder(root: Path, folders: list[str]) -> Iterator[tuple[Path, int | None]]:
+    """The folder to write to, and a descriptor of it on systems that support paths relative to descriptors."""
     if not _BY_DESCRIPTOR:
         folder = root.joinpath(*folders)
         folder.mkdir(parents=True, exist_ok=True)
@@ -67,7 +69,7 @@ def _descended(root: Path, folders: list[str]) -> Iterator[tuple[Path, int | Non
         os.close(descriptor)
 
 
-def _written(folder: Path, descriptor: int | None, name: str, data: bytes, overwrite: bool) -> bool:
+def _write_into(folder: Path, descriptor: int | None, name: str, data: bytes, overwrite: bool) -> bool:
     temporary, target = str(folder / f"{_TEMPORARY}{secrets.token_hex(6)}"), str(folder / name)
     file = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644, dir_fd=descriptor)
     try:
@@ -76,29 +78,29 @@ def _written(folder: Path, descriptor: int | None, name: str, data: bytes, overw
             stream.flush()
             os.fsync(stream.fileno())
         if not overwrite:
-            _moved_to_new(temporary, target, descriptor)
+            _rename_to_new(temporary, target, descriptor)
             return False
-        there = _is_there(target, descriptor)
-        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)  # a link itself, not where it leads
+        there = _exists(target, descriptor)
+        os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)  # replaces a link, not its target
         return there
     finally:
         with suppress(FileNotFoundError):
             os.unlink(temporary, dir_fd=descriptor)
 
 
-def _moved_to_new(temporary: str, target: str, descriptor: int | None) -> None:
-    """Give a file a name that nothing has yet, in one go."""
+def _rename_to_new(temporary: str, target: str, descriptor: int | None) -> None:
+    """Rename a file atomically to a name that does not exist yet."""
     try:
         os.link(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
     except FileExistsError:
         raise
-    except (OSError, NotImplementedError):  # a file system without links
-        if _is_there(target, descriptor):
+    except (OSError, NotImplementedError):  # a file system without hard links
+        if _exists(target, descriptor):
             raise FileExistsError from None
         os.replace(temporary, target, src_dir_fd=descriptor, dst_dir_fd=descriptor)
 
 
-def _is_there(target: str, descriptor: int | None) -> bool:
+def _exists(target: str, descriptor: int | None) -> bool:
     try:
         os.stat(target, dir_fd=descriptor, follow_symlinks=False)
     except FileNotFoundError:

@@ -67,7 +67,7 @@ def test_seeds_mean_what_the_command_line_means(seeds: Any, meant: list[int]) ->
     "seeds", ["x", "9-2", "1.5", "", 1.5, True, None, [1.5], ["3"], [True], {"a": 1}, b"12", [[1]]]
 )
 def test_what_is_no_seed_is_told(seeds: Any) -> None:
-    with pytest.raises(BenchmarkError, match=r"is no seed, nor several\. Fix: give how many, such as 20, or which"):
+    with pytest.raises(BenchmarkError, match=r"is not a valid seed or list of seeds\. Fix: give the number of seeds"):
         irsim.benchmark(TEXT, "dash", seeds)
 
 
@@ -114,7 +114,7 @@ def test_texts_are_strings(text: Any) -> None:
         lambda: irsim.validate(text=TEXT, base_text=text),
     ]
     for call in calls:
-        with pytest.raises(ArgumentError, match=r"the text is .* Fix: (decode it|give the YAML)"):
+        with pytest.raises(ArgumentError, match=r"text must be a string, got .* Fix: (decode it|give the YAML)"):
             call()
 
 
@@ -122,9 +122,9 @@ def test_texts_are_strings(text: Any) -> None:
 def test_paths_are_paths(path: Any) -> None:
     calls: list[Callable[[Any], object]] = [irsim.validate, irsim.run, irsim.fix]
     for call in calls:
-        with pytest.raises(ArgumentError, match=r"the path is .* Fix: give the path of a file, or its content as text"):
+        with pytest.raises(ArgumentError, match=r"path must be the path of a file, got .* Fix: give the path"):
             call(path)
-    told = r"files\[0\] is .*" if isinstance(path, list) else "files is .*"
+    told = r"files\[0\] must be .*" if isinstance(path, list) else "files must be .*"
     with pytest.raises(ArgumentError, match=told + "Fix: give a path"):
         irsim.benchmark([3] if isinstance(path, list) else path)  # type: ignore[list-item]
 

@@ -33,7 +33,7 @@ def tried(
     more: str = "behavior: {name: dash}",
     world: str = "{width: 10, height: 8}",
     obstacle: str = "",
-) -> irsim.results.results.DryRun:
+) -> irsim.results.validation.DryRun:
     text = f"world: {world}\nrobot:\n" + ROBOT.format(state=state, goal=goal, more=more)
     if obstacle:
         text += f"obstacle:\n  - {obstacle}\n"
@@ -134,7 +134,7 @@ def test_what_is_tried_does_not_depend_on_the_clock(monkeypatch: pytest.MonkeyPa
     found = dry_run(scenario, seed=1, budget=30_000)
     assert time.monotonic() - begin < 5
     assert found.ended == "budget"
-    monkeypatch.setattr("irsim.validation.dry_run._CHUNK", 1e-6)  # as on a machine that is far slower
+    monkeypatch.setattr("irsim.validation.dry_run._CLOCK_PERIOD_S", 1e-6)  # as on a machine that is far slower
     assert dry_run(scenario, seed=1, budget=30_000) == found
 
 
@@ -174,7 +174,7 @@ def test_the_clock_is_the_last_resort_and_told() -> None:
     assert (cut.ended, cut.arrived) == ("budget", [])
     assert 1 < cut.steps < 100_000
     assert cut.summary.startswith(
-        f"in the first {seconds(cut.sim_time)} only, after which 0.1 s of computing were over"
+        f"in the first {seconds(cut.sim_time)} only, after which 0.1 s of computing time were used up"
     )
     assert "computing" not in dry_run(scenario, budget=1000).summary
 
@@ -182,7 +182,7 @@ def test_the_clock_is_the_last_resort_and_told() -> None:
 def test_how_often_it_looks_at_the_clock_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     scenario, _ = read_scenario(scenario_file("circle-swap"), strict=True)
     found = dry_run(scenario)
-    monkeypatch.setattr("irsim.validation.dry_run._CHUNK", 0.0)  # after each step
+    monkeypatch.setattr("irsim.validation.dry_run._CLOCK_PERIOD_S", 0.0)  # after each step
     assert dry_run(scenario) == found
 
 
@@ -219,7 +219,7 @@ obstacle:
 def test_people_who_stand_since_they_met_are_counted_though_all_robots_arrived() -> None:
     report = irsim.validate(text=PEOPLE, simulate=True)
     assert report.dry_run is not None
-    told = "2 of 2 moving obstacles stand since a collision ('east' hit 'west' at "
+    told = "2 of 2 moving obstacles were stopped by a collision ('east' hit 'west' at "
     assert report.dry_run.jammed == ["east", "west"]
     assert told in report.dry_run.summary
     result = irsim.run(text=PEOPLE)
@@ -227,7 +227,7 @@ def test_people_who_stand_since_they_met_are_counted_though_all_robots_arrived()
     assert told in result.summary
     passing = irsim.run(text=PEOPLE.replace("20}", "20, collision_mode: unobstructed_obstacles}", 1))
     assert passing.jammed == []
-    assert "since a collision" not in passing.summary
+    assert "stopped by a collision" not in passing.summary
 
 
 def test_a_robot_that_stands_before_them_is_told_that_they_stand_since_a_collision() -> None:
@@ -243,8 +243,8 @@ obstacle:
 """
     report = irsim.validate(text=blocked, simulate=True)
     assert report.dry_run is not None
-    assert "m from it and stands since a collision at " in report.dry_run.stuck[0].why
-    assert "m from it and stands since a collision at " in str(irsim.run(text=blocked).reason)
+    assert "m from it and has been stopped since a collision at " in report.dry_run.stuck[0].why
+    assert "m from it and has been stopped since a collision at " in str(irsim.run(text=blocked).reason)
 
 
 def test_more_robots_that_stand_than_are_listed_are_counted() -> None:
@@ -257,7 +257,7 @@ def test_more_robots_that_stand_than_are_listed_are_counted() -> None:
     report = irsim.validate(text=many, simulate=True)
     assert report.dry_run is not None, report.findings
     assert len(report.dry_run.stuck) == 10
-    assert "; 24 more get nowhere" in report.dry_run.summary
+    assert "; 24 more make no progress" in report.dry_run.summary
 
 
 def test_a_slow_robot_does_not_stand_and_a_cut_look_says_so() -> None:

@@ -16,7 +16,7 @@ from irsim.cli.app import app
 from irsim.diagnostics.errors import OverLimitError, ScenarioError
 from irsim.runs import open_run
 from irsim.runs.inspection import inspect_run
-from irsim.runs.resimulation import replayed
+from irsim.runs.resimulation import resimulate
 from irsim.scenario.limits import Limits
 
 ROBOT = """\
@@ -99,7 +99,7 @@ def test_failures_say_why(scenario: str, reason: str) -> None:
 def test_a_horizon_beyond_the_limit_is_cut_and_said() -> None:
     result = irsim.run(text=text(19, world=", time_limit: 100"), limits=Limits(steps=20))
     assert (result.steps, result.time_limit_from) == (20, "limits")
-    assert "the most steps of one run here" in str(result.reason)
+    assert "the maximum number of steps of one run here" in str(result.reason)
     assert "--steps 20" in result.reproduce
 
 
@@ -153,7 +153,7 @@ def test_a_record_of_a_run_with_another_behavior_is_shown_as_it_was(tmp_path: Pa
     result = irsim.run(text=text(extra=""), behavior="dash", record=tmp_path / "run")
     run = open_run(tmp_path / "run")
     assert run.scenario_text == text(extra="")
-    env = replayed(run)
+    env = resimulate(run)
     try:
         assert env.robot.state[0, 0] == pytest.approx(result.robots[0].pose[0], abs=1e-12)
         assert env.robot.arrive

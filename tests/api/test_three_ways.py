@@ -14,14 +14,14 @@ from typing import Any
 
 import anyio
 import pytest
-from irsim_mcp.jobs import Jobs
-from irsim_mcp.limits import ServerLimits
-from irsim_mcp.sandbox import Workspace
 from typer.testing import CliRunner
 
 import irsim
 from irsim.bundled import templates
 from irsim.cli.app import app
+from irsim_mcp.jobs import Jobs
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.sandbox import Workspace
 from tests.mcp.conftest import connected, text_of
 
 LEFT_OUT = re.compile(rb'("run_id":)(?:"[^"]*"|null)|("artifacts":)\{[^}]*\}|("files":)\[[^]]*\]')

@@ -56,7 +56,7 @@ def test_each_episode_is_what_run_gives(files) -> None:
 
 
 def test_results_do_not_depend_on_the_number_of_processes(files, monkeypatch) -> None:
-    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
     told = []
     one = irsim.benchmark(files, ["rvo", "orca"], 6, workers=1)
     many = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, progress=lambda *now: told.append(now))
@@ -85,7 +85,7 @@ def test_a_log_has_every_episode_from_the_moment_it_is_done(files, tmp_path) -> 
 
 
 def test_a_log_is_in_order_whoever_computed_and_may_end_in_the_middle_of_a_line(files, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
     log = tmp_path / "episodes.jsonl"
     whole = irsim.benchmark(files, ["rvo", "orca"], 6, workers=3, log=log)
     assert irsim.benchmarks.logged(log).model_dump_json() == whole.model_dump_json()
@@ -115,7 +115,7 @@ def test_what_is_stopped_has_as_much_of_every_behavior(files, tmp_path) -> None:
 def test_what_is_no_log_is_told(files, tmp_path) -> None:
     for text in ("", "{}\n", "what\n", '{"number": 1}\n'):
         (tmp_path / "log").write_text(text)
-        with pytest.raises(irsim.runs.RunError, match="is no log of a benchmark"):
+        with pytest.raises(irsim.runs.RunError, match="is not a log of a benchmark"):
             irsim.benchmarks.logged(tmp_path / "log")
     with pytest.raises(irsim.runs.RunError, match="cannot be written: No such file"):
         irsim.benchmark(files, log=tmp_path / "no" / "log")
@@ -277,7 +277,7 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
         irsim.benchmark(files, "rov")
     with pytest.raises(BenchmarkError, match="given twice"):
         irsim.benchmark([files[0], files[0]])
-    with pytest.raises(BenchmarkError, match="no seeds"):
+    with pytest.raises(BenchmarkError, match="at least one seed"):
         irsim.benchmark(files, seeds=0)
     with pytest.raises(BenchmarkError, match="outside"):
         irsim.benchmark(files, seeds=[-1])
@@ -290,7 +290,7 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
 
 
 def test_an_episode_that_fails_is_raised_as_it_is(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
     path = tmp_path / "full.yaml"
     path.write_text(CROWD.replace("number: 3", "number: 30").replace("radius: 0.2", "radius: 0.7"))
     with pytest.raises(PlacementError, match="seed 0"):
@@ -298,7 +298,7 @@ def test_an_episode_that_fails_is_raised_as_it_is(tmp_path, monkeypatch) -> None
 
 
 def test_a_behavior_that_only_this_program_knows(files, monkeypatch) -> None:
-    monkeypatch.setattr(pool_module, "_PATIENCE", 0.0)
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
 
     @irsim.register_behavior("diff", "creep_along_here")
     def creep(ego_object, external_objects, **kwargs):

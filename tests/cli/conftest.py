@@ -13,6 +13,8 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
+from tests.warm import warm
+
 Run = Callable[..., Result]
 Spawn = Callable[..., "subprocess.CompletedProcess[str]"]
 
@@ -66,7 +68,7 @@ def spawn(tmp_path: Path) -> Spawn:
         options.setdefault("timeout", 60)
         environment = {**os.environ, "COLUMNS": "100"}
         return subprocess.run(
-            [sys.executable, "-m", "irsim", *map(str, words)],
+            warm([sys.executable, "-m", "irsim", *map(str, words)]),
             capture_output=True,
             text=True,
             check=False,

@@ -36,6 +36,7 @@ def test_no_colors_in_a_pipe(spawn: Spawn, room: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+@pytest.mark.usefixtures("interruptible")
 def test_ctrl_c_exits_130_without_a_traceback(room: Path, tmp_path: Path) -> None:
     room.write_text(LONG, encoding="utf-8")
     (tmp_path / "says_ready.py").write_text("open('ready', 'w').close()\n", encoding="utf-8")

@@ -84,7 +84,7 @@ def test_overlays_are_those_of_the_tool(irsim: Run, room: Path, tmp_path: Path) 
 def test_an_unknown_overlay_names_the_nearest(irsim: Run, room: Path, tmp_path: Path) -> None:
     refused = irsim("render", "room.yaml", "-o", "plan.png", "--overlays", "plann")
     assert refused.exit_code == 2
-    assert "there is no overlay 'plann'" in refused.output
+    assert "'plann' is not a valid overlay" in refused.output
     assert "write 'plan'" in refused.output
     assert not (tmp_path / "plan.png").exists()
     as_pdf = irsim("render", "room.yaml", "-o", "plan.pdf", "--overlays", "plan")

@@ -15,7 +15,7 @@ def test_prints_the_outcome_and_how_to_repeat_it(irsim: Run, room: Path) -> None
     result = irsim("run", "room.yaml", "--seed", "7")
     assert result.exit_code == 0
     assert "success: the robot arrived" in result.stdout
-    assert result.stdout.rstrip().splitlines()[-1] == "again: irsim run room.yaml --seed 7"
+    assert result.stdout.rstrip().splitlines()[-1] == "reproduce: irsim run room.yaml --seed 7"
 
 
 def test_json_is_the_result_of_the_python_function(irsim: Run, room: Path) -> None:

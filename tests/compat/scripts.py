@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -25,13 +26,13 @@ _TOLERANCE = 2e-6
 _SECONDS = 120
 
 
-def play(name: str, python: str) -> tuple[list[str], str]:
-    """The facts that a script prints, and its complaints if it fails."""
+def play(name: str, python: str, start: Callable[[list[str]], list[str]] = list) -> tuple[list[str], str]:
+    """The facts that a script prints, and its complaints if it fails; ``start`` may change the command."""
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder) / "project"
         shutil.copytree(SCRIPTS, home, ignore=shutil.ignore_patterns("__pycache__"))
         done = subprocess.run(
-            [python, f"{name}.py"],
+            start([python, f"{name}.py"]),
             cwd=home,
             env={**os.environ, "MPLBACKEND": "Agg"},
             capture_output=True,

@@ -6,9 +6,9 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from irsim.world import World
 
 from irsim.diagnostics.errors import ScenarioError
+from irsim.world import World
 
 PATHS = """
 irsim.gui.mouse_control:MouseControl irsim.gui.keyboard_control:KeyboardControl irsim.version:__version__

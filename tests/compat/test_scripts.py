@@ -9,6 +9,7 @@ import pytest
 from irsim.compat import DIFFERENCES
 from tests.compat.differences import KNOWN
 from tests.compat.scripts import NAMES, play, recorded, same
+from tests.warm import LIBRARIES, warm
 
 
 def _name(fact: str) -> str:
@@ -17,7 +18,7 @@ def _name(fact: str) -> str:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_script_prints_what_it_printed(name: str) -> None:
-    facts, complaint = play(name, sys.executable)
+    facts, complaint = play(name, sys.executable, lambda command: warm(command, LIBRARIES))
     assert complaint == ""
     expected = recorded(name)
     assert [_name(fact) for fact in facts] == [_name(fact) for fact in expected]

@@ -15,7 +15,7 @@ from tests.core.test_cells import boxes, grids
 from tests.core.test_intersects import ORIGIN, POSE, placed, shape
 from tests.core.worlds import circle, line, obstacle, polygon, rectangle, robot, scene
 
-ROBOT, HUMAN, STATIC, NOBODY = range(4)
+ROBOT, HUMAN, STATIC, IGNORED = range(4)
 
 
 def between(a, pose_a, b, pose_b) -> float:
@@ -103,7 +103,7 @@ def naive(poses, radii, robots, kinds) -> tuple[np.ndarray, np.ndarray]:
     for t, row in enumerate(poses):
         for r, i in enumerate(robots):
             for j, kind in enumerate(kinds):
-                if j == i or kind == NOBODY:
+                if j == i or kind == IGNORED:
                     continue
                 away = math.dist(row[i, :2], row[j, :2]) - radii[i] - radii[j]
                 if not away >= distance[t, r, kind]:
@@ -172,5 +172,5 @@ def test_the_least_of_all_rows_is_that_of_the_rows(bodies, ways, end) -> None:
         assert distance[index] == pytest.approx(np.nanmin(every[:end, index]), abs=1e-9)
         assert np.nanmin(every[row[index], index]) == pytest.approx(distance[index], abs=1e-9)
         assert partner[index] not in (index, -1)
-    nobody = np.full(len(kinds), NOBODY, dtype=np.uint8)
+    nobody = np.full(len(kinds), IGNORED, dtype=np.uint8)
     assert core.least_clearances(world, state, 0, poses, robots, nobody, ends)[1].tolist() == [-1] * len(robots)

@@ -16,6 +16,7 @@ import pytest
 from mcp import Client, StdioServerParameters
 
 from irsim import __version__
+from tests.warm import warm
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -84,7 +85,7 @@ def test_the_skills_are_installed_where_hosts_look(tmp_path: Path) -> None:
     assert len(lines) == 4
     for line in lines:
         command, _, place = line.partition("  #")
-        subprocess.run([sys.executable, "-m", *shlex.split(command)], cwd=tmp_path, check=True, timeout=60)
+        subprocess.run(warm([sys.executable, "-m", *shlex.split(command)]), cwd=tmp_path, check=True, timeout=60)
         assert (tmp_path / place.split(",")[0].strip() / "irsim-scenario" / "SKILL.md").is_file()
 
 
@@ -130,6 +131,7 @@ def test_server_json_names_the_package_and_how_it_is_started() -> None:
 
 
 def test_arguments_of_server_json_are_the_servers_own() -> None:
-    done = subprocess.run([sys.executable, "-m", "irsim_mcp", "--help"], capture_output=True, text=True, check=True)
+    command = warm([sys.executable, "-m", "irsim_mcp", "--help"])
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     for argument in SERVER["packages"][0]["packageArguments"]:
         assert argument["name"] in done.stdout

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import irsim.lib as irsim_lib
 import numpy as np
 import pytest
-from irsim.world.sensors import Contact2D
 
 import irsim
+import irsim.lib as irsim_lib
 from irsim.env import Env
 from irsim.objects.sensors.contact import contact_step
 from irsim.simulation.simulation import Simulation
+from irsim.world.sensors import Contact2D
 
 WORLD = """
 world: {width: 10, height: 10, collision_mode: contact, gravity: 10.0}

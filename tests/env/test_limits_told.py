@@ -54,5 +54,5 @@ def test_the_wheelbase_of_an_object_is_that_of_its_shape(env):
 
 
 def test_the_resolution_of_a_map_is_a_number(env):
-    with pytest.raises(TypeError, match=r"resolution of a map is a number \[m\], not 'a'"):
+    with pytest.raises(TypeError, match=r"resolution of a map must be a number \[m\], got 'a'"):
         env.get_map("a")

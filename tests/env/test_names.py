@@ -144,6 +144,7 @@ def test_a_world_by_itself() -> None:
 def test_patches() -> None:
     import matplotlib.pyplot as plt
     import shapely
+
     from irsim.env.env_plot import draw_patch, geometry_to_path, linewidth_from_data_units, set_patch_property
 
     figure, ax = plt.subplots()

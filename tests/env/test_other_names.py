@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from irsim.world import World
-from irsim.world.map import FogMap, ObstacleMap, grid_collision_geometry
 
 import irsim
 from irsim.common.log import Logger
 from irsim.msg import LaserScan, ObjectState, Odometry, WorldState
+from irsim.world import World
+from irsim.world.map import FogMap, ObstacleMap, grid_collision_geometry
 
 YAML = """
 world: {width: 10, height: 8}

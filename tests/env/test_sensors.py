@@ -126,7 +126,7 @@ def test_rollouts_and_batches_measure_alike(make: Make) -> None:
     assert advanced.objects[1].sensors[1].data == alone[-1]
     batch = irsim.batch(env.scenario, 3, seeds=[5, 1, 9], threads=2)
     batch.advance(3)
-    from irsim.objects.view import views
+    from irsim.objects.views import views
 
     assert views(batch.simulation, 1)[1].sensors[1].data == alone[-1]
     assert views(batch.simulation, 0)[1].sensors[1].data != alone[-1]

@@ -17,6 +17,7 @@ import yaml
 
 from evals.skills.assertions import evals_of, form_of, passes
 from tests.evals.conftest import EVALS, ROOT, SKILLS
+from tests.warm import warm
 
 ANSWERS: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
     (Path(__file__).parent / "answers.yaml").read_text(encoding="utf-8")
@@ -92,7 +93,8 @@ def test_the_assertions_can_be_met(skill: str, name: str, tmp_path: Path) -> Non
         command, _, target = line.partition(" > ")
         words = shlex.split(command)
         module = words[1:] if words[0] == "python" else ["-m", *words]
-        done = subprocess.run([sys.executable, *module], cwd=tmp_path, capture_output=True, text=True, check=False)
+        started = warm([sys.executable, *module])
+        done = subprocess.run(started, cwd=tmp_path, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         if target:
             (tmp_path / target).write_text(done.stdout, encoding="utf-8")
@@ -127,7 +129,7 @@ def test_an_answer_is_graded_by_one_command(tmp_path: Path) -> None:
     reply.write_text(ANSWERS["irsim-scenario"]["sardines"]["reply"], encoding="utf-8")
     command = [sys.executable, "-m", "evals.skills.assertions", "irsim-scenario", "sardines", str(tmp_path)]
     for words, code, passed in (([], 1, 0), (["--reply", str(reply)], 0, 3)):
-        done = subprocess.run([*command, *words], cwd=ROOT, capture_output=True, text=True, check=False)
+        done = subprocess.run(warm([*command, *words]), cwd=ROOT, capture_output=True, text=True, check=False)
         assert (done.returncode, json.loads(done.stdout)["passed"]) == (code, passed), done.stderr
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from irsim_mcp.server import build_server
 from mcp import Client
 from mcp.types import TextContent
 
 from evals.skills.assertions import form_of, passes
+from irsim_mcp.server import build_server
 from tests.evals.conftest import EVALS
 
 pytestmark = pytest.mark.anyio

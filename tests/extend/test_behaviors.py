@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+import irsim
+from irsim.diagnostics.errors import BehaviorError, ScenarioError
 from irsim.lib import (
     register_behavior,
     register_behavior_class,
@@ -16,9 +19,6 @@ from irsim.lib import (
     register_group_behavior_class,
 )
 from irsim.lib.behavior import behavior_registry
-
-import irsim
-from irsim.diagnostics.errors import BehaviorError, ScenarioError
 
 Make = Callable[..., irsim.Env]
 TWO = """

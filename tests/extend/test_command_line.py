@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.warm import warm
+
 MODULE = '''
 from irsim.lib import KinematicsHandler, register_behavior_class, register_kinematics
 
@@ -43,7 +45,7 @@ robot:
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "irsim", *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False)
 
 
 def test_drives_and_behaviors_of_an_imported_module(tmp_path: Path) -> None:

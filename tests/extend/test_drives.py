@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from irsim.lib import KinematicsFactory, KinematicsHandler, register_kinematics
 
 import irsim
 from irsim.diagnostics.errors import BehaviorError
+from irsim.lib import KinematicsFactory, KinematicsHandler, register_kinematics
 
 Make = Callable[..., irsim.Env]
 

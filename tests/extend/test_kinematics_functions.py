@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 from irsim.lib import ackermann_kinematics, differential_kinematics, kinematics_factory, omni_kinematics
 from irsim.lib.algorithm import omni_angular_kinematics
 

@@ -8,10 +8,12 @@ from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
-import irsim.lib
 import numpy as np
 import pytest
 import shapely
+
+import irsim
+import irsim.lib
 from irsim.lib import (
     Behavior,
     GeometryFactory,
@@ -41,8 +43,6 @@ from irsim.lib.behavior.behavior_methods import (
     beh_omni_rvo,
     beh_omni_sfm,
 )
-
-import irsim
 
 Make = Callable[..., irsim.Env]
 SCENARIO = """

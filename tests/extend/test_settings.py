@@ -8,7 +8,8 @@ import pytest
 import irsim
 from irsim.diagnostics.errors import ScenarioError
 from irsim.objects.setters import HINTS, SETTINGS
-from irsim.objects.view import ObjectView, views
+from irsim.objects.view import ObjectView
+from irsim.objects.views import views
 from irsim.options.registry import CUSTOM_BEHAVIORS
 
 TWO = """

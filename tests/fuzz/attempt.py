@@ -33,9 +33,8 @@ def main() -> None:
     """Do documents until there are no more."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    from irsim_mcp.limits import ServerLimits, scenario_limits
-
     import irsim
+    from irsim_mcp.limits import ServerLimits, scenario_limits
 
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

@@ -8,6 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
+
+import irsim
+from irsim.components.maps._bundled import bundled_map, bundled_names
+from irsim.diagnostics.errors import ScenarioError
+from irsim.scenario.limits import Limits
+from irsim.scenario.read import read
 from irsim.world.map import (
     GridMapGenerator,
     ImageGridGenerator,
@@ -16,13 +23,6 @@ from irsim.world.map import (
     build_grid_from_generator,
     resolve_obstacle_map,
 )
-from PIL import Image
-
-import irsim
-from irsim.components.maps._bundled import bundled_map, bundled_names
-from irsim.diagnostics.errors import ScenarioError
-from irsim.scenario.limits import Limits
-from irsim.scenario.read import read
 
 HERE = Path(__file__).parent
 RECORDED = dict(np.load(HERE / "recorded" / "grids.npz"))

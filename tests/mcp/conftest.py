@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import functools
-import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
-from irsim_mcp.limits import ServerLimits
-from irsim_mcp.server import IrsimServer, build_server
 from mcp import Client, StdioServerParameters
 from mcp.types import CallToolResult, ImageContent, TextContent
+
+from irsim_mcp.limits import ServerLimits
+from irsim_mcp.server import IrsimServer, build_server
+from tests.warm import warm_mcp
 
 ERAS = ("auto", "legacy")
 """Newest protocol, without a handshake, and the one before."""
@@ -79,7 +80,8 @@ async def connected(workspace: Path, era: str = ERAS[0], **limits: Any) -> Async
 
 def as_process(workspace: Path) -> StdioServerParameters:
     """How a host starts the server."""
-    return StdioServerParameters(command=sys.executable, args=["-m", "irsim_mcp", "--workspace", str(workspace)])
+    command, *arguments = warm_mcp("--workspace", str(workspace))
+    return StdioServerParameters(command=command, args=arguments)
 
 
 def text_of(result: CallToolResult) -> str:

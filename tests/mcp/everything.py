@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import anyio
-from irsim_mcp.server import build_server
 from mcp import Client
 from mcp.types import PromptReference, ResourceTemplateReference
+
+from irsim_mcp.server import build_server
 
 HEAVY = ("numpy", "shapely", "matplotlib", "PIL", "irsim._core", "irsim.env", "irsim.behaviors", "irsim.simulation")
 ROOM = """\

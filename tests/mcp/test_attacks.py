@@ -11,9 +11,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
 from irsim_mcp import worker
 from irsim_mcp.limits import ServerLimits
-
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
 
 pytestmark = [pytest.mark.anyio, pytest.mark.skipif(sys.platform == "win32", reason="limits and links of POSIX")]
@@ -164,9 +164,10 @@ async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     scenario = f"obstacle:\n  - shape: {{name: polygon, vertices: [{star}]}}\n"
     async with connected(empty, check_seconds=1) as client:
         told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": scenario}))
-    assert told.startswith("out-of-time: 1 s of computing were over")
+    assert told.startswith("out-of-time: 1 s of computing time were used up")
 
 
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (workspace / "evil").mkdir()
     (workspace / "evil" / "numpy.py").write_text("raise SystemExit(3)\n", encoding="utf-8")
@@ -185,6 +186,7 @@ async def test_files_outside_are_not_even_named(trap: Path) -> None:
     assert "secret.yaml" not in told
 
 
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_a_server_installed_for_one_user_only_works(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Isolated mode leaves out the user's own packages, so their folder is added by name."""
     folder = Path(worker.__file__).parents[1]

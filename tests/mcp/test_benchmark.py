@@ -16,6 +16,7 @@ from mcp import Client
 
 import irsim
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, as_process, connected, data_of, error_of, text_of
+from tests.warm import SERVERS
 
 pytestmark = pytest.mark.anyio
 
@@ -136,6 +137,7 @@ async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
         assert again == found
 
 
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> None:
     async with connected(workspace) as client:
         begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 2}))
@@ -184,6 +186,7 @@ async def test_cancelling_throws_no_episode_away(workspace: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(workspace: Path) -> None:
     async with connected(workspace) as client:
         job = data_of(await client.call_tool("benchmark", MANY))["job_id"]
@@ -218,7 +221,7 @@ async def test_a_job_whose_time_is_over_keeps_the_episodes_that_were_done(worksp
         ended = data_of(result)
         assert ended["status"] == "interrupted"
         assert 0 < ended["done"] < ended["total"]
-        assert ended["next"].startswith("12 s of computing were over. This is of the ")
+        assert ended["next"].startswith("12 s of computing time were used up. This is the result of the ")
         assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
 
 
@@ -344,7 +347,7 @@ async def test_what_inspect_run_cannot_tell_of_a_benchmark(workspace: Path) -> N
             ({"view": "closest"}, "(view). Fix: leave it out"),
             ({"robot": "rover"}, "(robot). Fix: leave it out"),
             ({"from_step": 3}, "(from_step). Fix: leave it out"),
-            ({"cursor": "1"}, "'1' is no cursor (cursor)"),
+            ({"cursor": "1"}, "'1' is not a valid cursor (cursor)"),
         ):
             assert told in error_of(await client.call_tool("inspect_run", {"run_id": job, **asked}))
         begun = data_of(await client.call_tool("benchmark", {"scenarios": [LONG], "seeds": 4, "wait_s": 0}))["job_id"]
@@ -376,6 +379,7 @@ async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.usefixtures("ordinary_processes")
 @pytest.mark.parametrize("how", ["end of input", "kill -9"])
 @pytest.mark.parametrize("world", ["long", "short"])
 async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
@@ -399,7 +403,12 @@ async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
         until = time.monotonic() + 10
         while not descendants(server.pid) and time.monotonic() < until:
             await anyio.sleep(0.1)
-        await anyio.sleep(2.0 if world == "long" else 1.5)
+        if world == "long":
+            await anyio.sleep(2.0)
+        else:
+            with anyio.fail_after(30):
+                while not kept_of(workspace, job):
+                    await anyio.sleep(0.05)
         children = descendants(server.pid)
         assert children
         told = kept_of(workspace, job)
@@ -456,7 +465,7 @@ def descendants(pid: int) -> list[int]:
                 parents[int(entry.name)] = int(fields[1])
     found, level = [], [pid]
     while level:
-        level = [child for child, parent in parents.items() if parent in level]
+        level = [child for child, parent in parents.items() if parent in level and child not in SERVERS]
         found += level
     return found
 

@@ -7,10 +7,10 @@ import re
 from pathlib import Path
 
 import pytest
-from irsim_mcp.errors import failure
 from mcp import MCPError
 
 from irsim.diagnostics.codes import CODES, TOOL_CODES
+from irsim_mcp.errors import failure
 from tests.mcp.conftest import ERAS, ROOM, connected, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -205,19 +205,21 @@ async def test_what_was_let_go_can_be_made_again(workspace: Path) -> None:
     async with connected(workspace) as client:
         for name, argument, code in (("inspect_run", "run_id", "run"), ("get_job", "job_id", "job")):
             told = error_of(await client.call_tool(name, {argument: "room-123456"}))
-            assert told.startswith(f"unknown-{code}: there is no {code} 'room-123456' ({argument}). Fix: none is kept")
-            assert "let go" in told
+            assert told.startswith(
+                f"unknown-{code}: there is no {code} 'room-123456' ({argument}). Fix: there are no {code}s here"
+            )
+            assert "are deleted" in told
             assert "24 h" in told
             assert "the same" in told
 
 
 def test_a_fault_of_ours_points_at_no_argument() -> None:
-    from irsim_mcp.job import _described
+    from irsim_mcp.job import _error_data
     from irsim_mcp.services import _as_failure
 
     with pytest.raises(ZeroDivisionError) as crash:
         _ = 1 / 0
-    told = str(_as_failure(_described(crash.value), "path"))
+    told = str(_as_failure(_error_data(crash.value), "path"))
     assert told.startswith("internal-error: ZeroDivisionError: division by zero")
     assert "scenario_path" not in told
     assert "a fault of the simulator" in told

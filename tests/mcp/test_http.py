@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,13 +13,14 @@ from pathlib import Path
 import anyio
 import httpx2
 import pytest
-from irsim_mcp.http import Address, HttpRefused, address, application, token_from
-from irsim_mcp.server import build_server
 from mcp import Client
 from mcp.client.streamable_http import streamable_http_client
 
+from irsim_mcp.http import Address, HttpRefused, address, application, token_from
+from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, LONG, ROOM, data_of
 from tests.mcp.test_lifetime import children_of, linux, wait_until_gone
+from tests.warm import warm_mcp
 
 TOKEN = "a-token-that-is-long-enough"
 DISCOVER = {
@@ -38,7 +38,7 @@ def served(
 ) -> Iterator[tuple[str, subprocess.Popen[str]]]:
     """A server in a process of its own, and its address."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "irsim_mcp", "--workspace", str(workspace), *options],
+        warm_mcp("--workspace", str(workspace), *options),
         stderr=subprocess.PIPE,
         text=True,
         env={**os.environ, **(environment or {})},
@@ -146,7 +146,7 @@ def test_tokens_that_are_none(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize("options", [("0.0.0.0:0",), ("[::]:0",), ("192.0.2.1:0",), ("example.org:80",)])
 def test_other_machines_need_a_token(empty: Path, options: tuple[str, ...]) -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "irsim_mcp", "--workspace", str(empty), "--http", *options],
+        warm_mcp("--workspace", str(empty), "--http", *options),
         capture_output=True,
         text=True,
         check=False,
@@ -202,7 +202,7 @@ def test_no_addresses(text: str) -> None:
 def test_a_port_in_use_is_told(local: str, empty: Path) -> None:
     port = local.removesuffix("/mcp").rpartition(":")[2]
     done = subprocess.run(
-        [sys.executable, "-m", "irsim_mcp", "--workspace", str(empty), "--http", port],
+        warm_mcp("--workspace", str(empty), "--http", port),
         capture_output=True,
         text=True,
         check=False,
@@ -214,6 +214,7 @@ def test_a_port_in_use_is_told(local: str, empty: Path) -> None:
 
 @linux
 @pytest.mark.anyio
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_it_ends_soon_with_a_run_under_way_and_leaves_nobody(workspace: Path) -> None:
     with served(workspace, "--http", "0") as (url, process):
         async with anyio.create_task_group() as group:

@@ -20,7 +20,10 @@ from irsim.runs.store import runs_folder
 from tests.mcp.conftest import ROOM
 from tests.mcp.test_lifetime import HANDSHAKE, Wire, children_of, wait_until_gone
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
+    pytest.mark.usefixtures("ordinary_processes"),
+]
 
 CALM = ROOM.replace("goal: [4, 3, 0]", "goal: [7, 5, 0]").replace("height: 6", "height: 6, step_time: 0.005")
 
@@ -89,7 +92,7 @@ def live_and_die(workspace: Path, seed: int, lives: int) -> None:
         os.utime(path, (later, later))
     prune(runs_folder(workspace))
     assert list((workspace / ".irsim").rglob(".new-*")) == []
-    assert all((path / "run.json").is_file() for path in runs_folder(workspace).iterdir() if path.is_dir())
+    assert all((path / "run.json").is_file() for path in runs_folder(workspace, make=True).iterdir() if path.is_dir())
     assert irsim.run(text=ROOM, seed=1).outcome == "success"
 
 

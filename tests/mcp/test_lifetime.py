@@ -18,8 +18,10 @@ import pytest
 from mcp import Client
 
 from tests.mcp.conftest import ERAS, LONG, ROOM, as_process, connected, data_of, error_of
+from tests.warm import SERVERS
 
 HANDSHAKE = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "0"}}
+pytestmark = pytest.mark.usefixtures("ordinary_processes")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
@@ -68,7 +70,8 @@ def wire(workspace: Path) -> Iterator[Wire]:
 
 def children_of(pid: int) -> list[int]:
     folders = Path(f"/proc/{pid}/task").iterdir()
-    return [int(child) for folder in folders for child in (folder / "children").read_text().split()]
+    children = [int(child) for folder in folders for child in (folder / "children").read_text().split()]
+    return [child for child in children if child not in SERVERS]
 
 
 def runs(pid: int) -> bool:
@@ -98,6 +101,7 @@ def test_end_of_input_ends_server_and_worker(wire: Wire, workspace: Path) -> Non
 
 @linux
 @pytest.mark.parametrize("how", ["kill", "terminate", "interrupt"])
+@pytest.mark.usefixtures("interruptible")
 def test_a_server_that_is_killed_takes_its_workers_along(wire: Wire, how: str) -> None:
     workers = wire.start_long_run()
     assert len(workers) == 1

@@ -92,7 +92,7 @@ async def test_parameters_are_filled_in(empty: Path) -> None:
     [
         (
             {"topic": "corridor-pasing"},
-            "unknown-topic: nothing is called 'corridor-pasing' (topic). Fix: did you mean ",
+            "unknown-topic: 'corridor-pasing' is not a topic (topic). Fix: did you mean ",
         ),
         ({"topic": "xyzzy"}, "Fix: lookup without a topic lists what there is."),
         ({"topic": "xyzzy", "parameters": {"a": 1}}, "unknown-template: there is no template 'xyzzy'"),

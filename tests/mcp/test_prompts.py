@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
-from irsim_mcp.prompts import drives, template_names
 from mcp import Client, MCPError
 from mcp.types import PromptReference, ResourceTemplateReference, TextContent
 
 from irsim.options.registry import KINEMATICS
+from irsim_mcp.prompts import drives, template_names
 from tests.mcp.conftest import CRASH, ERAS, ROOM, connected, data_of
 
 pytestmark = pytest.mark.anyio

@@ -66,7 +66,7 @@ async def test_region(workspace: Path) -> None:
         ]
     assert whole != part
     for told in bad:
-        assert told.startswith("bad-argument: there is no region 5, 5, 1, 1 (region). Fix: give x_min, y_min, x_max, ")
+        assert told.startswith("bad-argument: region 5, 5, 1, 1 is not valid (region). Fix: give x_min, y_min, x_max, ")
 
 
 async def test_plans_in_words(empty: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from irsim.cli.app import app
-from irsim.results.results import RunResult
+from irsim.results.run import RunResult
 from tests.mcp.conftest import CRASH, ERAS, LONG, ROOM, connected, data_of, error_of, text_of
 
 pytestmark = pytest.mark.anyio
@@ -147,7 +147,7 @@ async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -
 async def test_time_is_limited_and_the_error_says_what_fits(empty: Path) -> None:
     async with connected(empty) as client:
         result = await client.call_tool("run_episode", {"scenario_yaml": LONG, "max_wall_s": 5})
-    assert error_of(result).startswith("out-of-time: 5 s of computing were over after ")
+    assert error_of(result).startswith("out-of-time: 5 s of computing time were used up after ")
     assert "fewer steps" in error_of(result)
 
 
@@ -164,7 +164,7 @@ async def test_a_longer_horizon_is_cut_and_said(empty: Path) -> None:
     async with connected(empty) as client:
         data = data_of(await client.call_tool("run_episode", {"scenario_yaml": slow}))
     assert (data["steps"], data["time_limit_from"]) == (5000, "limits")
-    assert "the most steps of one run here" in data["reason"]
+    assert "the maximum number of steps of one run here" in data["reason"]
 
 
 async def test_memory_is_limited(empty: Path) -> None:
@@ -241,9 +241,9 @@ async def test_next_after_people_stand_since_a_collision_and_after_what_is_parke
         still = data_of(await client.call_tool("run_episode", {"scenario_yaml": parked}))
         looked = data_of(await client.call_tool("validate_scenario", {"scenario_yaml": parked}))
     assert jam["outcome"] == "success"
-    assert "2 of 2 moving obstacles stand since a collision" in jam["summary"]
+    assert "2 of 2 moving obstacles were stopped by a collision" in jam["summary"]
     assert "view=collisions" in jam["next"]
-    assert "2 of 2 moving obstacles stand since a collision" in tried["dry_run"]
+    assert "2 of 2 moving obstacles were stopped by a collision" in tried["dry_run"]
     assert "dry_run" in tried["next"]
     assert still["next"].startswith("Nothing to change")
     assert "dry_run" not in looked["next"]

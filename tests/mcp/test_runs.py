@@ -85,7 +85,7 @@ async def test_long_tables_are_cut_to_what_a_model_reads(workspace: Path) -> Non
 
 async def test_unknown_runs_name_recent_ones(workspace: Path) -> None:
     async with connected(workspace) as client:
-        assert "none is kept here; runs are let go 24 h after" in error_of(
+        assert "there are no runs here; runs are deleted 24 h after" in error_of(
             await client.call_tool("inspect_run", {"run_id": "x"})
         )
         run_id = await crashed(client)
@@ -159,6 +159,7 @@ async def read(client: Client, uri: str) -> str:
     return str(getattr(content, "text", ""))
 
 
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_a_cancelled_run_says_so_and_can_be_read(workspace: Path) -> None:
     async with connected(workspace) as client:
         with anyio.move_on_after(6):
@@ -172,6 +173,7 @@ async def test_a_cancelled_run_says_so_and_can_be_read(workspace: Path) -> None:
         assert text_of(result).startswith("cancelled: ")
 
 
+@pytest.mark.usefixtures("ordinary_processes")
 async def test_a_run_whose_time_is_over_is_named(workspace: Path) -> None:
     async with connected(workspace) as client:
         error = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG, "seed": 1, "max_wall_s": 4}))

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mcp import Client
+
 from irsim_mcp import job, worker
 from irsim_mcp.limits import ServerLimits
 from irsim_mcp.server import build_server
-from mcp import Client
-
 from tests.mcp.conftest import ROOM, connected, data_of, error_of, text_of
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="limits of POSIX")
@@ -259,7 +259,7 @@ def test_limits_of_the_system_are_set() -> None:
     if sys.platform == "linux":
         assert 0 < memory <= limits.memory
     assert (seconds, written, core) == (7, limits.written, 0)
-    assert 0 < files <= job._FILES
+    assert 0 < files <= job._MAX_FILES
     assert resource.getrlimit(resource.RLIMIT_CPU)[0] != 7
 
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 import yaml
-from irsim_mcp.skills import Skills, _description, skill_files
 from mcp import MCPError
 from mcp.server import MCPServer
 from mcp.types import BlobResourceContents, Request, TextResourceContents
 from pydantic import BaseModel, ConfigDict
 
 from irsim.common.data_files import skills_directory
+from irsim_mcp.skills import Skills, _description, skill_files
 from tests.mcp.conftest import connected
 
 pytestmark = pytest.mark.anyio

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import anyio
 import pytest
-from irsim_mcp import writing
-from irsim_mcp.server import build_server
 from mcp import Client
 
+from irsim_mcp import writing
+from irsim_mcp.server import build_server
 from tests.mcp.conftest import ERAS, ROOM, connected, data_of, error_of, text_of
 from tests.mcp.golden.write import listed
 

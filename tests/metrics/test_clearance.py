@@ -8,7 +8,7 @@ import pytest
 from irsim.env import Env
 from irsim.episodes.episode import read_scenario
 from irsim.metrics import clearance, closest
-from irsim.metrics.roles import HUMAN, NOBODY, ROBOT, STATIC, company_of
+from irsim.metrics.roles import HUMAN, IGNORED, ROBOT, STATIC, kinds_of
 from irsim.simulation.trace import record_rollout
 
 SCENARIO = """
@@ -34,7 +34,7 @@ obstacle:
 
 def test_who_is_who() -> None:
     scenario, _ = read_scenario(text=SCENARIO, strict=True)
-    assert company_of(scenario.objects).tolist() == [ROBOT, ROBOT, HUMAN, HUMAN, STATIC, NOBODY, STATIC]
+    assert kinds_of(scenario.objects).tolist() == [ROBOT, ROBOT, HUMAN, HUMAN, STATIC, IGNORED, STATIC]
 
 
 def test_distances_over_an_episode_and_the_closest_moment() -> None:

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from irsim.lib.algorithm.social_force_model import SocialForceModelBatch
 
 import irsim
 from irsim.components.behaviors.sfm import Sfm
+from irsim.lib.algorithm.social_force_model import SocialForceModelBatch
 from irsim.metrics import robot_metrics
 from irsim.metrics.social import group_gaps, obstacle_force, social_forces
 from irsim.simulation.events import Event

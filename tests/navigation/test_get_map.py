@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 
 import irsim
-from irsim.navigation.map import EnvGridMap, Map, coarser
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
+from irsim.navigation.map import EnvGridMap, Map, coarsen
 
 SCENE = """
 world: {width: 10, height: 10, offset: [-2, 0], obstacle_map: {name: perlin, resolution: 0.1, fill: 0.12, seed: 3}}
@@ -56,14 +56,14 @@ def test_what_is_written_to_a_grid_counts(tmp_path: Path) -> None:
 
 
 def test_resolutions(env: irsim.Env) -> None:
-    with pytest.warns(UserWarning, match="joined"):
+    with pytest.warns(UserWarning, match="merged"):
         joined = env.get_map(0.2)
     assert joined.grid.shape == (50, 50)
     assert (joined.grid == env.get_map(0.1).grid.reshape(50, 2, 50, 2).max(axis=(1, 3))).all()
-    with pytest.warns(UserWarning, match="not divided"):
+    with pytest.warns(UserWarning, match="cannot be divided"):
         assert env.get_map(0.05).grid.shape == (100, 100)
     assert env.get_map(0).grid.shape == (100, 100)
-    assert coarser(np.eye(5), 2, 2).shape == (2, 2)
+    assert coarsen(np.eye(5), 2, 2).shape == (2, 2)
 
 
 def test_planners_plan_for_the_robot(env: irsim.Env) -> None:

@@ -11,9 +11,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from numpy.typing import NDArray
 
+from irsim.lib.path_planners import AStarPlanner, JPSPlanner
 from irsim.navigation.map import Map, cells_of, footprint_of, terrain_of
 
 Path = NDArray[np.float64]
@@ -172,5 +172,5 @@ def test_starts_and_goals_of_any_form() -> None:
     ]
     assert paths[0] is not None
     assert np.array_equal(paths[0], paths[1])
-    with pytest.raises(ValueError, match="two numbers"):
+    with pytest.raises(ValueError, match="two finite numbers"):
         AStarPlanner(env_map).planning([1], [4, 4])

@@ -9,9 +9,9 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from irsim.lib.path_planners import RRT, InformedRRTStar, PRMPlanner, RRTStar
 from numpy.typing import NDArray
 
+from irsim.lib.path_planners import RRT, InformedRRTStar, PRMPlanner, RRTStar
 from irsim.navigation.map import Map
 
 DISC = shapely.Point(0, 0).buffer(0.3)

@@ -1,164 +1,144 @@
-"""What an import loads, and which way imports point."""
+"""Which way imports point, how large files are, and what an import loads."""
 
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-
-LAYERS = (
-    """
-    _conflict _names _options angles code_examples codes colors diagnostics errors files log registry resources
-    selection units vectors version
-    """,
-    "_core arguments compatibility msg streams text",
-    "kinematics shapes behaviors sensors distributions maps planners",
-    "scenario",
-    "world simulation",
-    """
-    actions
-    batch
-    body
-    contacts
-    crowd
-    current
-    env
-    env_access
-    env_custom
-    env_drawing
-    env_live
-    env_maps
-    env_messages
-    env_objects
-    exchange
-    gui
-    hooks
-    info
-    map_view
-    matter
-    metrics
-    navigation
-    object_avoidance
-    object_base
-    object_drawing
-    object_factory
-    object_list
-    object_status
-    observers
-    parameters
-    python_behaviors
-    python_drives
-    python_parts
-    render
-    scans
-    sensing
-    sensor_factory
-    settings
-    views
-    """,
-    """
-    api
-    benchmarks
-    bridges
-    changes
-    comparison
-    config
-    contents
-    description
-    dry_run
-    episode
-    learning
-    leaving
-    lib
-    labels
-    lookup
-    map_files
-    modeline
-    overlays
-    replay
-    results
-    runs
-    skills
-    snapshot
-    standing
-    strips
-    survey
-    templates
-    testing
-    util
-    validation
-    verdict
-    workload
-    """,
-    "cli __main__",
-    "irsim_mcp",
-)
-"""Modules and packages of ``irsim``, lowest layer first: one imports its own layer and those before it."""
-
-EXCEPTIONS = {
-    ("errors", "scenario"),  # a ScenarioError prints itself with the report of that package, loaded at that moment
-    ("views", "lib"),  # robot.kf is a handler of that package, made when somebody asks
-    ("render", "api"),  # irsim.render is a function too: calling the package calls the one of irsim.api
-}
-"""Imports inside functions that may point down the list."""
-
-RANK = {name: rank for rank, layer in enumerate(LAYERS) for name in layer.split()}
+MAX_ROOMS = 30
+MAX_LINES = 400
+LOOSE = {"__init__.py", "__main__.py", "_core.pyi", "plugins.py", "py.typed"}
+"""Files that may stand directly below ``irsim/``."""
+MAY_IMPORT_COMPAT = {"irsim", "compat", "lookup", "cli", "irsim_mcp"}
 
 
-def sources() -> Iterator[tuple[str, Path]]:
-    """Every Python file of the two packages, with the name its layer has."""
-    for path in sorted(ROOT.glob("irsim/**/*.py*")):
-        part = path.relative_to(ROOT / "irsim").parts[0].partition(".")[0]
-        if path.suffix in (".py", ".pyi") and part not in ("__init__", "core"):
-            yield part, path
-    for path in sorted(ROOT.glob("mcp_server/irsim_mcp/**/*.py")):
-        yield "irsim_mcp", path
+@cache
+def listed_rooms() -> dict[str, bool]:
+    """Rooms in the order of CONTRIBUTING.md -> whether the room exists."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Rooms")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
+    return {name: not about.startswith("to come") for name, about in rows}
 
 
-def imported(path: Path) -> Iterator[tuple[str, bool]]:
-    """Parts of irsim that a file imports when it runs, and whether only inside a function."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for_types = {
-        id(node)
-        for block in ast.walk(tree)
-        if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
-        for statement in block.body
-        for node in ast.walk(statement)
-    }
-    functions = [node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))]
-    inside = {id(node) for function in functions for node in ast.walk(function)}
-    for node in ast.walk(tree):
-        names = []
+@cache
+def sources() -> dict[str, Path]:
+    """Module -> file, for all Python of the two packages."""
+    found = {}
+    for package, folder in (("irsim", ROOT / "irsim"), ("irsim_mcp", ROOT / "mcp_server" / "irsim_mcp")):
+        for path in folder.rglob("*.py"):
+            parts = path.relative_to(folder).with_suffix("").parts
+            if parts[:2] != ("core", "backend"):
+                found[".".join([package, *parts]).removesuffix(".__init__")] = path
+    return found
+
+
+@cache
+def imports(module: str) -> tuple[tuple[str, int], ...]:
+    """Modules of the two packages that a file names, lazily or for types too, each with its line."""
+    known = sources()
+    return tuple(
+        (target, line)
+        for name, line in imported_names(sources()[module])
+        if (target := name if name in known else name.rpartition(".")[0]) in known
+        and target != module
+        and not name.startswith("irsim._core")
+    )
+
+
+def imported_names(path: Path) -> Iterator[tuple[str, int]]:
+    """Every imported module, and every name with the module it is imported from."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
+            yield from ((alias.name, node.lineno) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path}:{node.lineno}: a relative import"
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        for name in names:
-            package, _, rest = name.partition(".")
-            part = rest.partition(".")[0] if package == "irsim" else package
-            if part in RANK and package in ("irsim", "irsim_mcp") and id(node) not in for_types:
-                yield part, id(node) in inside
+            yield from ((f"{node.module}.{alias.name}", node.lineno) for alias in node.names)
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            yield from (
+                (argument.value, node.lineno)
+                for argument in node.args[:1]
+                if isinstance(argument, ast.Constant) and isinstance(argument.value, str)
+            )
 
 
-def test_every_module_has_a_layer() -> None:
-    assert sorted({part for part, _ in sources()} - set(RANK)) == []
+def room(module: str) -> str:
+    """The room of a module; ``irsim`` and ``irsim_mcp`` are rooms of their own."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "irsim" and len(parts) > 1 else parts[0]
 
 
-def test_imports_point_to_lower_layers() -> None:
+def circles(graph: Mapping[str, list[str]]) -> list[list[str]]:
+    """Groups of modules that import one another (Tarjan's strongly connected components, of more than one)."""
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(node: str) -> None:
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        for other in graph[node]:
+            if other not in index:
+                visit(other)
+            if other in stack:
+                low[node] = min(low[node], low[other])
+        if low[node] == index[node]:
+            group = stack[stack.index(node) :]
+            del stack[stack.index(node) :]
+            if len(group) > 1:
+                found.append(sorted(group))
+
+    for node in graph:
+        if node not in index:
+            visit(node)
+    return found
+
+
+def test_the_rooms_are_those_of_the_guide() -> None:
+    there = {path.name for path in (ROOT / "irsim").iterdir() if path.is_dir() and any(path.rglob("*.py"))}
+    there |= {"plugins"}
+    assert there == {name for name, exists in listed_rooms().items() if exists}
+    assert len(listed_rooms().keys() - {"plugins"}) <= MAX_ROOMS
+    loose = {path.name for path in (ROOT / "irsim").iterdir() if path.is_file() and path.suffix not in (".so", ".pyd")}
+    assert loose == LOOSE
+
+
+def test_a_room_imports_only_rooms_above_it() -> None:
+    rank = {name: number for number, name in enumerate([*listed_rooms(), "__main__", "irsim", "irsim_mcp"])}
     wrong = [
-        f"{path.relative_to(ROOT)} imports irsim.{other}"
-        for part, path in sources()
-        for other, lazily in imported(path)
-        if RANK.get(other, 0) > RANK.get(part, 0) and not (lazily and (part, other) in EXCEPTIONS)
+        f"{sources()[module].relative_to(ROOT)}:{line} imports {target}"
+        for module in sources()
+        for target, line in imports(module)
+        if module != "irsim" and rank[room(target)] > rank[room(module)]
     ]
     assert wrong == []
+
+
+def test_no_files_import_one_another_in_a_circle() -> None:
+    graph = {module: [target for target, _ in imports(module)] for module in sources()}
+    assert circles(graph) == []
+    assert circles({"a": ["b"], "b": ["c"], "c": ["b"]}) == [["b", "c"]]
+
+
+def test_few_rooms_know_the_old_names() -> None:
+    using = {room(module) for module in sources() for target, _ in imports(module) if room(target) == "compat"}
+    assert using <= MAY_IMPORT_COMPAT
+
+
+def test_files_are_short() -> None:
+    kinds = ("*.py", "*.cpp", "*.hpp", "*.js")
+    files = [path for folder in ("irsim", "mcp_server", "skills", "evals", "tests") for kind in kinds
+             for path in (ROOT / folder).rglob(kind)]  # fmt: skip
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in files}
+    assert [f"{path.relative_to(ROOT)}: {n}" for path, n in lengths.items() if n > MAX_LINES] == []
 
 
 def loaded_by(statement: str) -> set[str]:
@@ -200,7 +180,7 @@ def test_the_package_says_it_is_typed() -> None:
 def test_a_function_works_though_its_module_of_the_same_name_was_imported_first() -> None:
     assert "numpy" in loaded_by(
         """
-from irsim.batch import Batch
+from irsim.env.batch import Batch
 import irsim, pathlib, tempfile
 with tempfile.TemporaryDirectory() as folder:
     path = pathlib.Path(folder, "room.yaml")

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from irsim.lib import register_behavior
 
 import irsim
+from irsim.lib import register_behavior
 
 SCENARIO = """
 robot:

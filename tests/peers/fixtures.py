@@ -13,8 +13,6 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import anyio
-from irsim_mcp.http import address, serve
-from irsim_mcp.server import IrsimServer, build_server
 from mcp import MCPError
 from mcp.server.mcpserver import Context
 from mcp.server.mcpserver.exceptions import ToolError
@@ -32,6 +30,9 @@ from mcp.types import (
     TextResourceContents,
 )
 from pydantic import BaseModel, Field
+
+from irsim_mcp.http import address, serve
+from irsim_mcp.server import IrsimServer, build_server
 
 PNG = base64.b64encode(
     bytes.fromhex(

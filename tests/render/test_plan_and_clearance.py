@@ -101,8 +101,8 @@ def test_distances_are_those_of_geometry(tmp_path: Path) -> None:
     space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
     points = np.array([[1.0, 3.0], [4.0, 2.0], [5.0, 5.0], [9.5, 3.0]])
     exact = [1.0, 0.8, 1.0, 0.5]
-    assert space.at(points) == pytest.approx(exact, abs=2 * space.half)
-    assert [space.exactly_at((float(x), float(y))) for x, y in points] == pytest.approx(exact, abs=1e-3)
+    assert space.distance_at(points) == pytest.approx(exact, abs=2 * space.half_diagonal)
+    assert [space.exact_distance((float(x), float(y))) for x, y in points] == pytest.approx(exact, abs=1e-3)
     env.end(ending_time=0.0)
 
 
@@ -112,15 +112,15 @@ def test_a_way_over_cells_leads_from_start_to_goal(tmp_path: Path) -> None:
     env = make(str(file), headless=True, log_level="ERROR")
     space = FreeSpace(env.simulation, 0, (0.0, 0.0, 10.0, 6.0), 0.3)
     start, goal = np.array([1.01, 3.02]), np.array([9.03, 2.99])
-    way = space.way(start, goal, 0.3, 0.1)
+    way = space.path(start, goal, 0.3, 0.1)
     assert way is not None
     assert way[0] == pytest.approx(start)
     assert way[-1] == pytest.approx(goal)
-    assert space.at(way).min() > 0.25
-    by_the_wall = space.way(start, np.array([9.8, 3.0]), 0.3, 0.2)
+    assert space.distance_at(way).min() > 0.25
+    by_the_wall = space.path(start, np.array([9.8, 3.0]), 0.3, 0.2)
     assert by_the_wall is not None
     assert 9.5 < by_the_wall[-1, 0] < 9.75
-    assert space.way(start, np.array([5.0, 2.0]), 0.3, 0.1) is None
+    assert space.path(start, np.array([5.0, 2.0]), 0.3, 0.1) is None
     env.end(ending_time=0.0)
 
 

@@ -75,7 +75,7 @@ def test_scans_are_those_recorded(run: Run) -> None:
 
 
 def test_scans_that_take_too_much_are_left_to_the_page(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    for limit in ("_MOST_RANGES", "_MOST_SCAN_BYTES"):
+    for limit in ("_MAX_RANGES", "_MAX_SCANS_BYTES"):
         with monkeypatch.context() as patch:
             patch.setattr(packing, limit, 100)
             head, columns = unpacked(packing.pack_run(run).data)
@@ -84,7 +84,7 @@ def test_scans_that_take_too_much_are_left_to_the_page(run: Run, monkeypatch: py
 
 
 def test_long_runs_are_thinned(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(packing, "_MOST_POSES", 100)
+    monkeypatch.setattr(packing, "_MAX_POSES", 100)
     head, columns = unpacked(packing.pack_run(run).data)
     steps = columns["step"].tolist()
     assert head["every"] > 1
@@ -102,7 +102,7 @@ def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     other = hit._replace(object="crate", partner="block")
     events = sorted([*arrivals, *hits, other], key=lambda event: event.step)
     monkeypatch.setattr(Run, "events", events)
-    monkeypatch.setattr(packing, "_MOST_EVENTS", 60)
+    monkeypatch.setattr(packing, "_MAX_EVENTS", 60)
     head = packing.pack_run(open_run(run.id)).head
     kinds = [event[1] for event in head["events"]]
     assert (kinds.count("collision"), kinds.count("arrival")) == (31, 29)
@@ -110,7 +110,7 @@ def test_of_too_many_events_collisions_stay_and_others_are_thinned_evenly(
     assert (shown[0], shown[-1]) == (0, run.last_step)
     assert max(np.diff(shown)) <= 2 * run.last_step / 28
     assert (head["event_count"], head["left_out"]) == (231, {"arrival": 171})
-    monkeypatch.setattr(packing, "_MOST_EVENTS", 10)
+    monkeypatch.setattr(packing, "_MAX_EVENTS", 10)
     head = packing.pack_run(open_run(run.id)).head
     assert [event[2] for event in head["events"]] == [1] * 10  # the robot's collisions, over their whole time
     assert (head["events"][0][0], head["events"][-1][0]) == (hits[0].step, hits[-1].step)

@@ -20,7 +20,7 @@ from irsim.runs import Run, RunError, inspection, open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import FIELDS, VIEWS, inspect_run
 from irsim.runs.recorder import Recorder
-from irsim.runs.resimulation import replayed
+from irsim.runs.resimulation import resimulate
 from irsim.runs.store import ARTIFACTS
 
 PAIR = """\
@@ -156,7 +156,7 @@ def test_speeds_tell_reversing_and_turning(workspace: Path) -> None:
     recorder = Recorder(env.simulation, horizon=20, scenario=None, options={})
     for speed, turn in [(0.5, 0.25)] * 5 + [(-0.25, -1.0)] * 5:
         env.step(np.array([[speed], [turn]]))
-        recorder.look()
+        recorder.write_if_due()
     recorder.close()
     env.end()
     table = inspect_run(recorder.folder, view="speeds")
@@ -207,7 +207,7 @@ def test_a_long_stand_is_found(workspace: Path) -> None:
         ({"fields": ["speeed"]}, "did you mean speed"),
         ({"from_step": 1000}, "step-out-of-range"),
         ({"from_step": 5, "to_step": 3}, "step-out-of-range"),
-        ({"cursor": "x"}, "no cursor"),
+        ({"cursor": "x"}, "not a valid cursor"),
         ({"cursor": "9999"}, "beyond the last row"),
     ],
 )
@@ -270,18 +270,18 @@ def test_who_is_not_there_is_told_of(pair: Run, name: str) -> None:
 
 
 def test_a_run_can_be_replayed(crashed: Run) -> None:
-    env = replayed(crashed, 5)
+    env = resimulate(crashed, 5)
     np.testing.assert_array_equal(env.simulation.pose, crashed.trace().pose[5])
     env.end()
     with pytest.raises(RunError, match="step-out-of-range"):
-        replayed(crashed, crashed.last_step + 1)
+        resimulate(crashed, crashed.last_step + 1)
 
 
 def test_a_replay_that_goes_otherwise_is_told(crashed: Run) -> None:
     path = crashed.folder / "scenario.yaml"
     path.write_text(path.read_text().replace("goal: [7, 1, 0]", "goal: [7, 2, 0]"))
     with pytest.raises(RunError, match="other poses"):
-        replayed(open_run(crashed.id), 5)
+        resimulate(open_run(crashed.id), 5)
 
 
 def test_the_command_line(crash: Path) -> None:

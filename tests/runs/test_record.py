@@ -18,7 +18,7 @@ from irsim.env import Env
 from irsim.runs import RunError, list_runs, open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import VIEWS, inspect_run
-from irsim.runs.resimulation import replayed
+from irsim.runs.resimulation import resimulate
 from irsim.simulation.trace import Trace, record
 from tests.runs.test_trace import assert_same
 
@@ -100,7 +100,7 @@ def test_texts_are_recorded_too(workspace: Path, room: Path) -> None:
 
 def test_many_pieces_are_one_trace(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as small:
-        small.setattr("irsim.runs.recorder._PIECE", 1)
+        small.setattr("irsim.runs.recorder._PIECE_BYTES", 1)
         small.setattr("irsim.episodes.episode._CHUNK_STEPS", 7)
         many = open_run(str(irsim.run(room, seed=4, record=True).run_id))
     assert sum(name.startswith("trace-") for name in many.files()) > 5
@@ -113,7 +113,7 @@ def test_scans_are_kept_as_long_as_there_is_room(room: Path, monkeypatch: pytest
     whole = open_run(str(irsim.run(room, seed=4, steps=30, record=True).run_id)).trace()
     [(key, ranges)] = whole.ranges.items()
     assert len(ranges) == len(whole) == 31
-    monkeypatch.setattr("irsim.runs.recorder._MOST_SCANS", 4 * ranges.shape[1] * 17)
+    monkeypatch.setattr("irsim.runs.recorder._MAX_SCANS_BYTES", 4 * ranges.shape[1] * 17)
     for kept in (None, "film.gif"):  # inside the core, and step by step
         result = irsim.run(room, seed=4, steps=30, record=True, save=kept)
         assert result.notes == ["scans recorded until step 16 of 30 (too large)"]
@@ -128,13 +128,13 @@ def test_scans_are_kept_as_long_as_there_is_room(room: Path, monkeypatch: pytest
         told = json.loads(artifact(run, "trace.json", robot="rover", from_step=16, to_step=17))
         assert [row["ranges"][key] is None for row in told["rows"]] == [False, True]
         assert irsim.replay(run).scans == "computed"
-    monkeypatch.setattr("irsim.runs.recorder._LARGEST_SCAN", 1)
+    monkeypatch.setattr("irsim.runs.recorder._MAX_SCAN_BYTES", 1)
     assert irsim.run(room, seed=4, steps=30, record=True).notes == ["scans not recorded (too large)"]
 
 
 def test_a_record_that_ends_early_says_so_everywhere(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("irsim.runs.recorder._PIECE", 1)
-    monkeypatch.setattr("irsim.runs.recorder._MOST_TRACE", 2000)
+    monkeypatch.setattr("irsim.runs.recorder._PIECE_BYTES", 1)
+    monkeypatch.setattr("irsim.runs.recorder._MAX_TRACE_BYTES", 2000)
     monkeypatch.setattr("irsim.episodes.episode._CHUNK_STEPS", 5)
     console = CliRunner()
     shown = console.invoke(app, ["run", str(room), "--seed", "4", "--steps", "30", "--record"]).stdout
@@ -151,7 +151,7 @@ def test_a_record_that_ends_early_says_so_everywhere(room: Path, monkeypatch: py
     with pytest.raises(RunError, match=f"no steps from 29 on. Fix: it has the steps 0 to {until}; {note}"):
         inspect_run(run, from_step=29)
     with pytest.raises(RunError, match=f"no step 29. Fix: it has the steps 0 to {until}; {note}"):
-        replayed(run, 29)
+        resimulate(run, 29)
     assert irsim.replay(run).notes == [note]
     assert f"note: {note}" in console.invoke(app, ["replay", "last"]).stdout
 
@@ -198,7 +198,7 @@ def test_last_is_the_run_begun_last_whatever_was_looked_at_since(room: Path) -> 
 
 
 def test_an_unknown_run_names_recent_ones(room: Path) -> None:
-    with pytest.raises(RunError, match="none is kept here"):
+    with pytest.raises(RunError, match="there are no runs here"):
         open_run("room-123456")
     ids = [str(irsim.run(room, seed=n, steps=1, record=True).run_id) for n in range(7)]
     with pytest.raises(RunError, match="unknown-run") as caught:

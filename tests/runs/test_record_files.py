@@ -16,7 +16,7 @@ from irsim.options.registry import CUSTOM_BEHAVIORS
 from irsim.runs import RunError, open_run
 from irsim.runs.inspection import inspect_run
 from irsim.runs.replay.data import pack_run
-from irsim.runs.resimulation import replayed
+from irsim.runs.resimulation import resimulate
 
 SCENARIO = """\
 world: {width: 10, height: 10, obstacle_map: pictures/rooms.png, time_limit: 12}
@@ -76,7 +76,7 @@ def test_a_run_is_looked_at_with_the_map_that_it_had(workspace: Path, recorded: 
         (workspace / "pictures").rename(workspace / "elsewhere")
     assert closest(recorded) == rows
     assert pack_run(open_run(recorded)).data == page
-    env = replayed(open_run(recorded))
+    env = resimulate(open_run(recorded))
     assert env.simulation.collided[0]
     env.end(ending_time=0.0)
 
@@ -114,7 +114,7 @@ def test_modules_of_a_run_are_not_imported_to_look_at_it(workspace: Path, monkey
     (workspace / "turning.py").write_text("raise SystemExit('imported')\n", encoding="utf-8")
     assert inspect_run("kept", view="rows").rows
     assert pack_run(open_run("kept")).data
-    env = replayed(open_run("kept"), 20)
+    env = resimulate(open_run("kept"), 20)
     trace = open_run("kept").trace()
     np.testing.assert_array_equal(env.simulation.pose, trace.pose[20])
     np.testing.assert_allclose(env.simulation.ranges, np.minimum(trace.ranges["robot_0/0"][20], 5), rtol=1e-6)
@@ -126,9 +126,11 @@ def test_two_that_record_into_one_folder_do_not_mix(workspace: Path, monkeypatch
     first, second = (
         SCENARIO.replace("obstacle_map: pictures/rooms.png, ", "").replace("9, 5", f"9, {y}") for y in "46"
     )
-    monkeypatch.setattr("irsim.runs.recorder._new", lambda folder: folder.mkdir(exist_ok=True) or folder.resolve())
+    monkeypatch.setattr(
+        "irsim.runs.recorder._make_empty_folder", lambda folder: folder.mkdir(exist_ok=True) or folder.resolve()
+    )
     irsim.run(text=first, seed=0, record="kept")
     before = {path.name: path.read_bytes() for path in (workspace / "kept").iterdir()}
-    with pytest.raises(RunError, match=r"file-exists: .*kept' holds a run already. Fix: name another folder"):
+    with pytest.raises(RunError, match=r"file-exists: .*kept' already contains a run. Fix: name another folder"):
         irsim.run(text=second, seed=0, record="kept")
     assert {path.name: path.read_bytes() for path in (workspace / "kept").iterdir()} == before

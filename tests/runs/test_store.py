@@ -19,9 +19,9 @@ import pytest
 
 import irsim
 from irsim.runs import RunError, list_runs, open_run
-from irsim.runs.files import claim, written
+from irsim.runs.files import claim, replace_file
 from irsim.runs.pruning import prune, tidy
-from irsim.runs.store import META, find_run, made_folder, mark_cancelled, runs_folder, status_of
+from irsim.runs.store import META, find_run, make_run_folder, mark_cancelled, runs_folder, status_of
 
 ENDLESS = """\
 world: {width: 100, height: 100, collision_mode: unobstructed}
@@ -37,7 +37,7 @@ robot:
 
 def made(workspace: Path, name: str, size: int = 10, age: float = 0.0) -> Path:
     """A run as the store sees it: so large, last used so many seconds ago."""
-    folder = Path(made_folder(runs_folder(workspace, make=True), name))
+    folder = Path(make_run_folder(runs_folder(workspace, make=True), name))
     (folder / "trace-0000.npz").write_bytes(b"x" * size)
     (folder / META).write_text(json.dumps({"id": folder.name, "status": "finished"}))
     used = time.time() - age
@@ -102,7 +102,7 @@ def test_names_are_slugs() -> None:
 
     for stem in ("Crossing of 8 robots, é & more than that!", "...", "", "a" * 200, "../../x"):
         folder = Path(os.environ.get("TMPDIR", "/tmp"))
-        made_one = Path(made_folder(folder, stem))
+        made_one = Path(make_run_folder(folder, stem))
         made_one.rmdir()
         assert made_one.parent == folder
         assert ID.fullmatch(made_one.name)
@@ -229,7 +229,7 @@ def test_pieces_that_tell_nonsense_are_refused(room: Path, change: dict[str, Any
 
 def test_a_run_with_a_piece_missing_is_refused(room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as small:
-        small.setattr("irsim.runs.recorder._PIECE", 1)
+        small.setattr("irsim.runs.recorder._PIECE_BYTES", 1)
         small.setattr("irsim.episodes.episode._CHUNK_STEPS", 7)
         run_id = str(irsim.run(room, seed=4, record=True).run_id)
     read_all(run_id)
@@ -253,7 +253,7 @@ def test_files_are_whole_however_little_the_system_takes_at_once(
     else:
         monkeypatch.delattr(os, "writev", raising=False)
     monkeypatch.setattr(os, "write", lambda file, data: write(file, data[:2]))
-    written(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
+    replace_file(workspace / "file", b"one, ", memoryview(b"two"), b"", b" and three")
     assert (workspace / "file").read_bytes() == b"one, two and three"
     assert [path.name for path in workspace.iterdir()] == ["file"]
 
@@ -271,7 +271,7 @@ def test_what_only_leads_to_a_run_is_none(room: Path) -> None:
     path.rename(room.parent / "elsewhere.json")
     path.symlink_to(room.parent / "elsewhere.json")
     assert list_runs() == []
-    with pytest.raises(RunError, match="none is kept here"):
+    with pytest.raises(RunError, match="there are no runs here"):
         open_run(run_id)
 
 
@@ -285,6 +285,7 @@ def endless(workspace: Path) -> subprocess.Popen[bytes]:
     return subprocess.Popen([sys.executable, "-c", code], cwd=workspace, stderr=subprocess.DEVNULL)
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_a_run_that_is_being_written_can_be_read(workspace: Path) -> None:
     process = endless(workspace)
     try:
@@ -337,6 +338,6 @@ def first_run(workspace: Path) -> Any:
 def test_a_run_that_is_let_go_meanwhile_is_unknown(workspace: Path, room: Path) -> None:
     run = open_run(str(irsim.run(room, seed=0, record=True).run_id))
     assert prune(runs_folder(workspace), age=-1) == [run.id]
-    with pytest.raises(RunError, match="let go"):
+    with pytest.raises(RunError, match="has been deleted"):
         run.trace()
     assert run.status == "interrupted"

@@ -12,7 +12,7 @@ from irsim.env import Env
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.trace import Trace, joined, next_rows, present_row, record
+from irsim.simulation.trace import Trace, join_traces, next_rows, present_row, record
 
 TEXT = """\
 world: {width: 10, height: 10, collision_mode: stop}
@@ -78,7 +78,7 @@ def test_pieces_joined_are_the_whole() -> None:
     parts = [present_row(piecewise, True)]
     parts += [next_rows(piecewise, steps, until_done=False, scans=True) for steps in (1, 0, 20, 29)]
     assert [len(part) for part in parts] == [1, 1, 0, 20, 29]
-    assert_same(joined(parts), whole)
+    assert_same(join_traces(parts), whole)
 
 
 def test_python_behaviors_are_traced_alike(tmp_path: Path) -> None:

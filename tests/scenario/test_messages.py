@@ -252,7 +252,7 @@ def test_lenient_does_what_2_12_does(data: dict[str, Any], check: Any) -> None:
 def test_codes_are_a_closed_documented_list() -> None:
     used = set()
     for path in PACKAGE.rglob("*.py"):
-        if path.name == "codes.py":
+        if path.parent.name == "codes":
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in CODES:

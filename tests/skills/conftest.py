@@ -10,6 +10,8 @@ from typing import Any
 
 import yaml
 
+from tests.warm import warm
+
 ROOT = Path(__file__).resolve().parents[2]
 SKILL = ROOT / "skills" / "irsim-scenario"
 EXAMPLES = sorted(path for path in (SKILL / "examples").iterdir() if path.is_dir())
@@ -36,6 +38,6 @@ def spans(text: str) -> list[str]:
 def execute(words: list[str], folder: Path) -> str:
     """Run a command as a process of its own; it must succeed."""
     command = [sys.executable, *words[1:]] if words[0] == "python" else [sys.executable, "-m", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+    done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
     return done.stdout

@@ -13,6 +13,7 @@ import pytest
 
 from tests.skills.conftest import SKILL, execute, parts, spans
 from tests.skills.test_skill import SKELETON
+from tests.warm import warm
 
 SCRIPT = SKILL / "scripts" / "check.py"
 EDIT = SKILL / "examples" / "patrol-edit"
@@ -26,7 +27,7 @@ def folder(tmp_path: Path) -> Path:
 
 def check(folder: Path, *words: str) -> tuple[int, dict[str, Any]]:
     command = [sys.executable, str(SCRIPT), *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False)
     assert "Traceback" not in done.stderr
     assert len(done.stdout) < 20_000
     return done.returncode, json.loads(done.stdout) if done.stdout else {"said": done.stderr}

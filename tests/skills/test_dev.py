@@ -19,6 +19,7 @@ import irsim._core as core
 from irsim.diagnostics import codes
 from irsim.options.registry import REGISTRIES
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
+from tests.warm import warm
 
 SKILL = ROOT / "skills" / "irsim-dev"
 EXAMPLES = SKILL / "examples"
@@ -116,7 +117,7 @@ print({name: round(distance, 2) for name, (distance, _) in env.robot.sensors[0].
     text = (folder / "scenario.yaml").read_text(encoding="utf-8")
     (folder / "wrong.yaml").write_text(text.replace("reach: 4", "reech: 4"), encoding="utf-8")
     command = [sys.executable, "-m", "irsim", "validate", "wrong.yaml", "--import", "beacons"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "reach" in done.stdout + done.stderr
 

@@ -12,6 +12,7 @@ import pytest
 import irsim
 from irsim.lookup.reference import SKILLS, out_of_date
 from tests.skills.conftest import ROOT, parts
+from tests.warm import warm
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -97,7 +98,7 @@ def test_scripts_explain_themselves_and_refuse_nonsense(script: Path, tmp_path: 
     def call(*words: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, str(script), *words]
         return subprocess.run(
-            command, capture_output=True, text=True, cwd=tmp_path, stdin=subprocess.DEVNULL, check=False
+            warm(command), capture_output=True, text=True, cwd=tmp_path, stdin=subprocess.DEVNULL, check=False
         )
 
     told = call("--help")

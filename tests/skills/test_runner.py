@@ -17,6 +17,7 @@ import yaml
 import irsim
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
 from tests.skills.test_skill import SKELETON
+from tests.warm import warm
 
 SKILL = ROOT / "skills" / "irsim-runner"
 _, BODY = parts(SKILL / "SKILL.md")
@@ -89,7 +90,7 @@ def test_the_scripts_exit_codes_tell_whose_fault_it_is(folder: Path, words: list
     if words[0] == "hall.yaml":
         words = [*words, "--steps", "5"]
     command = [sys.executable, str(SKILL / "scripts" / "episodes.py"), *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(warm(command), cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == code, done.stderr
     assert done.stdout == ""
     assert said in done.stderr

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 import yaml
-from irsim_mcp.server import build_server
 from mcp import Client
 
 import irsim
 from irsim.diagnostics.codes import CODES, TOOL_CODES
+from irsim_mcp.server import build_server
 from tests.skills.conftest import PAGES, SKILL, execute, fences, parts, spans
 
 _, BODY = parts()

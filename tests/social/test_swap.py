@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.social.swap import LEAST_DISTANCE, starts, swap
+from tests.warm import warm
 
 
 def test_starts_are_apart_and_depend_on_the_seed() -> None:
@@ -34,6 +35,6 @@ def test_orca_cars_do_not_touch() -> None:
 
 def test_help() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "tests.social.swap", "--help"], capture_output=True, text=True, check=True
+        warm([sys.executable, "-m", "tests.social.swap", "--help"]), capture_output=True, text=True, check=True
     )
     assert "--robots" in done.stdout

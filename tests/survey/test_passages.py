@@ -13,8 +13,8 @@ import irsim
 import irsim._core as core
 from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.scenario.read import read
-from irsim.validation.feasibility import survey
-from irsim.validation.feasibility.gaps import barriers_of
+from irsim.validation.feasibility.check import feasibility_findings
+from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.scenes import FAR, Scene
 
 ROBOT = {"kinematics": {"name": "diff"}, "behavior": {"name": "follow"}, "state": [5, 5, 0]}
@@ -41,7 +41,7 @@ def door(size: float, gap: float, **more: Any) -> dict[str, Any]:
 
 
 def found(data: Any) -> list[Diagnostic]:
-    return list(read(data, strict=True, survey=survey).diagnostics)
+    return list(read(data, strict=True, survey=feasibility_findings).diagnostics)
 
 
 def codes(data: Any) -> list[str]:
@@ -52,7 +52,7 @@ def codes(data: Any) -> list[str]:
 def test_a_wall_across_a_world_is_found_however_large_it_is(size: float, radius: float) -> None:
     (item,) = found(world(size, line((size / 2, 0), (size / 2, size)), radius=radius))
     assert (item.code, item.severity) == ("goal-unreachable", "warning")
-    assert "nothing is open between them" in item.message
+    assert "obstacles separate them completely" in item.message
 
 
 @pytest.mark.parametrize("size", [50, 100, 200, 300, 1000])
@@ -68,7 +68,7 @@ def test_a_door_is_measured_in_worlds_of_every_size(size: float, gap: float, cod
 
 def test_an_open_edge_is_no_way_and_told() -> None:
     (item,) = found(world(300, line((150, 0), (150, 300)), boundary="none"))
-    assert "Only outside of the world" in item.message
+    assert "only outside the world" in item.message
     ring = line((280, 280), (299, 280), (299, 299), (280, 299), (280, 280))
     (item,) = found(world(300, ring, boundary="none"))
     assert (item.code, "outside of the world" in item.message) == ("goal-unreachable", False)
@@ -125,7 +125,7 @@ def test_a_gap_that_the_planner_cannot_see_is_a_warning_with_cells_that_show_it(
     text = SLANTED.format(goal=goal, planner="astar")
     (item,) = irsim.validate(text=text).findings
     assert (item.code, item.severity) == ("narrow-passage", "warning")
-    assert "It stands still: its planner 'astar' with cells of 0.1 m does not find that way" in item.message
+    assert "It does not move, because its planner 'astar' with cells of 0.1 m does not find that path" in item.message
     assert irsim.run(text=text).outcome == "timeout"
     assert item.fix is not None
     planner = item.fix.partition("planner: ")[2].partition("} ")[0] + "}"
@@ -169,7 +169,7 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
         n = 500
         clearance = core.Clearance(core.Terrain(FAR, things), ((0.0, 0.0), (10 / n, 10 / n), n, n))
         half = math.sqrt(0.5) * 10 / n
-        barriers = barriers_of(scene, most=20.0, open_edge=open_edge)
+        barriers = find_gaps(scene, most=20.0, open_edge=open_edge)
         assert barriers is not None
         distance = clearance.distance
         ways = []

@@ -11,11 +11,11 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from irsim.config import env_param, palette_param, path_param, world_param
-from irsim.util import util as every
 
 import irsim
 from irsim import util
+from irsim.config import env_param, palette_param, path_param, world_param
+from irsim.util import util as every
 
 ANGLES = st.floats(-1e3, 1e3)
 

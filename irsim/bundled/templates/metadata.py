@@ -20,7 +20,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from irsim.diagnostics.diagnostic import nearest
-from irsim.diagnostics.errors import IrsimError
+from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Outcome", "Parameter", "Template", "TemplateError", "Value"]
 
@@ -28,17 +28,8 @@ Value = bool | int | float | str
 Outcome = Literal["success", "collision", "timeout"]
 
 
-class TemplateError(IrsimError, ValueError):
-    """A template or parameter that cannot be used.
-
-    Attributes:
-        code: Code of the closed list in :mod:`irsim.diagnostics.codes`.
-        fix: What to write instead, or None.
-    """
-
-    def __init__(self, code: str, message: str, fix: str | None = None) -> None:
-        super().__init__(f"{code}: {message}" + (f" Fix: {fix}" if fix else ""))
-        self.code, self.message, self.fix = code, message, fix
+class TemplateError(CodedError, ValueError):
+    """A template or one of its parameters cannot be used."""
 
 
 class _Metadata(BaseModel):

@@ -1,4 +1,4 @@
-"""A module whose attributes are those of a parameter object of the environment used last."""
+"""Modules whose attributes are those of a parameter object of the environment used last."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ __all__ = ["follow"]
 
 
 class _Following(ModuleType):
-    """Reads and writes the parameter object; before the first environment, and for other names, itself."""
+    """A module that reads and writes the attributes of a parameter object.
+
+    Before the first environment is made, it reads and writes a default object. Names that the parameter object lacks
+    are attributes of the module itself.
+    """
 
     _parameters: str
     _default: Any
@@ -41,7 +45,13 @@ class _Following(ModuleType):
 
 
 def follow(module: str, parameters: str, default: Any) -> None:
-    """Let a module show ``env.<parameters>`` of the environment used last, ``default`` before there is one."""
+    """Turn a module into a view of ``env.<parameters>`` of the environment used last.
+
+    Args:
+        module: Name of the module.
+        parameters: Attribute of the environment that holds the parameter object.
+        default: Parameter object that is used before the first environment is made.
+    """
     found = sys.modules[module]
     found.__dict__.update(_parameters=parameters, _default=default, _bound=None)
     found.__class__ = _Following

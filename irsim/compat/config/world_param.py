@@ -1,6 +1,6 @@
 """``world_param`` of the environment used last; see :class:`irsim.env.parameters.WorldParam`.
 
-Before there is one it shows the defaults of a scenario.
+Before the first environment is made, it has the defaults of a scenario.
 """
 
 from types import SimpleNamespace

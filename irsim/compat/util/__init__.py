@@ -1,5 +1,6 @@
-"""Helpers of scripts: angles, frames, polygons, lists, random numbers."""
+"""Helpers for scripts, with the names of IR-SIM 2.12: angles, frames, polygons, lists, random numbers."""
 
+from irsim.compat.util import random, shapes, util, values
 from irsim.compat.util.random import random_uniform, rng, set_seed
 from irsim.compat.util.shapes import (
     cross_product,
@@ -57,16 +58,20 @@ __all__ = [
     "normalize_actions",
     "omni_to_diff",
     "plot_only",
+    "random",
     "random_point_range",
     "random_uniform",
     "relative_position",
     "resolve_message_targets",
     "rng",
     "set_seed",
+    "shapes",
     "time_it",
     "time_it2",
     "to_numpy",
     "transform_point_with_state",
+    "util",
+    "values",
     "vel_diff2world",
     "vel_omni2world",
     "vel_world2diff",

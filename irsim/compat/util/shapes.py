@@ -1,4 +1,4 @@
-"""Polygons, as scripts of IR-SIM call them."""
+"""Polygon helpers, with the function names of IR-SIM 2.12."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+_MIN_CORNERS = 3
 
 
 def cross_product(o: Any, a: Any, b: Any) -> float:
-    """Of o -> a and o -> b: positive where b lies to the left of o -> a."""
+    """Return the cross product of the vectors o -> a and o -> b; it is positive if b lies to the left of o -> a."""
     result: float = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
     return result
 
 
 def is_convex_and_ordered(points: Any) -> tuple[bool, str | None]:
-    """Whether (2, N) points are the corners of a convex polygon, and how they are ordered: ``CW``, ``CCW`` or None."""
+    """Return whether (2, N) points are the corners of a convex polygon, and their order: ``CW``, ``CCW`` or None."""
     corners = np.asarray(points, dtype=np.float64).T
-    if len(corners) < 3:
+    if len(corners) < _MIN_CORNERS:
         return False, None
     turns = [cross_product(corners[k - 2], corners[k - 1], corners[k]) for k in range(len(corners))]
     if all(turn > 0 for turn in turns):
@@ -40,13 +41,13 @@ def is_convex_and_ordered(points: Any) -> tuple[bool, str | None]:
 
 
 def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
-    """``G p <= h`` for the convex polygon with these corners.
+    """Return G and h of the inequality ``G p <= h`` that holds for the points of a convex polygon.
 
     Args:
         vertex: (2, N) corners in either order.
 
     Returns:
-        G (N, 2) outward normals, not normalised, and h (N, 1); None, None where the polygon is not convex.
+        G (N, 2), outward normals of any length, and h (N, 1); None and None if the polygon is not convex.
     """
     convex, order = is_convex_and_ordered(vertex)
     if not convex:
@@ -60,7 +61,7 @@ def gen_inequal_from_vertex(vertex: Any) -> tuple[Floats | None, Floats | None]:
 
 
 def geometry_transform(geometry: Any, state: Any) -> Any:
-    """A shapely geometry of the body frame at a pose."""
+    """Transform a shapely geometry from the body frame to a pose."""
     from shapely.affinity import affine_transform
 
     return affine_transform(geometry, get_affine_transform(state))
@@ -72,7 +73,7 @@ def is_convex_polygon(polygon: Any, tolerance: float = 1e-9) -> bool:
 
 
 def random_point_range(range_low: Any = None, range_high: Any = None) -> Floats:
-    """(3, 1) point drawn evenly from a box, by default [0, 0, -pi] to [10, 10, pi]."""
+    """Return a (3, 1) point drawn uniformly from a box, by default [0, 0, -pi] to [10, 10, pi]."""
     low = np.array([0.0, 0.0, -np.pi] if range_low is None else range_low, dtype=np.float64).reshape(-1, 1)
     high = np.array([10.0, 10.0, np.pi] if range_high is None else range_high, dtype=np.float64).reshape(-1, 1)
     point: Floats = rng.uniform(low, high)

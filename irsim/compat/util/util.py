@@ -1,4 +1,4 @@
-"""All helpers in one place; plain re-exports."""
+"""All helpers of ``irsim.util`` in one module, as in IR-SIM 2.12; they are defined elsewhere."""
 
 from math import pi
 

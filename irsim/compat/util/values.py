@@ -1,4 +1,4 @@
-"""Lists, arrays and checks of values, as scripts of IR-SIM call them."""
+"""Helpers for lists, arrays, argument checks, files and logs, with the function names of IR-SIM 2.12."""
 
 from __future__ import annotations
 
@@ -55,42 +55,43 @@ Function = Callable[..., Any]
 
 # lists ---------------------------------------------------------------------------------------------------------------
 def is_list_of_dicts(lst: Any) -> bool:
-    """Whether it is a list of mappings (or empty)."""
+    """Whether a value is a list of dictionaries; an empty list counts as one."""
     return isinstance(lst, list) and all(isinstance(item, dict) for item in lst)
 
 
 def is_list_of_numbers(lst: Any) -> bool:
-    """Whether it is a list of numbers (or empty)."""
+    """Whether a value is a list of numbers; an empty list counts as one."""
     return isinstance(lst, list) and all(isinstance(item, (int, float, np.number)) for item in lst)
 
 
 def is_list_of_lists(lst: Any) -> bool:
-    """Whether it is a list with at least one list in it."""
+    """Whether a value is a list that contains at least one list."""
     return isinstance(lst, list) and any(isinstance(item, list) for item in lst)
 
 
 def is_list_not_list_of_lists(lst: Any) -> bool:
-    """Whether it is a list without lists in it."""
+    """Whether a value is a list that contains no list."""
     return isinstance(lst, list) and not is_list_of_lists(lst)
 
 
 def is_2d_list(data: Any) -> bool:
-    """Whether a list or queue begins with a list."""
+    """Whether the first item of a sequence is a list, tuple or array."""
     return not isinstance(data, str) and len(data) > 0 and isinstance(data[0], (list, tuple, np.ndarray))
 
 
 def convert_list_length(input_data: Any, number: int = 0, per_object: bool = False) -> list[Any]:
-    """A value for each of ``number`` objects: one for all, or a list with one each, whose last element is repeated.
+    """Return a list with one value for each of ``number`` objects.
 
     Args:
-        input_data: A list of numbers is one value unless ``per_object``.
-        number: How many objects.
-        per_object: Any list has one value each.
+        input_data: One value for all objects, or a list with a value for each; the last value is repeated if the list
+            is too short. A list of numbers counts as one value, unless ``per_object`` is set.
+        number: Number of objects.
+        per_object: Treat every list as a list with a value for each object.
     """
     if number <= 0:
         return []
-    several = isinstance(input_data, list) and bool(input_data)
-    if not several or (is_list_of_numbers(input_data) and not per_object):
+    has_items = isinstance(input_data, list) and bool(input_data)
+    if not has_items or (is_list_of_numbers(input_data) and not per_object):
         return [input_data] * number
     if len(input_data) == 1 and is_list_of_lists(input_data):
         return [input_data[0]] * number
@@ -98,7 +99,7 @@ def convert_list_length(input_data: Any, number: int = 0, per_object: bool = Fal
 
 
 def convert_list_length_dict(input_data: Any, number: int = 0) -> list[Any]:
-    """A mapping, or a list of them, for each of ``number`` objects."""
+    """Return a list with one dictionary, or list of dictionaries, for each of ``number`` objects."""
     if number <= 0:
         return []
     if is_list_of_lists(input_data):
@@ -107,19 +108,19 @@ def convert_list_length_dict(input_data: Any, number: int = 0) -> list[Any]:
 
 
 def fit_length(values: Iterable[Any], length: int, fill: Any = 0) -> list[Any]:
-    """``values`` cut, or filled up, to ``length``."""
+    """Return ``values`` as a list of the given length, cut off or padded with ``fill``."""
     listed = list(values)[:length]
     return listed + [fill] * (length - len(listed))
 
 
 def find_duplicates(values: Iterable[Any]) -> list[Any]:
-    """What occurs more than once, in the order of first occurrence."""
+    """Return the values that occur more than once, in the order of their first occurrence."""
     listed = list(values)
     return [value for value in dict.fromkeys(listed) if listed.count(value) > 1]
 
 
 def find_object_by_identity(objects: Iterable[Any], name: str | None = None, object_id: int | None = None) -> Any:
-    """The object of a name, else that of an id, else None."""
+    """Return the object with this name; if no object has the name, the object with this id; otherwise None."""
     listed = list(objects)
     by_name = (o for o in listed if name is not None and o.name == name)
     by_id = (o for o in listed if object_id is not None and o.id == object_id)
@@ -130,10 +131,10 @@ def find_object_by_identity(objects: Iterable[Any], name: str | None = None, obj
 def to_numpy(
     data: Any, default: NDArray[Any] | None = None, expected_shape: tuple[int, ...] | None = None
 ) -> NDArray[Any] | None:
-    """A list as a column (or in ``expected_shape``); None becomes ``default``.
+    """Convert a list to a column (or to ``expected_shape``); None becomes ``default``.
 
     Raises:
-        ValueError: Not as many numbers as ``expected_shape`` has.
+        ValueError: The number of values does not match ``expected_shape``.
     """
     if data is None:
         return default
@@ -144,13 +145,19 @@ def to_numpy(
 
 
 def traj_to_xy_list(traj: Any, three_d: bool = False) -> Any:
-    """Coordinates of a path: a list of columns, or (2 or more, N). Lists x, y and, if wanted, z."""
+    """Return the coordinates of a path as lists x, y and, with ``three_d``, z.
+
+    The path is a list of columns, or an array (2 or more, N).
+    """
     columns = np.asarray(traj) if isinstance(traj, np.ndarray) else np.hstack([np.reshape(p, (-1, 1)) for p in traj])
     return tuple(list(columns[row]) for row in range(3 if three_d else 2))
 
 
 def points_to_xy_list(points: Any, three_d: bool = False) -> Any:
-    """Coordinates of points: a list of points, or (2 or more, N). Lists x, y and, if wanted, z."""
+    """Return the coordinates of points as lists x, y and, with ``three_d``, z.
+
+    The points are a list of points, or an array (2 or more, N).
+    """
     if isinstance(points, np.ndarray):
         return traj_to_xy_list(points, three_d)
     return tuple([point[row] for point in points] for row in range(3 if three_d else 2))
@@ -168,10 +175,10 @@ def check_number(
     context: str | None = None,
     default: Any = None,
 ) -> float:
-    """``value`` as a number within bounds; None becomes ``default``.
+    """Return ``value`` as a number, after checking its bounds; None becomes ``default``.
 
     Raises:
-        ValueError: Not a number, or out of bounds.
+        ValueError: The value is not a number, or it is out of bounds.
     """
     what = name if context is None else f"{context}: {name}"
     if value is None and default is not None:
@@ -190,23 +197,23 @@ def check_number(
 
 
 def check_choice(value: Any, name: str, choices: Iterable[str], *, context: str | None = None) -> str:
-    """``value``, in lower case, if it is one of ``choices``.
+    """Return ``value`` in lower case, after checking that it is one of ``choices``.
 
     Raises:
-        ValueError: It is none.
+        ValueError: The value is not one of the choices.
     """
     known = list(choices)
     word = str(value).strip().lower()
     if word in known:
         return word
     what = name if context is None else f"{context}: {name}"
-    raise ValueError(f"{what} {value!r} is none of {', '.join(map(repr, known))}")
+    raise ValueError(f"{what} must be one of {', '.join(map(repr, known))}, got {value!r}")
 
 
 def check_unknown_kwargs(
     kwargs: Mapping[str, Any], valid_keys: set[str], context: str = "", logger: Any = None
 ) -> list[str]:
-    """A warning for each key that is not valid, with the nearest that is; all are logged and returned."""
+    """Log a warning for each key that is not valid, with the nearest valid key, and return the warnings."""
     messages = []
     for key in kwargs:
         if key not in valid_keys:
@@ -225,7 +232,7 @@ def _arguments(function: Function, args: Any, kwargs: Any) -> inspect.BoundArgum
 
 
 def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
-    """A decorator that checks shapes of array arguments: rows at least, or a whole shape."""
+    """Return a decorator that checks the shapes of array arguments: a minimum number of rows, or the whole shape."""
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
@@ -246,15 +253,15 @@ def validate_shape(**shape_requirements: Any) -> Callable[[Function], Function]:
 
 
 def validate_length(**length_requirements: int) -> Callable[[Function], Function]:
-    """A decorator that checks that arguments are at least so long."""
+    """Return a decorator that checks the minimum length of arguments."""
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
         def checked(*args: Any, **kwargs: Any) -> Any:
             given = _arguments(function, args, kwargs).arguments
-            for name, least in length_requirements.items():
-                if len(given[name]) < least:
-                    raise ValueError(f"Parameter {name!r} must have length >= {least}, got {len(given[name])}")
+            for name, min_length in length_requirements.items():
+                if len(given[name]) < min_length:
+                    raise ValueError(f"Parameter {name!r} must have length >= {min_length}, got {len(given[name])}")
             return function(*args, **kwargs)
 
         return checked
@@ -262,7 +269,7 @@ def validate_length(**length_requirements: int) -> Callable[[Function], Function
     return decorate
 
 
-def _converted(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callable[[Function], Function]:
+def _convert_arguments(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callable[[Function], Function]:
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
         def called(*args: Any, **kwargs: Any) -> Any:
@@ -278,17 +285,20 @@ def _converted(names: tuple[str, ...], convert: Callable[[Any], Any]) -> Callabl
 
 
 def ensure_numpy(*param_names: str) -> Callable[[Function], Function]:
-    """A decorator that hands these arguments on as arrays."""
-    return _converted(param_names, np.asarray)
+    """Return a decorator that converts these arguments to arrays."""
+    return _convert_arguments(param_names, np.asarray)
 
 
 def ensure_column_vector(*param_names: str) -> Callable[[Function], Function]:
-    """A decorator that hands these arguments on as columns where they are flat."""
-    return _converted(param_names, to_numpy)
+    """Return a decorator that converts these arguments to arrays, and flat ones to columns."""
+    return _convert_arguments(param_names, to_numpy)
 
 
 def normalize_actions(func: Function) -> Function:
-    """A decorator of ``step(self, action, action_id)``: one slot for each of ``self.objects`` is handed on."""
+    """Decorate a method ``step(self, actions)``, so that it can be called as ``step(action, action_id)``.
+
+    The method receives a list with an action, or None, for each of ``self.objects``.
+    """
 
     @functools.wraps(func)
     def step(self: Any, action: Any = None, action_id: Any = 0) -> Any:
@@ -305,7 +315,7 @@ def normalize_actions(func: Function) -> Function:
 
 
 def bind_env(method: Function) -> Function:
-    """A decorator of methods of an environment: it is then the one used last."""
+    """Decorate a method of an environment, so that a call makes the environment the one used last."""
 
     @functools.wraps(method)
     def bound(self: Any, *args: Any, **kwargs: Any) -> Any:
@@ -316,18 +326,21 @@ def bind_env(method: Function) -> Function:
 
 
 def plot_only(method: Function) -> Function:
-    """A decorator of methods of an environment that do nothing in headless mode."""
+    """Decorate a method of an environment, so that it does nothing in headless mode."""
 
     @functools.wraps(method)
-    def drawn(self: Any, *args: Any, **kwargs: Any) -> Any:
+    def draw(self: Any, *args: Any, **kwargs: Any) -> Any:
         return None if self.headless else method(self, *args, **kwargs)
 
-    return drawn
+    return draw
 
 
 # files, time, log ----------------------------------------------------------------------------------------------------
 def file_check(file_name: str | None, root_path: str | None = None) -> str | None:
-    """The absolute path of a file as named, below ``root_path`` or anywhere below it; None if there is none."""
+    """Return the absolute path of a file, or None if it does not exist.
+
+    The name is tried as given, then in ``root_path``, then in all folders below it.
+    """
     if file_name is None:
         return None
     if os.path.isfile(file_name):
@@ -338,7 +351,7 @@ def file_check(file_name: str | None, root_path: str | None = None) -> str | Non
 
 
 def find_file(root_path: str | None, target_filename: str) -> str | None:
-    """The absolute path of the first file of that name below a folder; None if there is none."""
+    """Return the absolute path of the first file with this name below a folder; None if no file has this name."""
     if root_path is None:
         return None
     for folder, folders, files in os.walk(root_path):
@@ -349,7 +362,7 @@ def find_file(root_path: str | None, target_filename: str) -> str | None:
 
 
 def time_it(name: str = "Function") -> Callable[[Function], Function]:
-    """A decorator that prints how long each call took."""
+    """Return a decorator that prints the duration of each call."""
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)
@@ -365,14 +378,14 @@ def time_it(name: str = "Function") -> Callable[[Function], Function]:
 
 
 def time_it2(name: str = "Function") -> Callable[[Function], Function]:
-    """Like :func:`time_it`, for methods; prints only where ``self.time_print`` is true."""
+    """Return a decorator like :func:`time_it` for methods; it prints only if ``self.time_print`` is true."""
 
     def decorate(function: Function) -> Function:
-        loud = time_it(name)(function)
+        printing = time_it(name)(function)
 
         @functools.wraps(function)
         def timed(self: Any, *args: Any, **kwargs: Any) -> Any:
-            return (loud if getattr(self, "time_print", False) else function)(self, *args, **kwargs)
+            return (printing if getattr(self, "time_print", False) else function)(self, *args, **kwargs)
 
         return timed
 
@@ -385,15 +398,15 @@ def _logger() -> Logger:
 
 
 def log_warning(msg: str) -> None:
-    """Log at WARNING, in the environment used last."""
+    """Log a warning, with the logger of the environment used last."""
     _logger().warning(msg)
 
 
 def log_warning_once(msg: str) -> None:
-    """Log at WARNING the first time."""
+    """Log a warning the first time that it occurs."""
     _logger().warning_once(msg)
 
 
 def log_error(msg: str) -> None:
-    """Log at ERROR, in the environment used last."""
+    """Log an error, with the logger of the environment used last."""
     _logger().error(msg)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from irsim.components.distributions._options import DistributionOptions
-from irsim.options.angles import wrap
+from irsim.common.angles import wrap
+from irsim.components.distributions._options import DistributionOptions, WorldExtent
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.options.units import Meters
 from irsim.options.vectors import Pose
-
-if TYPE_CHECKING:
-    from irsim.scenario.model.scenario import WorldModel
 
 
 class CircleDistribution(DistributionOptions):
@@ -30,7 +27,7 @@ class CircleDistribution(DistributionOptions):
 
 
 @DISTRIBUTIONS.register(CircleDistribution)
-def place(options: CircleDistribution, count: int, world: WorldModel) -> list[tuple[list[float], list[float]]]:
+def place(options: CircleDistribution, count: int, world: WorldExtent) -> list[tuple[list[float], list[float]]]:
     """Pose and goal of each of ``count`` objects: (x, y, theta), world frame, heading in [-pi, pi)."""
     center, radius = options.center or world.center, options.radius
     if radius is None:

@@ -1,9 +1,9 @@
 """Build backend: scikit-build-core, with a C++ compiler from PyPI where the machine has none.
 
-pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each hands on
-to scikit-build-core, which brings CMake and ninja when they are missing. A missing C++ compiler is answered here: the
-package ``ziglang`` is asked for, and scripts in a temporary folder make its clang look like an ordinary tool chain.
-The variables ``CXX``, ``CMAKE_TOOLCHAIN_FILE`` and ``CMAKE_ARGS`` with a compiler or tool chain in it are respected.
+pip calls the functions of PEP 517 and PEP 660 in this module (``build-backend`` in ``pyproject.toml``). Each calls
+scikit-build-core, which requires CMake and ninja where they are missing. Where a C++ compiler is missing, this module
+requires the package ``ziglang``; scripts in a temporary folder make its clang look like an ordinary tool chain. The
+variables ``CXX``, ``CMAKE_TOOLCHAIN_FILE`` and ``CMAKE_ARGS`` with a compiler or tool chain in it are respected.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def build_editable(
 
 
 def chosen_by_user(environ: Mapping[str, str]) -> bool:
-    """Whether the environment already says which compiler CMake shall use."""
+    """Whether the environment already sets the compiler that CMake must use."""
     named = ("CXX", "CMAKE_TOOLCHAIN_FILE")
     in_arguments = ("CMAKE_CXX_COMPILER", "CMAKE_TOOLCHAIN_FILE")
     return any(environ.get(name) for name in named) or any(
@@ -99,7 +99,7 @@ def chosen_by_user(environ: Mapping[str, str]) -> bool:
 def find_compiler() -> str | None:
     """Path of a C++ compiler of this machine, or None.
 
-    On Windows an installed Visual Studio counts; its path is then ``""``, since CMake finds it by itself.
+    On Windows an installed Visual Studio counts; its path is then ``""``, since CMake finds it without a path.
     """
     if os.name == "nt" and (shutil.which("cl") or _visual_studio()):
         return ""

@@ -1,4 +1,5 @@
-// dash: straight to the goal, looking at nobody. One law per drive (reference: 5.1); others get the wanted velocity.
+// dash: drive straight to the goal without avoiding others. Each drive has its own law (reference: 5.1); drives without
+// one get the wanted velocity.
 #pragma once
 
 #include "decision.hpp"
@@ -11,11 +12,11 @@ struct DashOptions {
   static constexpr auto fields() { return std::make_tuple(field("angle_tolerance", &DashOptions::angle_tolerance)); }
 };
 
-/// What the law reads of one object.
+/// What the laws need to know about one object.
 struct Dasher {
-  double distance, bearing;  // of the goal [m], world frame [rad]
-  double theta;              // own heading
-  double goal_theta;         // NaN if the goal has none
+  double distance, bearing;  // of the goal: [m], [rad] in the world frame
+  double theta;              // heading of the object [rad]
+  double goal_theta;         // heading of the goal [rad], NaN without one
   double threshold;          // goal_threshold [m]
   Vec3 top;                  // vel_max
   Vec3 acce;
@@ -25,7 +26,8 @@ struct Dasher {
   double error() const { return wrap(bearing - theta); }
 };
 
-/// Turn rate toward the goal that can still be braked within the error; `axis` is the turning control.
+/// Largest turn rate from which the object can stop within the heading error. `axis` is the index of the turning
+/// control.
 inline double turn_ramp(const Dasher& d, double error, int axis) {
   const double sign = error > 0.0 ? 1.0 : error < 0.0 ? -1.0 : 0.0;
   const double limit = std::fabs(d.top[axis]), acce = d.acce[axis];

@@ -1,6 +1,6 @@
-// orca: optimal reciprocal collision avoidance. Each of two takes half of the smallest change of velocity that keeps
-// them apart for some time; who does not reciprocate is avoided by the whole change, and what stands still is never
-// driven into (van den Berg, Guy, Lin, Manocha: Reciprocal n-body collision avoidance, 2011).
+// orca: optimal reciprocal collision avoidance. Each of two objects makes half of the smallest change of velocity that
+// keeps them apart for some time. For an object that does not reciprocate the other makes the whole change, and static
+// objects are never driven into (van den Berg, Guy, Lin, Manocha: Reciprocal n-body collision avoidance, 2011).
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 namespace irsim {
 
 struct OrcaOptions {
-  double neighborDist;             // others farther away are ignored [m]
-  int maxNeighbors;                // most others considered, nearest first
-  double timeHorizon;              // how far ahead others are avoided [s]
-  double timeHorizonObst;          // how far ahead walls and standing circles are avoided [s]
-  double safe_radius;              // added to the own radius [m]
-  std::optional<double> maxSpeed;  // none: the object's own [m/s]
+  double neighborDist;             // objects farther away are ignored [m]
+  int maxNeighbors;                // largest number of other objects considered, nearest first
+  double timeHorizon;              // time horizon for moving objects [s]
+  double timeHorizonObst;          // time horizon for walls and static circles [s]
+  double safe_radius;              // margin added to the radius of the object [m]
+  std::optional<double> maxSpeed;  // [m/s]; none: the limit of the object
   static constexpr auto fields() {
     using O = OrcaOptions;
     return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),

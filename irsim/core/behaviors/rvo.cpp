@@ -1,18 +1,18 @@
 #include "behaviors/rvo.hpp"
 
-#include "surroundings.hpp"
-#include "velocity_obstacles.hpp"
+#include "rvo/velocity_obstacles.hpp"
+#include "surroundings/ego.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kSpacing = 0.05;     // of the search grid [m/s]
-constexpr double kShortest = 1e-6;    // shorter segments are skipped [m]
-constexpr double kThinAngle = 0.01;   // stands for an angle of zero in the apex of hrvo [rad]
-constexpr double kWallHorizon = 1.0;  // walls that are reached sooner block a velocity [s]
-constexpr double kCreep = 0.2;        // drives that turn while they roll use at least this share of the speed
+constexpr double kSpacing = 0.05;     // spacing of the search grid [m/s]
+constexpr double kMinLength = 1e-6;   // shorter segments are skipped [m]
+constexpr double kThinAngle = 0.01;   // replaces an angle of zero in the apex of hrvo [rad]
+constexpr double kWallHorizon = 1.0;  // walls that would be reached sooner block a velocity [s]
+constexpr double kMinRolling = 0.2;   // smallest share of the speed at which drives roll while they turn
 
-/// Where the cone of a disc starts; `sine` and `cosine` of half its angle.
+/// The apex of the cone of a disc. `sine` and `cosine` are those of half its angle.
 Vec2 apex_of(Avoidance mode, const Ego& ego, const Disc& disc, const Cone& cone, double sine, double cosine) {
   const Vec2 middle = (ego.velocity + disc.velocity) * 0.5;
   if (mode == Avoidance::vo) return disc.velocity;
@@ -23,7 +23,7 @@ Vec2 apex_of(Avoidance mode, const Ego& ego, const Disc& disc, const Cone& cone,
   return on_the_right ? middle - cone.right * shift : disc.velocity + cone.right * shift;
 }
 
-void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, VelocityObstacles& obstacles) {
+void add_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, VelocityObstacles& obstacles) {
   const Vec2 way = disc.centre - ego.position;
   const double radius = ego.radius + disc.radius + kPadding, distance = norm(way);
   const double sine = radius / std::max(distance, radius), cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
@@ -35,15 +35,15 @@ void avoid_disc(const RvoOptions& options, const Ego& ego, const Disc& disc, Vel
   obstacles.approaches.push_back({ego.velocity + disc.velocity, std::sqrt(gap2), 1.0 / gap2});
 }
 
-/// Cone from the clockwise end of a segment to the other, wider by the radius of the ego at both.
-void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
+/// Add the cone between the ends of a segment, widened by the radius of the ego at both.
+void add_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
   a = a - ego.position, b = b - ego.position;
   const double length = norm(b - a);
-  if (length < kShortest) return;
+  if (length < kMinLength) return;
   if (cross(a, b) < 0.0) std::swap(a, b);
   const auto edge = [&](Vec2 end, double side) {
     const double distance = norm(end);
-    if (distance <= kShortest) return rotate(unit(0.0), {0.0, side});
+    if (distance <= kMinLength) return rotate(unit(0.0), {0.0, side});
     const double sine = std::min(1.0, ego.radius / std::max(distance, ego.radius));
     return rotate(end * (1.0 / distance), {std::sqrt(1.0 - sine * sine), side * sine});
   };
@@ -54,7 +54,7 @@ void avoid_line(const Ego& ego, Vec2 a, Vec2 b, VelocityObstacles& obstacles) {
 void look_around(const RvoOptions& options, const Decision& decision, const Ego& ego, VelocityObstacles& obstacles) {
   obstacles.clear();
   obstacles.horizon = kWallHorizon;
-  const double room = ego.route != nullptr ? ego.route->room : ego.radius;  // kept from walls
+  const double room = ego.route != nullptr ? ego.route->wall_radius : ego.radius;  // distance to keep from walls [m]
   const auto bar = [&](Vec2 a, Vec2 b, double radius) {
     a = a - ego.position, b = b - ego.position;
     const Vec2 nearest = nearest_on_segment(a, b, {});
@@ -63,7 +63,7 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
   for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& disc) {
     const bool stands = decision.world.is_static[disc.object];
     if (ego.route == nullptr || !stands) {
-      avoid_disc(options, ego, disc, obstacles);
+      add_disc(options, ego, disc, obstacles);
     } else if (!decision.world.unobstructed[disc.object]) {
       bar(disc.centre, disc.centre, room + disc.radius);
     }
@@ -71,17 +71,17 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
   const double fastest = norm({options.vxmax, options.vymax});
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
   if (ego.route == nullptr) {
-    for_standing_lines(decision, ego, kInfinity, [&](const Wall& line) { avoid_line(ego, line.a, line.b, obstacles); });
+    for_static_lines(decision, ego, kInfinity, [&](const Wall& line) { add_line(ego, line.a, line.b, obstacles); });
   } else {
-    for_standing_lines(decision, ego, reach, [&](const Wall& line) {
+    for_static_lines(decision, ego, reach, [&](const Wall& line) {
       if (!decision.world.unobstructed[line.object]) bar(line.a, line.b, room);
     });
   }
-  for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { avoid_line(ego, a, b, obstacles); });
+  for_moving_lines(decision, ego, [&](Vec2 a, Vec2 b) { add_line(ego, a, b, obstacles); });
   for_facing_walls(decision, ego, reach, [&](const Wall& wall) { bar(wall.a, wall.b, room); });
 }
 
-/// Samples about a speed; only the limit itself where that is farther away than the window.
+/// Samples about a speed; only the nearest limit if the speed exceeds it by more than the window.
 Axis window(double speed, double acce, double limit) {
   const Axis axis = Axis::arange(std::max(speed - acce, -limit), std::min(speed + acce, limit), kSpacing);
   return axis.count > 0 ? axis : Axis{clip(speed, -limit, limit), kSpacing, 1};
@@ -94,10 +94,10 @@ constexpr bool moves_sideways(const Drive&) {
 constexpr bool moves_sideways(const OmniOptions&) { return true; }
 constexpr bool moves_sideways(const OmniAngularOptions&) { return true; }
 
-/// Drives that do not move sideways roll along their heading while they turn: the speed at which that path is free of
-/// walls, too [m/s].
+/// Largest speed along the heading at which no wall is hit [m/s]. It matters for drives that cannot move sideways,
+/// because they roll along their heading while they turn.
 double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 heading) {
-  const double rolling = std::max(dot(velocity, heading), kCreep * norm(velocity));
+  const double rolling = std::max(dot(velocity, heading), kMinRolling * norm(velocity));
   double speed = kInfinity;
   for (const Barrier& wall : obstacles.barriers) {
     const double share = wall.time(heading * rolling) / obstacles.horizon;
@@ -108,7 +108,7 @@ double free_speed(const VelocityObstacles& obstacles, Vec2 velocity, Vec2 headin
 
 Intent turning_intent(const VelocityObstacles& obstacles, const Ego& ego, Vec2 velocity, Vec2 heading) {
   Turning turning;
-  if (ego.route != nullptr) turning.tolerance = 0.0;  // nearly parallel to a wall is too little
+  if (ego.route != nullptr) turning.tolerance = 0.0;  // nearly parallel to a wall still ends in the wall
   if (norm(velocity) <= turning.min_speed) {
     const bool alone = obstacles.cones.empty();
     turning.max_forward = 0.0;

@@ -13,9 +13,9 @@ enum class Avoidance { rvo, hrvo, vo };
 struct RvoOptions {
   double vxmax, vymax;  // bounds of the search, world axes [m/s]
   double acce;          // half width of the search window [m/s]
-  double factor;        // weight of the time to collision when nothing is free
+  double factor;        // weight of the time to collision if every velocity is blocked
   Avoidance mode;
-  double neighbor_threshold;  // [m]
+  double neighbor_threshold;  // reach within which objects are avoided [m]
 
   static constexpr auto fields() {
     using R = RvoOptions;

@@ -1,19 +1,19 @@
 #include "behaviors/sfm.hpp"
 
 #include "geometry/predicates.hpp"
-#include "surroundings.hpp"
+#include "surroundings/ego.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kSamePlace = 1e-6;  // of two objects: no direction, no force [m]
-constexpr double kStraight = 1e-12;  // smaller angles are rounding errors: the other is straight ahead [rad]
-constexpr double kOnWall = 1e-9;     // of a wall [m]
-constexpr double kWallReach = 5.0;   // walls act within so many sigmas
-constexpr double kSideways = 0.2;    // share of the pull along a route that walls may push across it
-constexpr double kTolerance = 0.02;  // heading error that is left alone [rad]
+constexpr double kSamePlace = 1e-6;  // two objects this close have no direction between them, and so no force [m]
+constexpr double kStraight = 1e-12;  // smaller angles are rounding errors of an object straight ahead [rad]
+constexpr double kOnWall = 1e-9;     // an object this close is on the wall [m]
+constexpr double kWallReach = 5.0;   // distance within which walls act, in units of sigma
+constexpr double kSideways = 0.2;    // largest push of walls across a route, as a share of the pull along it
+constexpr double kTolerance = 0.02;  // smaller heading errors are not corrected [rad]
 
-/// Of another disc: away along the interaction, and sideways.
+/// Force of another disc: a braking part against the interaction vector and a sideways part.
 Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
   const Vec2 way = other.centre - ego.position;
   const double distance = norm(way);
@@ -33,7 +33,7 @@ Vec2 social_force(const SfmOptions& o, const Ego& ego, const Disc& other) {
   return along * f_velocity + Vec2{-along.y, along.x} * f_angular;
 }
 
-/// Away from the nearest point of a wall.
+/// Force of a wall, away from its nearest point.
 Vec2 wall_force(const SfmOptions& o, const Ego& ego, Vec2 nearest) {
   const Vec2 away = ego.position - nearest;
   const double distance = norm(away);
@@ -42,7 +42,8 @@ Vec2 wall_force(const SfmOptions& o, const Ego& ego, Vec2 nearest) {
   return away * (std::exp(-std::max(distance - ego.radius, 0.0) / o.sigma_obstacle) / distance);
 }
 
-/// Whether the nearest point is the corner where `next` starts, and `next` faces the ego: then `next` speaks for it.
+/// Whether the nearest point is the corner at which the next wall starts and that wall faces the ego. The force of the
+/// corner is then computed with the next wall only.
 bool shared_corner(const Walls& walls, const Wall& wall, Vec2 position) {
   if (wall.next < 0 || dot(position - wall.b, wall.b - wall.a) < 0.0) return false;
   const Wall& next = walls.list[wall.next];
@@ -50,7 +51,8 @@ bool shared_corner(const Walls& walls, const Wall& wall, Vec2 position) {
   return cross(along, position - next.a) <= 0.0 && dot(position - next.a, along) <= 0.0;
 }
 
-/// On a route what stands still pushes to the side of the way only, and less than the way pulls: the way is free.
+/// The force of static objects on a route, which is free of them: only its sideways part, limited to less than the pull
+/// along the route.
 Vec2 on_route(const SfmOptions& o, const Ego& ego, Vec2 force) {
   const double speed = norm(ego.desired);
   if (!(speed > 0.0)) return {};
@@ -65,7 +67,7 @@ Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& eg
   const auto push = [&](Vec2 a, Vec2 b) { force = force + wall_force(o, ego, nearest_on_segment(a, b, ego.position)); };
   for_moving_lines(decision, ego, push);
   if (ego.route != nullptr) std::swap(force, moving);
-  for_standing_lines(decision, ego, reach, [&](const Wall& line) {
+  for_static_lines(decision, ego, reach, [&](const Wall& line) {
     if (ego.route == nullptr || !decision.world.unobstructed[line.object]) push(line.a, line.b);
   });
   const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
@@ -82,11 +84,11 @@ Vec2 obstacle_force(const SfmOptions& o, const Decision& decision, const Ego& eg
   return moving + on_route(o, ego, force);
 }
 
-/// What the members of one social group do to each other.
+/// Forces between the members of one social group.
 struct Companions {
   const SfmOptions& options;
   const Decision& decision;
-  const std::vector<int>& positions;  // in Decision::members; those beyond are nobody
+  const std::vector<int>& positions;  // indices in Decision::members; larger ones are ignored
 
   template <class Visit>
   void each(Visit&& visit) const {
@@ -117,7 +119,7 @@ struct Companions {
            gaze(ego, to_others) * options.force_factor_gaze;
   }
 
-  /// Slower, when the others are not in view.
+  /// Slow down if the others are out of view.
   Vec2 gaze(const Ego& ego, Vec2 to_others) const {
     const double lengths = norm(ego.velocity) * norm(to_others);
     if (!(lengths > 0.0)) return {};
@@ -155,7 +157,7 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
                        obstacle_force(options, decision, ego) * options.force_factor_obstacle +
                        group_force(options, decision, ego);
     Vec2 velocity = ego.velocity + force * dt;
-    // a car turns too slowly for that: on a route it steers for where the forces lead
+    // A car turns too slowly to follow one period of the forces, so on a route it steers where they lead in the end.
     if (ego.route != nullptr && std::holds_alternative<AckerOptions>(world.drive[ego.id])) {
       velocity = ego.velocity + force * options.relaxation_time;
     }

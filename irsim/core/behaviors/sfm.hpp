@@ -13,14 +13,14 @@ namespace irsim {
 
 struct SfmOptions {
   double vmax;                // speed cap [m/s]
-  double neighbor_threshold;  // reach of the interaction [m]
+  double neighbor_threshold;  // reach of social forces [m]
   double relaxation_time;     // [s]
   double force_factor_desired, force_factor_social, force_factor_obstacle;
-  double sigma_obstacle;  // reach of walls [m]
+  double sigma_obstacle;  // decay length of the force of walls [m]
   double lambda_importance, gamma, n_angular, n_velocity;
   double safety_radius;  // [m]
-  // between members of a group behavior
-  std::optional<std::vector<std::vector<int>>> social_groups;  // positions in Decision::members
+  // forces between members of a group behavior
+  std::optional<std::vector<std::vector<int>>> social_groups;  // indices in Decision::members
   double force_factor_coherence, force_factor_group_repulsion;
   std::optional<double> group_repulsion_threshold;  // [m]; none: the sum of the padded radii
   double force_factor_gaze;
@@ -42,7 +42,7 @@ struct SfmOptions {
   }
 };
 
-/// The velocity that one period of the forces leads to, for each object of the decision.
+/// Write, for each object of the decision, the velocity to which one period of the forces leads.
 void sfm(const SfmOptions& options, const Decision& decision, Intent* intents);
 
 }  // namespace irsim

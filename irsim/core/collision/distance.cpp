@@ -24,7 +24,7 @@ double squared_to_edges(const Piece& piece, Vec2 p) {
   return least;
 }
 
-/// Whether a point lies in what the outline of a part is the surface of.
+/// Whether a point lies in the solid side of the outline of a part.
 bool in_solid(const Piece& piece, Vec2 p) {
   if (!is_closed(piece.part.kind)) return false;
   return inside_ring(piece.begin(), piece.edges(), p) == (piece.part.kind == Kind::polygon);
@@ -40,7 +40,7 @@ double disc_to_outline(const Piece& disc, const Piece& outline) {
   return (in_solid(outline, centre) ? -away : away) - disc.part.radius;
 }
 
-/// Squared distance of two segments; 0 where they meet.
+/// Squared distance between two segments; 0 if they meet.
 double squared_between(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   Vec2 where;
   if (segments_meet(a, b, c, d, where)) return 0.0;
@@ -85,7 +85,7 @@ double squared_to_box(const Box& box, Vec2 a, Vec2 b) {
 
 Box grown(Box box, double by) { return {box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by}; }
 
-/// No less than the distance from a point to the nearest occupied cell [m].
+/// Upper bound of the distance from a point to the nearest occupied cell [m].
 double reach_to_cells(const OccupancyGrid& grid, Vec2 p) {
   const Vec2 at{(p.x - grid.origin().x) / grid.cell().x, (p.y - grid.origin().y) / grid.cell().y};
   const int i = static_cast<int>(clip(std::floor(at.x), 0.0, grid.columns() - 1.0));
@@ -94,7 +94,7 @@ double reach_to_cells(const OccupancyGrid& grid, Vec2 p) {
   const double farthest = norm({std::max(std::fabs(p.x - all.x0), std::fabs(p.x - all.x1)),
                                 std::max(std::fabs(p.y - all.y0), std::fabs(p.y - all.y1))});
   const int cells = grid.clearance(i, j);
-  if (cells >= 254) return farthest;  // counted no further
+  if (cells >= 254) return farthest;  // clearances are counted no farther
   const double to_cell = std::sqrt(squared_to_box(grid.box(i, j), p));
   return std::min(farthest, to_cell + (cells + 1) * norm(grid.cell()));
 }
@@ -110,7 +110,7 @@ double squared_to_cells(const OccupancyGrid& grid, Vec2 p) {
   return least;
 }
 
-/// How deep a point is among occupied cells: the distance to the nearest free one; 0 outside.
+/// Depth of a point in occupied cells: the distance to the nearest free cell; 0 outside.
 double depth_in_cells(const OccupancyGrid& grid, Vec2 p) {
   const Vec2 cell = grid.cell();
   const auto column = static_cast<int>(clip(std::floor((p.x - grid.origin().x) / cell.x), -1.0, grid.columns()));

@@ -1,13 +1,13 @@
-// How far two footprints are from each other.
+// Distance between two footprints.
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 
-/// Distance [m] between the surfaces of two closed footprints. Negative where they overlap: a circle reaches as deep as
-/// its centre does, plus its radius; of two outlines the deepest corner of one inside the other counts (0 if they cross
-/// without one). NaN where a footprint is not finite.
+/// Distance [m] between the surfaces of two closed footprints, negative if they overlap. The depth of a circle is that
+/// of its centre plus its radius. The depth of two outlines is that of the deepest corner of one inside the other, 0 if
+/// they cross without such a corner. NaN if a footprint is not finite.
 double distance(const Footprint& a, const Footprint& b);
 
 }  // namespace irsim

@@ -14,7 +14,7 @@ void Grid::add(int id, const Box& box) {
   const auto item = static_cast<std::uint32_t>(items_.size());
   items_.push_back({box, id});
   const Cells cells = covered(box);
-  if (cells.count() > kMostCells) {
+  if (cells.count() > kMaxCellsPerBox) {
     large_.push_back({box, id});
     return;
   }

@@ -1,29 +1,29 @@
-// Broad phase: which boxes may meet.
+// Broad phase: a grid that finds boxes which may meet.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Boxes by the cells of an unbounded square grid they cover, cells hashed into buckets. Every stored box that meets a
-/// query is reported once, in no particular order. Boxes that are not finite meet nothing.
+/// Boxes stored in the cells of an unbounded square grid that they cover; cells are hashed into buckets. Every stored
+/// box that meets a query is reported once, in no particular order. Boxes that are not finite meet nothing.
 class Grid {
  public:
-  /// Forget all boxes; cells suit boxes of about this size.
+  /// Remove all boxes and set the cell size, which should be about the size of the boxes.
   void clear(double cell);
   void add(int id, const Box& box);
-  /// Sort what was added; queries are possible afterwards.
+  /// Sort the boxes that were added; queries are possible afterwards.
   void build();
 
   template <class Report>
   void query(const Box& box, Report&& report) const {
     if (!box.finite()) return;
     const Cells cells = covered(box);
-    if (cells.count() > kMostCells) {
+    if (cells.count() > kMaxCellsPerBox) {
       for (const Item& item : items_)
         if (item.box.meets(box)) report(item.id);
       return;
@@ -38,7 +38,7 @@ class Grid {
           const Entry& entry = sorted_[k];
           if (entry.x != x || entry.y != y) continue;
           const Item& item = items_[entry.item];
-          // a pair shares several cells: the one with the lower left corner of the overlap reports it
+          // Two boxes may share several cells. Only the cell with the lower left corner of their overlap reports them.
           if (item.box.meets(box) && column(std::max(item.box.x0, box.x0)) == x &&
               column(std::max(item.box.y0, box.y0)) == y) {
             report(item.id);
@@ -49,7 +49,7 @@ class Grid {
   }
 
  private:
-  static constexpr std::int64_t kMostCells = 64;
+  static constexpr std::int64_t kMaxCellsPerBox = 64;  // boxes that cover more cells are kept in a list
   struct Cells {
     std::int32_t x0, y0, x1, y1;
     std::int64_t count() const { return (std::int64_t{x1} - x0 + 1) * (std::int64_t{y1} - y0 + 1); }

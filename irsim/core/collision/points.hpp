@@ -1,18 +1,18 @@
-// Points on the cells of an unbounded square grid: who is near.
+// Broad phase for points: a grid that finds points near a place.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Points by hashed cell. Every stored point within reach of a query is reported once, in no particular order. Points
-/// that are not finite are near nothing.
+/// Points stored in the cells of an unbounded square grid, which are hashed into buckets. Every stored point within
+/// reach of a query is reported once, in no particular order. Points that are not finite are never found.
 class Points {
  public:
-  /// Store these points, on cells of this size [m].
+  /// Store these points in cells of this size [m].
   void build(const std::vector<Vec2>& points, double cell);
   bool empty() const { return entries_.empty(); }
 
@@ -22,7 +22,7 @@ class Points {
     const double reach2 = reach * reach;
     const double x0 = column(centre.x - reach), x1 = column(centre.x + reach);
     const double y0 = column(centre.y - reach), y1 = column(centre.y + reach);
-    if (!((x1 - x0 + 1.0) * (y1 - y0 + 1.0) <= static_cast<double>(entries_.size()))) {  // many cells, few points
+    if (!((x1 - x0 + 1.0) * (y1 - y0 + 1.0) <= static_cast<double>(entries_.size()))) {  // more cells than points
       for (const Entry& entry : entries_) {
         if (squared(entry.point - centre) <= reach2) report(entry.index);
       }

@@ -14,7 +14,7 @@ void Sweep::sort() {
     if (entry.box.finite()) {
       all.include(entry.box);
     } else {
-      entry.box = {};  // meets nothing, goes to the end
+      entry.box = {};  // an empty box meets nothing and is sorted to the end
     }
   }
   const double width = all.x1 - all.x0, height = all.y1 - all.y0;
@@ -31,7 +31,7 @@ void Sweep::sort() {
     for (; k > 0 && before(entry, entries_[k - 1]); --k) entries_[k] = entries_[k - 1];
     entries_[k] = entry;
     moves += i - k;
-    if (moves > 8 * entries_.size()) {  // not nearly sorted after all
+    if (moves > 8 * entries_.size()) {  // a full sort is faster than many moves
       std::sort(entries_.begin(), entries_.end(), before);
       return;
     }

@@ -3,18 +3,18 @@
 
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Keeps the order of the last step, so that sorting again is nearly free. Every pair of boxes that meet is reported
-/// once, in no particular order. Boxes that are not finite meet nothing.
+/// Keeps the order of the last step, so that sorting costs little. Every pair of boxes that meet is reported once, in
+/// no particular order. Boxes that are not finite meet nothing.
 class Sweep {
  public:
   /// Start over with objects `ids`.
   void reset(const std::vector<int>& ids);
 
-  /// `box(id)` gives the present box.
+  /// Report the ids of each pair of boxes that meet; `box(id)` returns the present box.
   template <class Boxes, class Report>
   void pairs(Boxes&& box, Report&& report) {
     for (Entry& entry : entries_) entry.box = box(entry.id);
@@ -36,7 +36,7 @@ class Sweep {
   void sort();
 
   std::vector<Entry> entries_;
-  bool upright_ = false;  // sorted along y
+  bool upright_ = false;  // whether entries are sorted along y
 };
 
 }  // namespace irsim

@@ -28,7 +28,7 @@ bool circles_touch(const Shape& a, const Shape& b, Vec2& where) {
   const double reach = a.part.radius + b.part.radius, distance2 = squared(d);
   if (!(distance2 <= reach * reach)) return false;
   const double distance = std::sqrt(distance2);
-  // middle of the overlap on the line of centres
+  // the point in the middle of the overlap on the line of centres
   const double low = std::max(-a.part.radius, distance - b.part.radius);
   const double high = std::min(a.part.radius, distance + b.part.radius);
   where = distance > 0.0 ? ca + d * (0.5 * (low + high) / distance) : ca;

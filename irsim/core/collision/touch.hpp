@@ -1,7 +1,7 @@
-// Exact test of two footprints (the narrow phase).
+// Narrow phase: the exact test of two footprints.
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

@@ -4,8 +4,8 @@
 
 #include "contact/triangulate.hpp"
 #include "geometry/predicates.hpp"
-#include "spec.hpp"
-#include "world.hpp"
+#include "world/spec.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 namespace {
@@ -28,11 +28,11 @@ void add_piece(Bodies& bodies, const Vec2* vertices, int count, double radius) {
   }
 }
 
-/// What lies behind one side of a convex room; `turn` as the ring goes.
+/// Add the solid part behind one side of a convex room. `turn` is positive for a counter-clockwise ring.
 void add_wall(Bodies& bodies, Vec2 a, Vec2 b, double turn) {
-  constexpr double kThick = 10.0;  // [m]
+  constexpr double kThickness = 10.0;  // of the walls of a room [m]
   const Vec2 along = (b - a) * (1.0 / norm(b - a)), out = Vec2{along.y, -along.x} * (turn < 0.0 ? -1.0 : 1.0);
-  const Vec2 from = a - along * kThick, to = b + along * kThick, away = out * kThick;
+  const Vec2 from = a - along * kThickness, to = b + along * kThickness, away = out * kThickness;
   std::vector<Vec2> wall = {from, from + away, to + away, to};
   if (twice_area(wall) < 0.0) std::reverse(wall.begin(), wall.end());
   add_piece(bodies, wall.data(), 4, 0.0);
@@ -58,9 +58,9 @@ void add_part(Bodies& bodies, const Part& part, const Vec2* vertices) {
 }
 
 struct Measure {
-  double size = 0.0;   // area, or length of lines
-  Vec2 moment;         // its first moment
-  double polar = 0.0;  // of a polygon: second moment about the origin
+  double size = 0.0;   // area of a polygon or circle, length of lines
+  Vec2 moment;         // first moment
+  double polar = 0.0;  // second moment of a polygon about the origin
 };
 
 Measure measure(const Part& part, const Vec2* vertices) {
@@ -116,15 +116,15 @@ std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shap
     const std::vector<double>& given = world.specs[i].centroid;
     if (given.size() >= 2) centre = {given[0], given[1]};
     bodies->centroid.push_back(centre);
-    const Matter& matter = world.matter[i];
-    bodies->inverse_mass.push_back(matter.pushable ? 1.0 / matter.mass : 0.0);
+    const BodyDynamics& dynamics = world.dynamics[i];
+    bodies->inverse_mass.push_back(dynamics.pushable ? 1.0 / dynamics.mass : 0.0);
     double per_mass = 0.5 * shapes.radius[i] * shapes.radius[i];
     const bool polygon = parts == 1 && shapes.parts[shapes.body[i].part].kind == Kind::polygon && whole.size > 0.0;
     if (polygon) per_mass = whole.polar / whole.size - squared(centre);
     if (given.size() == 3) per_mass = given[2];
     bodies->gyration2.push_back(per_mass);
-    const double inertia = std::isnan(matter.inertia) ? matter.mass * per_mass : matter.inertia;
-    bodies->inverse_inertia.push_back(matter.pushable && inertia > 0.0 ? 1.0 / inertia : 0.0);
+    const double inertia = std::isnan(dynamics.inertia) ? dynamics.mass * per_mass : dynamics.inertia;
+    bodies->inverse_inertia.push_back(dynamics.pushable && inertia > 0.0 ? 1.0 / inertia : 0.0);
   }
   return bodies;
 }

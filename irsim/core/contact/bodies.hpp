@@ -4,36 +4,35 @@
 #include <memory>
 #include <vector>
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 
 struct World;
 
-/// Part of a body: a disc (one vertex, a radius), a segment (two vertices) or a convex counter-clockwise polygon.
+/// A piece of a body: a disc (one vertex and a radius), a segment (two vertices) or a convex counter-clockwise polygon.
 struct Convex {
-  int first, count;  // among the vertices of all bodies
+  int first, count;  // range in the vertices of all bodies
   double radius;
 };
 
-/// The objects of one scene as contacts see them, body frame.
+/// The objects of one scene as rigid bodies, body frame.
 struct Bodies {
-  std::vector<int> begin = {0};             // (N + 1,) first piece of each object
-  std::vector<Convex> pieces;               // cover the footprint exactly
-  std::vector<Vec2> vertices, normals;      // normals[k]: outward, of the edge from vertex k to the next of its piece
-  std::vector<const OccupancyGrid*> cells;  // (N,) of maps, which have no pieces
-  std::vector<Vec2> centroid;               // (N,) what a body turns about
-  std::vector<double> inverse_mass;         // (N,) [1/kg], 0 for what cannot be pushed
-  std::vector<double> gyration2;            // (N,) inertia by shape per mass [m^2]
+  std::vector<int> begin = {0};  // (N + 1,) first piece of each object
+  std::vector<Convex> pieces;    // together they cover the footprint exactly
+  std::vector<Vec2> vertices,
+      normals;  // normals[k]: outward normal of the edge from vertex k to the next one of its piece
+  std::vector<const OccupancyGrid*> cells;  // (N,) cells of maps, which have no pieces; else null
+  std::vector<Vec2> centroid;               // (N,) centres of mass
+  std::vector<double> inverse_mass;         // (N,) [1/kg], 0 for objects that cannot be pushed
+  std::vector<double> gyration2;            // (N,) square of the radius of gyration [m^2]
   std::vector<double> inverse_inertia;      // (N,) [1/(kg m^2)]
-
-  int objects() const { return static_cast<int>(centroid.size()); }
 };
 
 std::shared_ptr<const Bodies> make_bodies(const World& world, const Shapes& shapes);
 
-/// Convex pieces of a simple polygon, counter-clockwise: itself when convex, else the triangles of its constrained
-/// Delaunay triangulation.
+/// Counter-clockwise convex pieces of a simple polygon: the polygon itself if it is convex, else the triangles of its
+/// constrained Delaunay triangulation.
 std::vector<std::vector<Vec2>> convex_pieces(std::vector<Vec2> ring);
 
 }  // namespace irsim

@@ -5,7 +5,7 @@
 namespace irsim {
 namespace {
 
-constexpr double kFlat = 1e-7;  // corners this near to the outermost one belong to the same face [m]
+constexpr double kFlat = 1e-7;  // corners within this distance of the outermost one belong to the same face [m]
 
 Overlap discs(const Placed& a, const Placed& b) {
   const Vec2 between = *a.vertices - *b.vertices;
@@ -15,10 +15,10 @@ Overlap discs(const Placed& a, const Placed& b) {
   return {normal, depth, *b.vertices + normal * (b.radius - 0.5 * depth)};
 }
 
-/// Disc `a` and another piece `b`.
+/// Overlap of the disc `a` with the polygon or segment `b`.
 Overlap disc_and(const Placed& a, const Placed& b, double gap) {
   const Vec2 centre = *a.vertices;
-  double signed_distance = -kInfinity;  // from the face that is farthest out
+  double signed_distance = -kInfinity;  // of the centre, from the face with the largest distance
   int face = 0;
   for (int k = 0; k < b.count; ++k) {
     const double d = dot(b.normals[k], centre - b.vertices[k]);
@@ -42,7 +42,7 @@ Overlap disc_and(const Placed& a, const Placed& b, double gap) {
   return {normal, depth, centre - normal * (a.radius - 0.5 * depth)};
 }
 
-/// The face of `of` whose plane separates best: largest signed distance of the other piece.
+/// The face of `of` that separates best: the other piece has the largest signed distance from it, which is returned.
 double best_face(const Placed& of, const Placed& other, int& face) {
   double best = -kInfinity;
   for (int k = 0; k < of.count; ++k) {
@@ -55,7 +55,7 @@ double best_face(const Placed& of, const Placed& other, int& face) {
   return best;
 }
 
-/// Extent along `tangent` of the corners of a piece that are outermost along `direction`.
+/// The extent along `tangent` of those corners of a piece that are outermost along `direction`.
 struct Face {
   double low = kInfinity, high = -kInfinity, out = -kInfinity;
 };

@@ -1,7 +1,7 @@
-// How far two convex pieces overlap, and where.
+// Overlap of two convex pieces: its depth and place.
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
@@ -13,15 +13,15 @@ struct Placed {
   double radius;
 };
 
-/// `normal` points from the second piece to the first. `depth`: how far the first must move along it to be free [m];
-/// negative across a gap. `point`: middle of what overlaps.
+/// `normal` points from the second piece to the first. `depth` is the distance along it by which the first piece must
+/// move to be free [m], negative across a gap. `point` is the middle of the overlap.
 struct Overlap {
   Vec2 normal;
   double depth = -kInfinity;
   Vec2 point;
 };
 
-/// The overlap of two pieces; depth is -infinity once they are known to be more than `gap` apart.
+/// The overlap of two pieces. The depth is -infinity if they are more than `gap` apart.
 Overlap overlap_of(const Placed& a, const Placed& b, double gap);
 
 }  // namespace irsim

@@ -6,7 +6,7 @@
 namespace irsim {
 namespace {
 
-constexpr int kCapacity = 10;
+constexpr int kCapacity = 10;  // children of a node
 
 int ceiling(int a, int b) { return (a + b - 1) / b; }
 

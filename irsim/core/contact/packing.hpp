@@ -1,14 +1,14 @@
-// An order in which boxes that are near each other come together.
+// An order of boxes in which nearby boxes are close to each other.
 #pragma once
 
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Sort-tile-recursive packing of boxes (Leutenegger, Lopez, Edgington 1997), ten to a node: `rank[i]` is the place of
-/// box i when the packed tree is walked.
+/// Sort-tile-recursive packing of boxes (Leutenegger, Lopez, Edgington 1997) with ten boxes per node. `rank[i]` is the
+/// position of box i in a depth-first walk of the packed tree.
 class Packing {
  public:
   void pack(const std::vector<Box>& boxes);
@@ -17,7 +17,7 @@ class Packing {
  private:
   struct Node {
     Box box;
-    int first, last;  // in the level below; of a leaf: the box itself
+    int first, last;  // nodes of the level below; for a leaf both are the index of the box
   };
   void walk(std::size_t level, const Node& node, int& place);
 

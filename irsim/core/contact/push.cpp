@@ -20,7 +20,7 @@ void push(const World& world, State& state, int row, Vec2 change, double yaw_rat
   const int object = row % world.objects;
   Vec3 &twist = state.twist[row], &control = state.control[row];
   twist[0] += change.x, twist[1] += change.y, twist[2] += yaw_rate;
-  if (!world.matter[object].driven) {
+  if (!world.dynamics[object].driven) {
     control[0] += change.x, control[1] += change.y, control[2] += yaw_rate;
     return;
   }

@@ -4,19 +4,19 @@ namespace irsim {
 
 Vec3 respond(const World& world, State& state, int row, Vec3 command) {
   const int object = row % world.objects;
-  if (!is_native(world.drive[object])) return command;  // answered in Python
-  const Matter& matter = world.matter[object];
+  if (!is_native(world.drive[object])) return command;  // the drive is in Python
+  const BodyDynamics& dynamics = world.dynamics[object];
   Vec3& c = state.drive[row];
   Vec3 target = command;
-  if (matter.tau > 0.0) {
-    const double part = std::min(1.0, world.step_time / matter.tau);
+  if (dynamics.tau > 0.0) {
+    const double part = std::min(1.0, world.step_time / dynamics.tau);
     for (int k = 0; k < 3; ++k) target[k] = c[k] + part * (command[k] - c[k]);
   }
   with(world.drive[object], [&](const auto& drive) {
     const int travel = rows(drive).travel;
     double change2 = 0.0;
     for (int k = 0; k < travel; ++k) change2 += (target[k] - c[k]) * (target[k] - c[k]);
-    const double most = matter.friction * world.gravity * world.step_time, change = std::sqrt(change2);
+    const double most = dynamics.friction * world.gravity * world.step_time, change = std::sqrt(change2);
     if (!(change > most)) return;
     for (int k = 0; k < travel; ++k) target[k] = c[k] + (target[k] - c[k]) * (most / change);
   });
@@ -25,10 +25,10 @@ Vec3 respond(const World& world, State& state, int row, Vec3 command) {
 
 Vec3 without_command(const World& world, State& state, int row) {
   const int object = row % world.objects;
-  const Matter& matter = world.matter[object];
-  if (matter.driven) return world.collision_mode == kContact ? respond(world, state, row, {}) : Vec3{};
+  const BodyDynamics& dynamics = world.dynamics[object];
+  if (dynamics.driven) return world.collision_mode == kContact ? respond(world, state, row, {}) : Vec3{};
   Vec3 u = state.control[row];
-  const double speed = norm({u[0], u[1]}), slower = matter.friction * world.gravity * world.step_time;
+  const double speed = norm({u[0], u[1]}), slower = dynamics.friction * world.gravity * world.step_time;
   const double kept = speed > slower ? (speed - slower) / speed : 0.0;
   u[0] *= kept, u[1] *= kept;
   if (u[2] == 0.0) return u;

@@ -35,7 +35,7 @@ std::vector<Triangle> cut_ears(const std::vector<Vec2>& ring) {
       if (is_ear(ring, left, k)) ear = k;
     }
     const std::size_t n = left.size();
-    if (ear == n) {  // what is left has no area, or touches itself: take the flattest corner
+    if (ear == n) {  // the rest has no area or touches itself: cut the flattest corner
       ear = 0;
       double best = kInfinity;
       for (std::size_t k = 0; k < n; ++k) {
@@ -53,7 +53,7 @@ std::vector<Triangle> cut_ears(const std::vector<Vec2>& ring) {
   return out;
 }
 
-/// Whether d lies inside the circle through a, b, c (counter-clockwise), by more than rounding.
+/// Whether d lies inside the circle through a, b, c (counter-clockwise) by more than rounding errors.
 bool in_circle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   const Vec2 u = a - d, v = b - d, w = c - d;
   const double uu = squared(u), vv = squared(v), ww = squared(w);
@@ -67,7 +67,7 @@ bool in_circle(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
 std::vector<Triangle> triangulate(const std::vector<Vec2>& ring) {
   std::vector<Triangle> out = cut_ears(ring);
   const int n = static_cast<int>(ring.size());
-  std::map<std::pair<int, int>, int> beside;  // directed edge -> its triangle
+  std::map<std::pair<int, int>, int> beside;  // directed edge -> index of its triangle
   for (bool flipped = true; flipped;) {
     flipped = false;
     beside.clear();

@@ -1,16 +1,16 @@
-// Triangles of a simple polygon.
+// Triangulation of simple polygons.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-using Triangle = std::array<int, 3>;  // vertices of the ring, counter-clockwise
+using Triangle = std::array<int, 3>;  // indices of vertices of the ring, counter-clockwise
 
-/// Constrained Delaunay triangulation of a simple counter-clockwise ring: ears are cut off, then edges inside are
+/// Constrained Delaunay triangulation of a simple counter-clockwise ring: ears are cut off, then inner edges are
 /// flipped while that makes the smallest angles larger (Lawson 1977).
 std::vector<Triangle> triangulate(const std::vector<Vec2>& ring);
 

@@ -3,12 +3,12 @@
 namespace irsim {
 namespace {
 
-/// How far `disc` sticks out of `circle`; negative inside.
+/// Distance by which `disc` extends beyond `circle`; negative inside.
 double excess(const PlainDisc& circle, const PlainDisc& disc) {
   return norm(disc.centre - circle.centre) + disc.radius - circle.radius;
 }
 
-/// Smallest circle around two discs.
+/// The smallest circle around two discs.
 PlainDisc around(const PlainDisc& a, const PlainDisc& b) {
   const Vec2 d = b.centre - a.centre;
   const double length = norm(d);
@@ -18,7 +18,7 @@ PlainDisc around(const PlainDisc& a, const PlainDisc& b) {
   return {a.centre + d * ((radius - a.radius) / length), radius};
 }
 
-/// The circle that touches three discs from outside (Apollonius); radius infinite if there is none.
+/// The circle around three discs that touches all of them (Apollonius); its radius is infinite if it does not exist.
 PlainDisc around(const PlainDisc& a, const PlainDisc& b, const PlainDisc& c) {
   const PlainDisc none{{}, kInfinity};
   const Vec2 p = b.centre - a.centre, q = c.centre - a.centre;
@@ -48,7 +48,7 @@ struct Basis {
   PlainDisc circle{{}, kInfinity};
 };
 
-/// The smallest circle around the basis and `extra` that `extra` helps to hold, and what holds it.
+/// The smallest circle around the basis and `extra` that `extra` determines, and the discs that determine it.
 Basis extend(const Basis& basis, const PlainDisc& extra, double tolerance) {
   Basis best;
   const auto consider = [&](const PlainDisc& circle, std::initializer_list<int> kept) {
@@ -78,7 +78,8 @@ PlainDisc enclosing_circle(const std::vector<PlainDisc>& discs) {
   double scale = discs.front().radius;
   for (const PlainDisc& disc : discs) scale = std::max(scale, norm(disc.centre - discs.front().centre) + disc.radius);
   const double tolerance = 1e-13 * scale;
-  for (std::size_t round = 0; round < 4 * discs.size() + 16; ++round) {  // the radius grows; the bound is for NaN
+  for (std::size_t round = 0; round < 4 * discs.size() + 16;
+       ++round) {  // the radius grows in each round; the limit ends the loop for NaN
     const PlainDisc* worst = nullptr;
     double most = tolerance;
     for (const PlainDisc& disc : discs) {

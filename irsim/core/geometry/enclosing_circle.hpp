@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 

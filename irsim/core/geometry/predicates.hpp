@@ -1,11 +1,11 @@
 // Where points, segments and rings lie relative to each other. Touching counts as meeting.
 #pragma once
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Sign of the turn a -> b -> c, exact for all but a sliver of last bits (error-free products decide near zero).
+/// Sign of the turn a -> b -> c. Near zero, error-free products make it exact but for the last bits.
 inline double turn_of(Vec2 a, Vec2 b, Vec2 c) {
   const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
   const double det = left - right;
@@ -47,7 +47,8 @@ inline Vec2 nearest_on_segment(Vec2 a, Vec2 b, Vec2 p) {
   return a + along * clip(dot(p - a, along) / length2, 0.0, 1.0);
 }
 
-/// Whether p lies inside a ring (even-odd rule); ring[count] repeats ring[0]. Points on the ring may go either way.
+/// Whether p lies inside a ring (even-odd rule); ring[count] repeats ring[0]. The result is arbitrary for points on the
+/// ring.
 inline bool inside_ring(const Vec2* ring, int count, Vec2 p) {
   bool inside = false;
   for (int i = 0; i < count; ++i) {

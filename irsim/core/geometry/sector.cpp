@@ -14,7 +14,7 @@ struct Wedge {
   explicit Wedge(const Sector& s)
       : edge(unit(s.half)), whole(s.half >= kPi), wide(s.half > 0.5 * kPi), reach(s.reach) {}
 
-  /// Above, below and behind: positive on the side of the sector.
+  /// Signed distances from the lines through both edges, positive on the side of the sector.
   double upper(Vec2 p) const { return cross(p, edge); }
   double lower(Vec2 p) const { return edge.x * p.y + edge.y * p.x; }
   bool between_edges(Vec2 p) const {
@@ -33,7 +33,8 @@ bool disc_meets(const Wedge& wedge, Vec2 centre, double radius) {
   return false;
 }
 
-/// Keep the part of a + t (b - a), t in [low, high], where `side`, which is linear, is not negative.
+/// Narrow [low, high] to the t at which the linear function `side` of a + t (b - a) is not negative. Returns false if
+/// none remains.
 template <class Side>
 bool keep(Side&& side, Vec2 a, Vec2 b, double& low, double& high) {
   const double at_a = side(a), at_b = side(b), change = at_b - at_a;

@@ -1,12 +1,12 @@
-// Which footprints reach into a slice of a disc.
+// Which footprints reach into a sector of a disc.
 #pragma once
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 
-/// Points within `reach` of the apex whose bearing is within `half` of `middle`; closed. `half` of pi or more: the
-/// disc.
+/// The closed set of points within `reach` of the apex whose bearing differs from `middle` by at most `half`. A `half`
+/// of pi or more gives the whole disc.
 struct Sector {
   Vec2 apex;
   double middle;  // bearing of the axis [rad]

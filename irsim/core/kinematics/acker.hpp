@@ -11,7 +11,7 @@ enum class Steering { steer, angular };
 struct AckerOptions {
   bool noise;
   std::array<double, 4> alpha;
-  Steering mode;     // steer: the second control is the angle; angular: its rate
+  Steering mode;     // steer: the second control is the steering angle; angular: its rate
   double wheelbase;  // [m]
   double psi_max;    // largest steering angle [rad], may be infinite
   static constexpr auto fields() {
@@ -40,13 +40,13 @@ inline Vec3 constrain(const AckerOptions& options, Vec3 control) {
   return control;
 }
 
-/// Steers straight at the wanted direction (in mode `angular` the wheels turn there at a limited rate). A car turns
-/// only while it rolls, so it creeps where other drives would turn in place.
+/// Steer straight toward the wanted direction; in mode `angular` the wheels turn there at a limited rate. A car turns
+/// only while it rolls, so it creeps where other drives would turn on the spot.
 inline Vec3 follow(const AckerOptions& options, const Wish& wish) {
-  constexpr double kCreep = 0.2;  // of the wanted speed
+  constexpr double kMinRolling = 0.2;  // smallest share of the wanted speed
   ForwardWish forward = forward_wish(wish);
   if (forward.error != 0.0)
-    forward.speed = std::max(forward.speed, std::min(kCreep * norm(wish.velocity), wish.turning.max_forward));
+    forward.speed = std::max(forward.speed, std::min(kMinRolling * norm(wish.velocity), wish.turning.max_forward));
   if (options.mode == Steering::steer) return {{forward.speed, forward.error, 0.0}};
   const double psi = clip(forward.error, -0.25 * kPi, 0.25 * kPi);
   return {{forward.speed, turn_rate(psi - wish.extra[0], wish.turning), 0.0}};

@@ -1,4 +1,4 @@
-// Holonomic drive of fixed heading: forward and lateral speed in the body frame.
+// Holonomic drive that keeps its heading: forward and lateral speed in the body frame.
 #pragma once
 
 #include "drive.hpp"

@@ -6,12 +6,12 @@
 namespace irsim {
 namespace {
 
-constexpr int kFar = 255;
+constexpr int kFar = 255;  // largest side of a free square [cells]
 
-/// Corners of the grid, counted row by row.
+/// A corner of the grid, counted row by row.
 using Corner = std::int64_t;
 
-/// A straight piece of the outline, the occupied side on its left. Directions: 0 +x, 1 +y, 2 -x, 3 -y.
+/// A straight piece of the outline with the occupied side on its left. Directions: 0 +x, 1 +y, 2 -x, 3 -y.
 struct Run {
   Corner from, to;
   int direction;
@@ -24,9 +24,10 @@ OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, cons
     : columns_(columns), rows_(rows), origin_(origin), cell_(cell) {
   const std::size_t cells =
       static_cast<std::size_t>(std::max(columns, 0)) * static_cast<std::size_t>(std::max(rows, 0));
-  if (columns < 1 || rows < 1 || occupied.size() != cells) throw std::invalid_argument("an occupancy grid needs cells");
+  if (columns < 1 || rows < 1 || occupied.size() != cells)
+    throw std::invalid_argument("an occupancy grid needs at least one cell");
   if (!(cell.x > 0.0 && cell.y > 0.0 && std::isfinite(cell.x) && std::isfinite(cell.y)))
-    throw std::invalid_argument("cells need a size");
+    throw std::invalid_argument("cells must have a positive size");
   for (int j = 0; j < rows; ++j) {
     int least = columns, most = -1;
     for (int i = 0; i < columns; ++i) {
@@ -37,7 +38,8 @@ OccupancyGrid::OccupancyGrid(int columns, int rows, Vec2 origin, Vec2 cell, cons
     if (most >= 0) bounds_.include(box(least, j)), bounds_.include(box(most, j));
   }
   for (std::vector<std::uint8_t>& squares : free_) squares.resize(cells);
-  // each row from the one it looks at, to the left and to the right at once: none waits for the other
+  // Each row follows from the row before it. Squares to the left and to the right are computed together, which is
+  // faster, because neither depends on the other.
   const std::vector<std::uint8_t> beyond(static_cast<std::size_t>(columns), kFar);
   for (const int down : {0, 1}) {
     const std::uint8_t *right_ahead = beyond.data(), *left_ahead = beyond.data();
@@ -103,7 +105,7 @@ std::vector<std::vector<Vec2>> OccupancyGrid::outline() const {
   starts.reserve(runs.size());
   for (std::size_t k = 0; k < runs.size(); ++k) starts.emplace_back(runs[k].from, static_cast<int>(k));
   std::sort(starts.begin(), starts.end());
-  // of the runs that leave a corner the one that keeps to the same cell: the left turn
+  // Of the runs that leave a corner, the left turn stays with the same cell.
   const auto next = [&](const Run& run) {
     int found = -1;
     for (auto s = std::lower_bound(starts.begin(), starts.end(), std::make_pair(run.to, 0));

@@ -1,4 +1,4 @@
-// A grid of square or oblong cells, some of them occupied: what a map is to the core.
+// Occupancy grids: maps of square or oblong cells, some of them occupied.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 #include <cstring>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Occupied cells are closed boxes; cell (i, j), i along x, lies between corners (i, j) and (i + 1, j + 1). Never
-/// changes once made, shared by all worlds that have the map. Four bytes per cell.
+/// Occupied cells are closed boxes. Cell (i, j), i along x, lies between corners (i, j) and (i + 1, j + 1). A grid
+/// never changes, so all worlds that have the map share it. It takes four bytes per cell.
 class OccupancyGrid {
  public:
   /// `occupied`: (columns * rows,) row by row from the lowest, non-zero where occupied.
@@ -27,35 +27,35 @@ class OccupancyGrid {
     const Vec2 low = corner(i, j), high = corner(i + 1, j + 1);
     return {low.x, low.y, high.x, high.y};
   }
-  /// Of all occupied cells; not finite without any.
+  /// The box around all occupied cells; not finite if no cell is occupied.
   const Box& bounds() const { return bounds_; }
   std::int64_t count() const { return count_; }
 
-  /// How many cells away, counting diagonally too, the nearest occupied cell is: 0 is occupied, 255 is far.
+  /// Distance to the nearest occupied cell in steps to any of the 8 neighbors: 0 is occupied, 255 is far.
   int clearance(int i, int j) const {
     const std::size_t k = at(i, j);
     return std::min(std::min(free_[0][k], free_[1][k]), std::min(free_[2][k], free_[3][k]));
   }
-  /// (rows, columns), for each cell the side of the largest square without an occupied cell, up to 255, of which it is
-  /// the corner cell and that extends from it to +x, or to -x if `left`, and to +y, or to -y if `down`: 0 is occupied.
-  /// Squares may reach out of the grid.
+  /// (rows, columns) For each cell, the side of the largest free square, at most 255, that has the cell in its corner
+  /// and extends from it to +x, or to -x if `left`, and to +y, or to -y if `down`. 0 means that the cell is occupied.
+  /// Squares may extend beyond the grid.
   const std::uint8_t* free_squares(bool left, bool down) const { return free_[left + 2 * down].data(); }
   bool inside(int i, int j) const { return i >= 0 && j >= 0 && i < columns_ && j < rows_; }
-  /// Whether a cell is occupied; nothing outside the grid is.
+  /// Whether a cell is occupied; cells outside the grid are not.
   bool occupied(int i, int j) const { return inside(i, j) && free_[0][at(i, j)] == 0; }
-  /// Whether the outline of the occupied cells goes through the lower left corner of cell (i, j).
+  /// Whether the outline of the occupied cells passes through the lower left corner of cell (i, j).
   bool on_outline(int i, int j) const;
-  /// The first occupied column in [from, to] of row j, or -1. The interval must lie inside the grid.
+  /// The first occupied column of row j in [from, to], or -1. The interval must lie inside the grid.
   int next_occupied(int j, int from, int to) const {
     if (from > to) return -1;
     const std::uint8_t* row = free_[0].data() + at(0, j);
     const void* found = std::memchr(row + from, 0, static_cast<std::size_t>(to - from + 1));
     return found == nullptr ? -1 : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
   }
-  /// Whether everything within `reach` [m] of a point is certainly free (false: it may be).
+  /// Whether all cells within `reach` [m] of a point are certainly free. If false, they may still be free.
   bool clear_of(Vec2 point, double reach) const;
 
-  /// Calls `visit(i, j)` for the occupied cells that may meet a box, until it returns true; whether it has.
+  /// Call `visit(i, j)` for the occupied cells that may meet a box until it returns true. Returns whether it did.
   template <class Visit>
   bool any_in(const Box& area, Visit&& visit) const {
     if (count_ == 0 || !area.meets(bounds_)) return false;
@@ -73,9 +73,9 @@ class OccupancyGrid {
     return false;
   }
 
-  /// Corners of the outline of the occupied cells, one list per ring, straight runs merged. The occupied side is on the
-  /// left, so outer rings go counter-clockwise and holes clockwise. Cells that share only a corner have rings of their
-  /// own.
+  /// Corners of the outline of the occupied cells, one list per ring, with straight runs merged. The occupied side is
+  /// on the left, so outer rings are counter-clockwise and holes clockwise. Cells that share only a corner have
+  /// separate rings.
   std::vector<std::vector<Vec2>> outline() const;
 
  private:
@@ -85,13 +85,13 @@ class OccupancyGrid {
   Vec2 origin_, cell_;
   Box bounds_;
   std::int64_t count_ = 0;
-  std::array<std::vector<std::uint8_t>, 4> free_;  // squares by direction, each by row
+  std::array<std::vector<std::uint8_t>, 4> free_;  // sides of free squares, one array per direction
 };
 
-/// Where a closed disc meets an occupied cell, if it does: the point of such a cell nearest to the centre.
+/// Whether a closed disc meets an occupied cell; if so, `where` is the point of such a cell nearest to the centre.
 bool disc_meets(const OccupancyGrid& grid, Vec2 centre, double radius, Vec2& where);
-/// Where a polyline of `edges` edges, or the closed area within it if `filled` (then vertices[edges] repeats
-/// vertices[0]), meets an occupied cell, if it does.
+/// Whether a polyline of `edges` edges meets an occupied cell; if so, `where` is a point of both. If `filled`, the area
+/// inside the polyline counts, too, and vertices[edges] repeats vertices[0].
 bool outline_meets(const OccupancyGrid& grid, const Vec2* vertices, int edges, bool filled, const Box& box,
                    Vec2& where);
 

@@ -14,10 +14,10 @@ constexpr double kGradients[8][2] = {{1, 0},         {-1, 0},         {0, 1},   
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 double blend(double a, double b, double t) { return a + t * (b - a); }
 
-/// Where a coordinate falls in the lattice of the noise.
+/// The position of a coordinate in the lattice of the noise.
 struct Place {
-  int low, high;      // of the permutation
-  double part, fade;  // beyond the lattice line, and smoothed
+  int low, high;      // indices of the permutation below and above
+  double part, fade;  // offset from the lattice line below, and its smoothed value
 };
 
 std::vector<Place> places(int count, double frequency) {
@@ -55,7 +55,7 @@ std::vector<std::uint8_t> perlin_cells(const PerlinNoise& noise, const Permutati
       for (int i = 0; i < columns; ++i) {
         const Place& x = along[i];
         const auto corner = [&](int px, int py, double dx, double dy) {
-          // the lattice is looked up as perm[perm[x] + y]
+          // the gradient has the index perm[perm[x] + y]
           const double* g = kGradients[permutation[(permutation[px] + py) & 255] & 7];
           return g[0] * dx + g[1] * dy;
         };

@@ -1,4 +1,4 @@
-// Gradient noise turned into occupied cells.
+// Maps of gradient noise.
 //
 // Perlin: Improving Noise, SIGGRAPH 2002, in two dimensions with eight gradients.
 #pragma once
@@ -23,8 +23,8 @@ using Permutation = std::array<std::uint8_t, 256>;
 
 /// A permutation drawn from a stream.
 Permutation draw_permutation(const Draws& draws);
-/// (columns * rows,) 1 where occupied, row by row from the lowest: the cells whose noise is above that of all but about
-/// `fill` of them.
+/// (columns * rows,) 1 where occupied, row by row from the lowest. The share `fill` of cells with the highest noise is
+/// occupied.
 std::vector<std::uint8_t> perlin_cells(const PerlinNoise& noise, const Permutation& permutation);
 
 }  // namespace irsim

@@ -1,7 +1,7 @@
-// A beam through a grid of cells.
+// Ray casting in a grid of cells.
 //
-// Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987; free space is crossed in leaps,
-// each through the largest free square that begins at the cell and lies ahead.
+// Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, Eurographics 1987. Free areas are crossed in
+// leaps, each through the largest free square ahead that begins at the cell.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace irsim {
 
-/// Beams from one point. Coordinates are counted in cells from the corner of the grid, distances are in metres. An axis
-/// is mirrored for beams that go down it, so that all go up: cell i of the grid is then number -1 - i.
+/// Beams from one point. Coordinates are in cells from the corner of the grid, distances in metres. An axis is mirrored
+/// for beams in its negative direction, so that all beams go up: cell i of the grid then has the index -1 - i.
 class CellWalk {
  public:
   CellWalk(const OccupancyGrid& grid, Vec2 from)
@@ -42,8 +42,8 @@ class CellWalk {
     const auto free_ahead = [&](int i, int j) { return static_cast<int>(squares[x.index(i) + y.index(j)]); };
     int leap = free_ahead(i, j);
     bool solid = leap == 0;
-    if (solid && t > nearest) return t;  // from outside the grid
-    // a beam that stays on a grid line meets the cells on both sides of it, and not only those ahead
+    if (solid && t > nearest) return t;  // the beam enters the grid at an occupied cell
+    // A beam along a grid line meets the cells on both sides of the line.
     const bool sliding = (x_.on_line && dx.much_less(dy, x_.count)) || (y_.on_line && dy.much_less(dx, y_.count));
     while (true) {
       if (solid || sliding) leap = 1;
@@ -51,8 +51,8 @@ class CellWalk {
       const bool along_x = tx < ty;
       t = along_x ? tx : ty;
       if (!(t <= limit)) return kInfinity;
-      // how far the beam has come along the other axis, from the border of its cell there; both are computed and one is
-      // taken, since no processor can predict which
+      // Distance that the beam has come along the other axis from the border of its cell. Both values are computed and
+      // one is taken, because the branch would be unpredictable.
       const double aside_x = x.start + t * dx.step - i, aside_y = y.start + t * dy.step - j;
       const double aside = along_x ? aside_y : aside_x;
       const int whole = static_cast<int>(aside), across = std::min(whole, leap - 1);
@@ -73,25 +73,27 @@ class CellWalk {
   }
 
  private:
-  static constexpr double kCorner = 1e-10;  // so near to a corner a beam passes through it [cells]
-  static constexpr double kFarthest = 1e9;  // where rounding errors are far from the size of a cell [cells]
+  static constexpr double kCorner = 1e-10;  // a beam this near to a corner passes through it [cells]
+  static constexpr double kMaxDistance =
+      1e9;  // beams that start farther away miss the grid, because rounding errors grow [cells]
 
   static bool on_line(double at) { return std::fabs(at - std::round(at)) < kCorner; }
   static int nearest_line(double at) { return static_cast<int>(std::lround(at)); }
 
-  /// How fast a beam goes along an axis.
+  /// Progress of a beam along an axis.
   struct Rate {
-    double step, inverse;  // [cells per metre], and what it takes to go by a cell
+    double step, inverse;  // [cells/m] and [m/cell]
     explicit Rate(double rate) : step(std::fabs(rate)), inverse(1.0 / step) {}
-    /// Whether it changes next to nothing along this axis while it crosses `count` cells along the other.
+    /// Whether the beam makes no progress along this axis, but for rounding, while it crosses `count` cells of the
+    /// other.
     bool much_less(const Rate& other, int count) const { return step * count < kCorner * other.step; }
   };
 
   /// One axis, in one of its two directions.
   struct Way {
-    int low, high;          // cells from low to before high are those of the grid
-    int cell;               // where the beams start; not inside if outside
-    std::ptrdiff_t stride;  // of cells in memory
+    int low, high;          // the grid has the cells low to high - 1
+    int cell;               // cell in which the beams start; `high` if they start outside
+    std::ptrdiff_t stride;  // offset between adjacent cells in memory
     double start;
 
     Way(double at, int low, int count, std::ptrdiff_t stride)
@@ -101,12 +103,12 @@ class CellWalk {
     bool inside(int i) const { return i >= low && i < high; }
     std::ptrdiff_t index(int i) const { return (stride < 0 ? i + 1 : i) * stride; }
     int line(int i) const { return stride < 0 ? -i : i; }
-    /// When a beam comes into the grid: infinity if never, 0 if it starts there.
+    /// Distance at which a beam enters the grid: infinity if never, 0 if it starts inside.
     double entry(const Rate& rate) const {
       if (start >= low && start < high) return 0.0;
-      return start < low && start > -kFarthest && rate.step > 0.0 ? (low - start) * rate.inverse : kInfinity;
+      return start < low && start > -kMaxDistance && rate.step > 0.0 ? (low - start) * rate.inverse : kInfinity;
     }
-    /// The cell of a point that is inside the grid but for rounding.
+    /// The cell of a point that is inside the grid except for rounding errors.
     int enter(double at) const {
       if (!(at >= low - kCorner && at <= high + kCorner)) return high;
       return std::min(std::max(static_cast<int>(std::floor(at)), low), high - 1);
@@ -115,15 +117,16 @@ class CellWalk {
 
   struct Axis {
     int count;
-    bool at_end, on_line;  // whether the beams start at the upper end of the grid, at any grid line
-    Way ways[2];           // up, down
+    bool at_end, on_line;  // whether the beams start at the upper end of the grid, on a grid line
+    Way ways[2];           // in positive and in negative direction
 
     Axis(double at, int count, int stride)
         : count(count),
           at_end(at == count),
           on_line(CellWalk::on_line(at)),
           ways{{at, 0, count, stride}, {-at, -count, count, -stride}} {}
-    /// Along the upper end beams go through the last cell, as those do that go down from there.
+    /// Whether a beam goes in negative direction. Beams along the upper end of the grid count as such, because they
+    /// pass through the last cell, too.
     bool goes_down(double rate) const { return rate < 0.0 || (at_end && rate == 0.0); }
   };
 

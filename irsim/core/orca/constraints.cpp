@@ -7,7 +7,7 @@ Vec2 left_of(Vec2 a) { return {-a.y, a.x}; }
 Vec2 right_of(Vec2 a) { return {a.y, -a.x}; }
 Vec2 normalized(Vec2 a) { return a * (1.0 / norm(a)); }
 
-/// Unit vectors from the agent along both tangents of a disc that it is outside of.
+/// Unit vectors from the origin along both tangents of a disc that does not contain it.
 struct Tangents {
   Vec2 left, right;
 };
@@ -18,13 +18,13 @@ Tangents tangents(Vec2 centre, double radius) {
   return {along + aside, along - aside};
 }
 
-/// The half-plane that leads away from something that is touched; zero velocity stays.
+/// The half-plane of velocities that lead away from an obstacle that the agent touches. It includes zero.
 HalfPlane away_from(Vec2 offset) {
   const double length = norm(offset);
   return {{}, length > 0.0 ? left_of(offset) * (1.0 / length) : Vec2{0.0, 1.0}};
 }
 
-/// The tangent of the disc of velocities around `centre` where it is nearest to `velocity`.
+/// The tangent to a disc of velocities at its point nearest to `velocity`.
 HalfPlane tangent_to_disc(Vec2 centre, double radius, Vec2 velocity) {
   const Vec2 out = normalized(velocity - centre);
   return {centre + out * radius, right_of(out)};
@@ -38,10 +38,10 @@ HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double sha
   const double distance2 = squared(offset), radius = agent.radius + other.radius;
   const bool apart = distance2 > radius * radius;
   const double rate = 1.0 / (apart ? horizon : dt);
-  const Vec2 relative = velocity - offset * rate;  // from the centre of the disc that truncates the cone
+  const Vec2 relative = velocity - offset * rate;  // relative to the centre of the disc that truncates the cone
   const double length2 = squared(relative), ahead = dot(relative, offset);
   HalfPlane plane;
-  Vec2 change;  // the smallest one of the relative velocity
+  Vec2 change;  // smallest change of the relative velocity
   if (!apart || (ahead < 0.0 && ahead * ahead > radius * radius * length2)) {
     const double length = std::sqrt(length2);
     const Vec2 out = length > 0.0 ? relative * (1.0 / length) : Vec2{first ? 1.0 : -1.0, 0.0};
@@ -67,16 +67,16 @@ bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPl
   const double radius = agent.radius, radius2 = radius * radius, rate = 1.0 / horizon;
   const Vec2 to_left = edge.left.point - agent.position, to_right = edge.right.point - agent.position;
   const Vec2 along = edge.right.point - edge.left.point;
-  const double nearest = -dot(to_left, along) / squared(along);  // 0 at the left end, 1 at the right
+  const double nearest = -dot(to_left, along) / squared(along);  // 0 at the left end, 1 at the right end
   const bool on_line = squared(to_left + along * nearest) <= radius2;
 
-  // touching already: the nearest feature decides
+  // The agent touches the edge, so the nearest feature decides.
   if (nearest < 0.0 && squared(to_left) <= radius2) {
     if (edge.left.convex) out = away_from(to_left);
     return edge.left.convex;
   }
   if (nearest > 1.0 && squared(to_right) <= radius2) {
-    // the next edge begins here and speaks for the corner if it faces the agent
+    // The next edge begins here. If it faces the agent, its half-plane covers this corner.
     if (!edge.right.convex || cross(to_right, edge.right.out) < 0.0) return false;
     out = away_from(to_right);
     return true;
@@ -86,18 +86,18 @@ bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPl
     return true;
   }
 
-  // seen end-on, only the nearer end matters
+  // Of an edge seen from its end, only the nearer corner matters.
   const Corner* left = &edge.left;
   const Corner* right = &edge.right;
   if (on_line) (nearest < 0.0 ? right = left : left = right);
   const bool single = left == right;
   if (single && !left->convex) return false;
 
-  // legs of the cone; at a corner where the outline turns away from the agent they extend the edge
+  // The legs of the cone. At corners that are not convex they extend the edge.
   Vec2 left_leg = edge.direction() * -1.0, right_leg = edge.direction();
   if (left->convex) left_leg = tangents(left->point - agent.position, radius).left;
   if (right->convex) right_leg = tangents(right->point - agent.position, radius).right;
-  // a leg that would point into a neighbouring edge is that edge's business
+  // A leg that would point into the neighboring edge is left to that edge.
   bool foreign_left = false, foreign_right = false;
   if (left->convex && cross(left_leg, left->in * -1.0) >= 0.0) {
     left_leg = left->in * -1.0;
@@ -108,7 +108,7 @@ bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPl
     foreign_right = true;
   }
 
-  // the cone is truncated by the edge itself, seen from the agent, at 1 / horizon
+  // The cone is truncated by the edge relative to the agent, scaled by 1 / horizon.
   const Vec2 left_end = (left->point - agent.position) * rate, right_end = (right->point - agent.position) * rate;
   const Vec2 from_left = agent.velocity - left_end, from_right = agent.velocity - right_end;
   const Vec2 front = right_end - left_end;

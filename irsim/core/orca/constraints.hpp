@@ -1,25 +1,25 @@
-// The half-planes of ORCA: which velocities avoid one other agent, or one wall, for some time.
+// The half-planes of ORCA: velocities that avoid another agent, a disc or a wall for some time.
 #pragma once
 
+#include "geometry/vec.hpp"
 #include "orca/half_planes.hpp"
-#include "vec.hpp"
 
 namespace irsim {
 
-/// Who moves: a disc, world frame.
+/// A moving disc, world frame.
 struct OrcaAgent {
   Vec2 position, velocity;  // [m], [m/s]
-  double radius;            // margin included [m]
+  double radius;            // including the margin [m]
 };
 
-/// Where two edges of an outline meet, or where an open line ends; its solid side is on the left.
+/// The point at which two edges of an outline meet or an open line ends. The solid side is on the left.
 struct Corner {
   Vec2 point;          // [m], world frame
-  Vec2 in, out;        // unit vectors of the edges that end and start here
-  bool convex = true;  // the solid side spans at most half a turn
+  Vec2 in, out;        // unit vectors of the edges that end and start at this corner
+  bool convex = true;  // whether the solid side spans at most half a turn
 };
 
-/// An edge of what stands still: `left` to `right` as seen from the free side, solid behind it.
+/// An edge of a static object, from `left` to `right` as seen from the free side.
 struct Edge {
   Corner left, right;
   int object;
@@ -29,22 +29,24 @@ struct Edge {
   bool faces(Vec2 p) const { return cross(direction(), p - left.point) < 0.0; }
 };
 
-/// Velocities with which `agent` meets `other` not before `horizon` [s], if it takes `share` of the smallest change
-/// and `other` the rest. Who overlaps shall be apart after `dt`.
+/// Velocities with which `agent` does not meet `other` before `horizon` [s] if it makes `share` of the smallest change
+/// of velocity and `other` makes the rest. Agents that overlap are to be apart after `dt` [s].
 ///
 /// Args:
-///   first: Which of two agents in one place with one velocity goes to which side.
+///   first: Whether this is the first of the two. It decides the direction for agents with equal positions and
+///   velocities.
 HalfPlane avoid_agent(const OrcaAgent& agent, const OrcaAgent& other, double share, double horizon, double dt,
                       bool first);
 
-/// Velocities with which `agent` does not meet a disc that stands still before `horizon` [s]; zero is one of them.
+/// Velocities with which `agent` does not meet a static disc before `horizon` [s]. They include zero.
 HalfPlane avoid_disc(const OrcaAgent& agent, Vec2 centre, double radius, double horizon);
 
-/// Velocities with which `agent` does not meet an edge before `horizon` [s]; zero is one of them. False when a
-/// neighbouring edge says all there is to say.
+/// Velocities with which `agent` does not meet an edge before `horizon` [s]. They include zero. Returns false if the
+/// half-plane of a neighboring edge is sufficient.
 bool avoid_edge(const OrcaAgent& agent, const Edge& edge, double horizon, HalfPlane& out);
 
-/// Whether `plane` forbids every velocity that meets the capsule between `a` and `b` of this radius before `horizon`.
+/// Whether `plane` excludes all velocities with which `agent` meets the capsule of this radius between `a` and `b`
+/// before `horizon`.
 inline bool covers(const HalfPlane& plane, const OrcaAgent& agent, Vec2 a, Vec2 b, double radius, double horizon) {
   constexpr double kSlack = 1e-5;
   const double rate = 1.0 / horizon;

@@ -1,9 +1,9 @@
 #include "orca/crowd.hpp"
 
-#include "features.hpp"
-#include "spec.hpp"
-#include "state.hpp"
-#include "world.hpp"
+#include "world/features.hpp"
+#include "world/spec.hpp"
+#include "world/state.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 

@@ -1,4 +1,4 @@
-// Everybody in one world as ORCA sees them in one step, and scratch memory.
+// The moving objects of one world as ORCA sees them in one step.
 #pragma once
 
 #include <vector>
@@ -12,20 +12,20 @@ struct State;
 struct World;
 struct Workspace;
 
-/// Scratch memory of the behavior `orca`. Movers are counted as in World::moving.
+/// Scratch memory of the behavior `orca`. Movers have the indices of World::moving.
 struct OrcaCrowd {
-  bool known = false;             // whether the movers are those of the present step
-  std::vector<OrcaAgent> movers;  // bounding circles; of those who avoid by ORCA with their margin
-  std::vector<int> group;         // which entry of World::behaviors makes them avoid others by ORCA now; -1: none
-  std::vector<int> member_of;     // the same, or what would if they could move
+  bool known = false;             // whether it holds the present step
+  std::vector<OrcaAgent> movers;  // bounding circles; those of ORCA agents include their margin
+  std::vector<int> group;         // index in World::behaviors of the ORCA group that moves each now; -1 without one
+  std::vector<int> member_of;     // the same, also for objects that are stopped or have a given command
   Nearest nearest;                // positions of the movers
-  // of one of them
-  std::vector<Nearest::Found> neighbors;  // nearest first
-  std::vector<Nearest::Found> edges;      // the same for edges that face it
+  // for the object that decides
+  std::vector<Nearest::Found> neighbors;  // movers, or static discs, nearest first
+  std::vector<Nearest::Found> edges;      // edges that face it, nearest first
   std::vector<HalfPlane> planes, scratch;
 };
 
-/// Who moves in world w, made on the first call of a step.
+/// The movers of world w, which the first call of a step computes.
 OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w);
 
 }  // namespace irsim

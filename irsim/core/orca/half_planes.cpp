@@ -4,15 +4,16 @@ namespace irsim {
 namespace {
 
 constexpr double kParallel = 1e-9;  // sine of the angle between lines that count as parallel
-constexpr double kSlack = 1e-10;    // rounding that does not make a program infeasible [m/s]
+constexpr double kSlack = 1e-10;    // rounding errors up to this size do not make a program infeasible [m/s]
 
-/// What a program looks for: the nearest velocity to `target`, or the farthest along the unit vector `target`.
+/// The objective of a program: the velocity nearest to `target`, or the one farthest along the unit vector `target`.
 struct Aim {
   Vec2 target;
   bool farthest;
 };
 
-/// The best velocity on the line of plane `k` within the planes before it. False when there is none.
+/// Find the best velocity on the line of plane `k` within the planes before it. Returns false if there is no such
+/// velocity.
 bool best_on_line(const HalfPlane* planes, int k, double max_speed, const Aim& aim, Vec2& velocity) {
   const HalfPlane& line = planes[k];
   const double along = dot(line.point, line.direction), across = cross(line.point, line.direction);
@@ -45,8 +46,8 @@ bool best_on_line(const HalfPlane* planes, int k, double max_speed, const Aim& a
   return true;
 }
 
-/// The best velocity within all planes; returns their number, or the first plane with which there is none (`velocity`
-/// is then the best within those before it).
+/// Find the best velocity within all planes. Returns the number of planes, or the index of the first plane that makes
+/// the program infeasible; `velocity` is then the best one within the planes before it.
 int best_velocity(const HalfPlane* planes, int count, double max_speed, const Aim& aim, Vec2& velocity) {
   const double length2 = squared(aim.target);
   if (aim.farthest) {
@@ -65,7 +66,7 @@ int best_velocity(const HalfPlane* planes, int count, double max_speed, const Ai
   return count;
 }
 
-/// The plane of velocities that are no farther outside `a` than outside `b`. False when all are.
+/// Find the plane of velocities that violate `a` by no more than `b`. Returns false if all velocities do.
 bool no_worse(const HalfPlane& a, const HalfPlane& b, HalfPlane& out) {
   const double sine = cross(a.direction, b.direction);
   if (std::fabs(sine) <= kParallel) {
@@ -79,8 +80,8 @@ bool no_worse(const HalfPlane& a, const HalfPlane& b, HalfPlane& out) {
   return true;
 }
 
-/// The 3-D program: makes the largest violation of planes[hard:] as small as possible, from the best velocity within
-/// the planes before `first`.
+/// Minimise the largest violation of planes[hard:] (the 3-D program), starting with the best velocity within the planes
+/// before `first`.
 void least_violation(const HalfPlane* planes, int count, int hard, int first, double max_speed,
                      std::vector<HalfPlane>& scratch, Vec2& velocity) {
   double violation = 0.0;
@@ -93,7 +94,7 @@ void least_violation(const HalfPlane* planes, int count, int hard, int first, do
     }
     const Vec2 before = velocity, inward = {-planes[k].direction.y, planes[k].direction.x};
     const int size = static_cast<int>(scratch.size());
-    // fails by rounding only: what there was is the answer then
+    // This fails only by rounding errors; the velocity so far is then the result.
     if (best_velocity(scratch.data(), size, max_speed, {inward, true}, velocity) < size) velocity = before;
     violation = -planes[k].depth(velocity);
   }

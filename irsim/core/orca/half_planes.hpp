@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
@@ -11,18 +11,18 @@ namespace irsim {
 struct HalfPlane {
   Vec2 point, direction;  // direction: unit vector
 
-  /// How far `v` is inside; negative outside.
+  /// Distance of `v` from the line; negative outside of the half-plane.
   double depth(Vec2 v) const { return cross(direction, v - point); }
 };
 
-/// The velocity nearest to `preferred`, at most `max_speed` long, in all of `planes`; where there is none, the one that
-/// is least outside, with the first `hard` of them kept.
+/// Find the velocity nearest to `preferred`, at most `max_speed` long, within all `planes`. If no velocity is, find the
+/// one with the smallest violation that still satisfies the first `hard` planes.
 ///
 /// Args:
 ///   planes: (count,) half-planes; zero velocity is in each of the first `hard`.
-///   scratch: Memory.
-///   velocity: Where the answer goes [m/s].
-/// Returns: Whether some velocity is in all of them.
+///   scratch: Scratch memory.
+///   velocity: The result [m/s].
+/// Returns: Whether the velocity is within all planes.
 bool choose_velocity(const HalfPlane* planes, int count, int hard, double max_speed, Vec2 preferred,
                      std::vector<HalfPlane>& scratch, Vec2& velocity);
 

@@ -4,7 +4,7 @@ namespace irsim {
 
 void Nearest::build() {
   start_.clear();
-  if (points_.size() <= kFew) return;
+  if (points_.size() <= kMaxLinearPoints) return;
   Box box;
   double known = 0.0;
   for (const Vec2 p : points_) {
@@ -13,7 +13,7 @@ void Nearest::build() {
     known += 1.0;
   }
   if (known == 0.0) return;
-  // about one per cell where they are spread evenly
+  // Evenly spread points get about one cell each.
   const double width = box.x1 - box.x0, height = box.y1 - box.y0;
   cell_ = std::max({std::sqrt(width * height / known), (width + height) / known, 1e-9});
   inverse_ = 1.0 / cell_;

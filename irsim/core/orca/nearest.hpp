@@ -1,14 +1,14 @@
-// The few nearest of many points.
+// The k nearest of many points.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "vec.hpp"
+#include "geometry/vec.hpp"
 
 namespace irsim {
 
-/// Points of the plane, on a grid where there are many. Points that are not finite are near nothing.
+/// Points of the plane, stored in a grid if there are many. Points that are not finite are never found.
 class Nearest {
  public:
   struct Found {
@@ -19,13 +19,13 @@ class Nearest {
     }
   };
 
-  /// Start over; `add` all points, then `build`.
+  /// Remove all points. Then `add` points and `build`.
   void clear() { points_.clear(); }
   void add(Vec2 point) { points_.push_back(point); }
   void build();
 
-  /// The nearest points less than `reach` [m] away from `centre`, `most` at most, those for which `seen(index)` holds:
-  /// nearest first, of equally far ones the lower index first. Returns how many; `found` has room for `most`.
+  /// Find up to `most` points less than `reach` [m] away from `centre` for which `seen(index)` holds, nearest first,
+  /// then by index. Returns their number; `found` must have space for `most`.
   template <class Seen>
   int find(Vec2 centre, double reach, int most, Seen&& seen, Found* found) const {
     if (most <= 0) return 0;
@@ -40,7 +40,7 @@ class Nearest {
     const int cx = column(centre.x - x0_, columns_), cy = column(centre.y - y0_, rows_);
     const int rings = std::max(std::max(cx, columns_ - 1 - cx), std::max(cy, rows_ - 1 - cy));
     for (int ring = 0; ring <= rings; ++ring) {
-      const double gap = (ring - 1) * cell_;  // nothing in this ring is nearer
+      const double gap = (ring - 1) * cell_;  // lower bound of the distance of points in this ring
       if (ring > 1 && gap * gap > best.limit2) break;
       for (int y = std::max(cy - ring, 0); y <= std::min(cy + ring, rows_ - 1); ++y) {
         const bool whole = y == cy - ring || y == cy + ring;
@@ -59,13 +59,13 @@ class Nearest {
   }
 
  private:
-  static constexpr std::size_t kFew = 64;  // so few are looked at one by one
+  static constexpr std::size_t kMaxLinearPoints = 64;  // up to this many points are searched one by one
 
-  /// The best so far, sorted.
+  /// The nearest points so far, sorted.
   struct Best {
     Found* found;
     int most, count;
-    double limit2;  // nobody farther is wanted
+    double limit2;  // points farther away than this are not needed
 
     void offer(Found next) {
       if (count == most) {

@@ -1,21 +1,21 @@
 #include "orca/obstacles.hpp"
 
-#include "scene.hpp"
-#include "world.hpp"
+#include "world/scene.hpp"
+#include "world/world.hpp"
 
 namespace irsim {
 namespace {
 
-constexpr double kCell = 4.0;  // of the grid [m]
+constexpr double kCell = 4.0;  // cell size of the grid [m]
 
-/// Unit vector of a wall; zero for one without length.
+/// The unit vector of a wall; zero for a wall without length.
 Vec2 along(const Wall& wall) {
   const Vec2 way = wall.b - wall.a;
   const double length = norm(way);
   return length > 0.0 ? way * (1.0 / length) : Vec2{};
 }
 
-/// Unit vector of the wall `link` leads to, walls without length passed over; zero at a free end.
+/// The unit vector of the next wall with a length in the direction of `link`; zero at a free end.
 Vec2 beyond(const Walls& walls, int k, int Wall::* link) {
   for (std::size_t tries = 0; tries < walls.list.size(); ++tries) {
     k = walls.list[k].*link;
@@ -26,7 +26,7 @@ Vec2 beyond(const Walls& walls, int k, int Wall::* link) {
   return {};
 }
 
-/// A zero vector marks the side on which the line ends.
+/// Make a corner. A zero vector marks the side on which a line ends.
 Corner corner(Vec2 point, Vec2 in, Vec2 out) {
   if (squared(in) == 0.0) in = out * -1.0;
   if (squared(out) == 0.0) out = in * -1.0;
@@ -64,7 +64,7 @@ Obstacles make_obstacles(const World& world, const Shapes& shapes, const Fixed& 
     box.include(edge.right.point);
     all.grid.add(id++, box);
   }
-  for (const StandingDisc& disc : all.discs) all.grid.add(id++, box_around(disc.centre, disc.radius));
+  for (const StaticDisc& disc : all.discs) all.grid.add(id++, box_around(disc.centre, disc.radius));
   all.grid.build();
   return all;
 }

@@ -1,4 +1,4 @@
-// informed_rrt_star: rrt_star that samples where shorter paths can be.
+// informed_rrt_star: rrt_star that samples only where shorter paths are possible.
 #pragma once
 
 #include "fields.hpp"

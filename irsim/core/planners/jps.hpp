@@ -1,4 +1,4 @@
-// jps: the paths of astar, found by jumping over cells that need no decision.
+// jps: the same paths as astar, found by jumping over cells that need no decision.
 #pragma once
 
 #include "fields.hpp"
@@ -7,7 +7,7 @@
 namespace irsim {
 
 struct JpsOptions {
-  double resolution;  // [m]; 0: that of the map
+  double resolution;  // cell size [m]; 0: that of the map
   static constexpr auto fields() { return std::make_tuple(field("resolution", &JpsOptions::resolution)); }
 };
 

@@ -1,4 +1,4 @@
-// prm: a graph of random free points, and its shortest path.
+// prm: the shortest path in a graph of random free points.
 #pragma once
 
 #include "fields.hpp"

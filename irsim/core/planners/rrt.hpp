@@ -1,4 +1,4 @@
-// rrt: a tree of random extensions.
+// rrt: a tree that grows by random extensions.
 #pragma once
 
 #include "fields.hpp"

@@ -1,4 +1,4 @@
-// rrt_star: a tree that rewires itself, so that paths get shorter.
+// rrt_star: a random tree that is rewired to shorten its paths.
 #pragma once
 
 #include "fields.hpp"

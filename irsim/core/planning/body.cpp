@@ -29,7 +29,7 @@ Body Body::of(const Shapes& shapes, int object, double heading, double margin) {
       body.add_circle(corners[0], part.radius + margin);
       continue;
     }
-    if (margin > 0.0) {  // the outline, a disc at every corner and a strip along every edge: their union is exact
+    if (margin > 0.0) {  // the exact union of the outline, a disc at every corner and a strip along every edge
       for (int k = 0; k < part.last - part.first; ++k) {
         const Vec2 along = corners[k + 1] - corners[k];
         body.add_circle(corners[k], margin);
@@ -102,7 +102,7 @@ const Footprint& Body::swept(Vec2 a, Vec2 b) {
       continue;
     }
     for (int v = part.first; v < part.last; ++v) {
-      // what a ring covers beyond itself is swept by its edges that face forward
+      // Only edges that face forward sweep an area beyond the ring itself.
       const Vec2 edge = vertices_[v + 1] - vertices_[v];
       if (part.turn * cross(along, edge) < 0.0) continue;
       const Vec2 quad[] = {a + vertices_[v], a + vertices_[v + 1], b + vertices_[v + 1], b + vertices_[v]};

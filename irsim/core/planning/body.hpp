@@ -1,29 +1,29 @@
-// The footprint a path is planned for: it keeps its heading and moves along straight lines.
+// The footprint for which a path is planned. It keeps its heading and moves along straight lines.
 #pragma once
 
 #include <vector>
 
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 
-/// Parts of one rigid body about its origin, ready to be put anywhere. The answers live in scratch memory of the body
-/// until the next question, so one thread uses a body at a time.
+/// Parts of one rigid body about its origin, which can be placed anywhere. The footprints returned are scratch memory
+/// of the body until the next call, so only one thread may use a body at a time.
 class Body {
  public:
   static Body disc(double radius);
   /// A box about the origin.
   static Body box(double half_x, double half_y);
-  /// Body-frame parts of object `object` at a heading, larger by `margin` [m] all round.
+  /// The parts of an object at a heading, enlarged by `margin` [m] on all sides.
   static Body of(const Shapes& shapes, int object, double heading, double margin);
 
-  /// At a point.
+  /// The footprint at a point.
   const Footprint& at(Vec2 p);
-  /// What moving from a to b covers beyond the footprint at a.
+  /// The area that the body covers on the way from a to b beyond its footprint at a.
   const Footprint& swept(Vec2 a, Vec2 b);
-  /// No part of it is farther than this from its origin [m].
+  /// Distance of its farthest point from its origin [m].
   double reach() const { return reach_; }
-  /// Around the footprint at the origin.
+  /// The box around the footprint at the origin.
   const Box& box() const { return box_; }
 
  private:

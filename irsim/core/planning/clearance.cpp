@@ -6,16 +6,16 @@
 namespace irsim {
 namespace {
 
-constexpr double kDiagonal = 0.70710678118654752;
-constexpr float kTouching = 1e-6f;  // [m]
+constexpr double kDiagonal = 0.70710678118654752;  // half the diagonal of a unit square
+constexpr float kTouching = 1e-6f;                 // smaller distances count as 0 [m]
 
 struct Move {
   int dx, dy;
 };
 constexpr Move kMoves[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
-/// The part of a segment inside of a box; false if there is none.
-bool clipped(Vec2& a, Vec2& b, const Box& box) {
+/// Clip a segment to a box. Returns false if no part of it is inside.
+bool clip_to_box(Vec2& a, Vec2& b, const Box& box) {
   double t0 = 0.0, t1 = 1.0;
   const Vec2 d = b - a;
   const double p[] = {-d.x, d.x, -d.y, d.y}, q[] = {a.x - box.x0, box.x1 - a.x, a.y - box.y0, box.y1 - a.y};
@@ -56,11 +56,11 @@ Clearance::Clearance(const Blockers& blockers, const Lattice& lattice) : lattice
     const Footprint body = blockers.outlines.footprint(blockers.shapes, id);
     for (int k = 0; k < body.count; ++k) add(body.parts[k], body.vertices);
   }
-  spread();
+  spread_features();
   for (std::size_t n = 0; n < nodes; ++n) {
     if (solid_[n] || distance_[n] < kTouching) distance_[n] = 0.0f;
   }
-  join();
+  join_nodes();
 }
 
 void Clearance::add(const Part& part, const Vec2* vertices) {
@@ -87,8 +87,8 @@ void Clearance::add_cells(const OccupancyGrid& grid) {
 void Clearance::add_edge(Vec2 a, Vec2 b) {
   const int feature = static_cast<int>(features_.size());
   features_.push_back({a, b, -1.0});
-  if (!clipped(a, b, area_)) return;
-  // every cell on the way: columns of the segment, and in each the rows between its ends there
+  if (!clip_to_box(a, b, area_)) return;
+  // Every cell on the way: the columns of the segment, and in each column the rows that it passes.
   if (a.x > b.x) std::swap(a, b);
   const int first = lattice_.column(a.x), last = lattice_.column(b.x);
   const double slope = b.x > a.x ? (b.y - a.y) / (b.x - a.x) : 0.0;
@@ -163,14 +163,14 @@ void Clearance::offer_around(int node, int feature) {
   around(node, [&](int other) { offer(other, feature); });
 }
 
-void Clearance::spread() {
+void Clearance::spread_features() {
   const int nx = lattice_.nx, ny = lattice_.ny;
   const auto ask = [&](int i, int j, int di, int dj) {
     if (!lattice_.holds(i + di, j + dj)) return;
     const int other = nearest_[lattice_.node(i + di, j + dj)], node = lattice_.node(i, j);
     if (other >= 0 && other != nearest_[node]) offer(node, other);
   };
-  for (int round = 0; round < 2; ++round) {
+  for (int pass = 0; pass < 2; ++pass) {
     for (int j = 0; j < ny; ++j) {
       for (int i = 0; i < nx; ++i) ask(i, j, -1, -1), ask(i, j, 0, -1), ask(i, j, 1, -1), ask(i, j, -1, 0);
       for (int i = nx - 1; i >= 0; --i) ask(i, j, 1, 0);
@@ -182,7 +182,7 @@ void Clearance::spread() {
   }
 }
 
-void Clearance::join() {
+void Clearance::join_nodes() {
   const std::size_t nodes = distance_.size();
   parent_.resize(nodes), saddle_.assign(nodes, -1), joined_.assign(nodes, 0);
   std::iota(parent_.begin(), parent_.end(), 0);
@@ -193,7 +193,8 @@ void Clearance::join() {
   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     return distance_[a] > distance_[b] || (distance_[a] == distance_[b] && a < b);
   });
-  std::vector<std::int32_t> root(nodes, -1), count(nodes, 1);  // root: with short cuts, -1 not yet there
+  std::vector<std::int32_t> root(nodes, -1),
+      count(nodes, 1);  // root: parents with path compression, -1 for nodes not reached yet
   const auto find = [&](std::int32_t n) {
     while (root[n] != n) n = root[n] = root[root[n]];
     return n;
@@ -218,7 +219,7 @@ Clearance::Way Clearance::widest(int a, int b) const {
   if (distance_[a] <= 0.0f || distance_[b] <= 0.0f) return {-kInfinity, -1};
   int node = distance_[a] < distance_[b] ? a : b;
   std::uint32_t last = 0;
-  while (a != b) {  // up from where the earlier join is; joins come later and later on the way up
+  while (a != b) {  // climb from the node with the earlier join, since joins come later toward the root
     const bool up_a = joined_[a] != 0 && (joined_[b] == 0 || joined_[a] < joined_[b]);
     int& lower = up_a ? a : b;
     if (joined_[lower] == 0) return {-kInfinity, -1};

@@ -5,9 +5,9 @@
 namespace irsim {
 namespace {
 
-constexpr double kDefaultResolution = 0.1;  // [m]
-// Of nodes with equal sums of cost and estimate the one nearer to the goal comes first. Costs of different numbers of
-// steps differ by far more than this, so the path stays the shortest.
+constexpr double kDefaultResolution = 0.1;  // cell size without a map [m]
+// Factor that breaks ties in favor of nodes nearer to the goal. Costs of different numbers of steps differ by far more,
+// so the path is still the shortest.
 constexpr double kPreference = 1.0 + 1e-9;
 
 struct Step {
@@ -15,7 +15,7 @@ struct Step {
 };
 constexpr Step kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
-/// Search state over one lattice.
+/// The state of a search on one lattice.
 class Search {
  public:
   Search(const Problem& problem, double resolution)
@@ -59,13 +59,13 @@ class Search {
   int parent(int i, int j) const { return memory_.parent[lattice_.node(i, j)]; }
   const Lattice& lattice() const { return lattice_; }
 
-  /// Cost of going straight or diagonally, or of the shortest way without obstacles.
+  /// The cost of a straight or diagonal move, or of the shortest path without obstacles.
   double distance(int di, int dj) const {
     di = std::abs(di), dj = std::abs(dj);
     const int both = std::min(di, dj);
     return both * diagonal_ + (di - both) * lattice_.cell.x + (dj - both) * lattice_.cell.y;
   }
-  /// From (i, j) to another cell that lies straight or diagonally from there.
+  /// Offer the move from (i, j) to another cell in straight or diagonal direction.
   void offer(int i, int j, int to_i, int to_j) {
     const int node = lattice_.node(i, j);
     reach(lattice_.node(to_i, to_j), node, memory_.cost[node] + distance(to_i - i, to_j - j));
@@ -81,11 +81,11 @@ class Search {
     std::push_heap(memory_.heap.begin(), memory_.heap.end());
   }
 
-  /// The node at which a search begins or ends, -1 if there is none.
+  /// The node at which a search begins or ends; -1 without such a node.
   int ends(Vec2 p, bool must_be_open) {
     const int i = lattice_.column(p.x), j = lattice_.row(p.y);
     if (problem_.tight == nullptr) return !must_be_open || cells_.open(i, j) ? lattice_.node(i, j) : -1;
-    // the nearest open node that the body can move to and from in a straight line
+    // The nearest open node that the body can reach in a straight line.
     const int most = 3 + static_cast<int>(problem_.space.body.reach() / std::min(lattice_.cell.x, lattice_.cell.y));
     int best = -1;
     double least = kInfinity;
@@ -116,7 +116,7 @@ class Search {
       int i = node % lattice_.nx, j = node / lattice_.nx;
       plan.path.push_back(lattice_.at(i, j));
       if (from < 0) break;
-      // jumps are filled in cell by cell
+      // The cells of a jump are filled in.
       const int to_i = from % lattice_.nx, to_j = from / lattice_.nx;
       const int dx = (to_i > i) - (to_i < i), dy = (to_j > j) - (to_j < j);
       for (i += dx, j += dy; i != to_i || j != to_j; i += dx, j += dy) plan.path.push_back(lattice_.at(i, j));
@@ -137,18 +137,18 @@ class Search {
   std::uint32_t order_ = 0;
 };
 
-/// Jumps from cell to cell, past all that need no decision.
+/// Jumps over cells that need no decision.
 struct Jumps {
   Search& search;
 
-  /// The next jump point from (i, j), exclusive, in a straight direction; false if there is none.
+  /// Move (i, j) to the next jump point in a straight direction. Returns false without such a point.
   bool straight(int& i, int& j, int dx, int dy) const {
     while (true) {
       i += dx, j += dy;
       if (!search.open(i, j)) return false;
       if (search.is_goal(i, j)) return true;
       for (const int side : {1, -1}) {
-        // a cell beside this one that could not be reached more shortly from the one before
+        // A forced neighbor: the shortest path to it leads through this cell.
         const int si = dy * side, sj = dx * side;
         if (!search.open(i - dx + si, j - dy + sj) && search.open(i + si, j + sj)) return true;
       }

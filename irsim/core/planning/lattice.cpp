@@ -3,14 +3,14 @@
 namespace irsim {
 namespace {
 
-constexpr double kMostNodes = 16e6;
+constexpr double kMaxNodes = 16e6;  // larger lattices get a coarser resolution
 
 }  // namespace
 
 Lattice Lattice::over(const Box& bounds, double resolution) {
   const double width = bounds.x1 - bounds.x0, height = bounds.y1 - bounds.y0;
   const double cells = width / resolution * (height / resolution);
-  if (cells > kMostNodes) resolution *= std::sqrt(cells / kMostNodes);
+  if (cells > kMaxNodes) resolution *= std::sqrt(cells / kMaxNodes);
   const int nx = static_cast<int>(std::max(1.0, std::round(width / resolution)));
   const int ny = static_cast<int>(std::max(1.0, std::round(height / resolution)));
   return {nx, ny, {bounds.x0, bounds.y0}, {width / nx, height / ny}};
@@ -29,7 +29,7 @@ bool OpenCells::free(int i, int j) {
   return known & kFree;
 }
 
-/// Whether an object is a map of which these are the cells.
+/// Whether an object is a map with the cells of this lattice.
 bool OpenCells::own_cells(const Shapes& shapes, int id) const {
   if (!shapes.is_map(id)) return false;
   const OccupancyGrid& grid = *shapes.parts[shapes.body[id].part].cells;
@@ -37,8 +37,8 @@ bool OpenCells::own_cells(const Shapes& shapes, int id) const {
   return norm(grid.cell() - cell) <= 1e-9 * norm(cell) && norm(gap) <= 1e-6 * norm(cell);
 }
 
-/// Whether nothing is near enough to matter for steps to and from a node, and no cells of a map but those of this very
-/// lattice (steps between its free nodes meet none of its cells: each is as large as a step).
+/// Whether no obstacle is near enough to matter for steps to and from a node. Cells of a map that are those of this
+/// lattice do not matter: each is as large as a step, so steps between free nodes meet none of them.
 bool OpenCells::clear_around(int i, int j) const {
   const Box& own = space_.body.box();
   const Vec2 p = lattice_.at(i, j);

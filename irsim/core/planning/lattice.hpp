@@ -1,4 +1,4 @@
-// The cells a grid planner moves on, and which of them the body may be at. Nodes are the centres of cells.
+// The cells on which grid planners search, and which of them are open. Nodes are the centres of cells.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace irsim {
 
-/// nx * ny cells; node n = j * nx + i lies in the middle of cell (i, j), i along x.
+/// nx * ny cells. Node n = j * nx + i is the centre of cell (i, j), i along x.
 struct Lattice {
   int nx, ny;
   Vec2 origin, cell;  // [m]
 
-  /// Cells of about `resolution` [m] that fill `bounds`, fewer and larger ones if there would be too many.
+  /// Cells of about `resolution` [m] that fill `bounds`; larger cells if there would be too many.
   static Lattice over(const Box& bounds, double resolution);
 
   int nodes() const { return nx * ny; }
@@ -21,7 +21,7 @@ struct Lattice {
   bool holds(int i, int j) const { return i >= 0 && j >= 0 && i < nx && j < ny; }
   Vec2 at(int i, int j) const { return {origin.x + (i + 0.5) * cell.x, origin.y + (j + 0.5) * cell.y}; }
   Vec2 at(int node) const { return at(node % nx, node / nx); }
-  /// Column and row of the cell a point is in, the nearest one for points outside.
+  /// Column and row of the cell that contains a point, or of the nearest cell.
   int column(double x) const { return index((x - origin.x) / cell.x, nx); }
   int row(double y) const { return index((y - origin.y) / cell.y, ny); }
   int nearest(Vec2 p) const { return node(column(p.x), row(p.y)); }
@@ -30,9 +30,9 @@ struct Lattice {
   static int index(double cells, int count) { return static_cast<int>(clip(std::floor(cells), 0.0, count - 1.0)); }
 };
 
-/// Lazily, which nodes are open: the body may be there, and may move from there to each neighbour that is free (a
-/// diagonal neighbour: if the two cells beside the diagonal are free, too). So every step between open nodes that cuts
-/// no corner is free of collisions.
+/// Which nodes are open, computed when it is asked for. A node is open if the body may be there and may move from there
+/// to each free neighbor (to a diagonal one if both cells beside the diagonal are free, too). Every step between open
+/// nodes that cuts no corner is thus free of collisions.
 class OpenCells {
  public:
   OpenCells(const Lattice& lattice, const Space& space, std::vector<std::uint8_t>& memory);
@@ -43,8 +43,6 @@ class OpenCells {
     if (!(known & kOpenKnown)) find(i, j);
     return known & kOpen;
   }
-  const Lattice& lattice() const { return lattice_; }
-  const Space& space() const { return space_; }
 
  private:
   static constexpr std::uint8_t kFreeKnown = 1, kFree = 2, kOpenKnown = 4, kOpen = 8;

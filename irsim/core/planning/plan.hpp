@@ -1,4 +1,4 @@
-// All planners, and asking one of them.
+// All planners.
 #pragma once
 
 #include "planners.gen.hpp"
@@ -6,6 +6,7 @@
 
 namespace irsim {
 
+/// Plan a path with the given planner.
 Plan find_path(const Planner& planner, const Problem& problem);
 
 }  // namespace irsim

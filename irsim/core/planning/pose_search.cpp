@@ -9,18 +9,20 @@
 namespace irsim {
 namespace {
 
-constexpr int kHeadings = 24;                         // that are told apart
-constexpr int kFiner = 4;                             // headings at which the body is known, per one of those
-constexpr double kMargin = 0.02;                      // [m]
-constexpr double kLeastStep = 0.15, kMostStep = 0.4;  // length of a piece [m]
-constexpr double kCellsPerStep = 2.0;
-constexpr double kBackward = 1.5;   // cost of backing, per length
-constexpr double kSwitch = 0.3;     // of changing direction [m]
-constexpr double kSteering = 0.02;  // of an arc [m]
-constexpr double kGreed = 1.5;      // weight of the distance to the goal: far fewer nodes, paths at most so much longer
-constexpr int kMostPoses = 60000;
-constexpr double kFieldCell = 0.1;  // of the distances to the goal [m]
-constexpr double kMostField = 250000;
+constexpr int kHeadings = 24;           // number of headings that count as different
+constexpr int kBodiesPerHeading = 4;    // headings with a body of their own, per one of those
+constexpr double kMargin = 0.02;        // margin of the body [m]
+constexpr double kMinStep = 0.15;       // smallest length of a piece [m]
+constexpr double kMaxStep = 0.4;        // largest length of a piece [m]
+constexpr double kCellsPerStep = 2.0;   // cells of positions along a piece
+constexpr double kBackwardCost = 1.5;   // cost of driving backward, per length
+constexpr double kSwitchCost = 0.3;     // cost of changing between forward and backward [m]
+constexpr double kSteeringCost = 0.02;  // cost of an arc [m]
+constexpr double kHeuristicWeight =
+    1.5;                          // weight of the distance to the goal: few nodes, paths longer by this factor at most
+constexpr int kMaxPoses = 60000;  // number of poses after which the search gives up
+constexpr double kFieldCell = 0.1;         // smallest cell of the field of distances to the goal [m]
+constexpr double kMaxFieldCells = 250000;  // largest number of its cells
 
 struct PoseNode {
   Pose pose;
@@ -32,10 +34,10 @@ class PoseSearch {
  public:
   explicit PoseSearch(const PoseProblem& problem)
       : p_(problem),
-        step_(clip(0.3 * problem.reach, kLeastStep, kMostStep)),
+        step_(clip(0.3 * problem.reach, kMinStep, kMaxStep)),
         cell_(step_ / kCellsPerStep),
-        margin_(kMargin + (problem.radius > 0.0 ? problem.reach * 0.5 * kTurn / (kHeadings * kFiner) : 0.0)),
-        bodies_(kHeadings * kFiner) {}
+        margin_(kMargin + (problem.radius > 0.0 ? problem.reach * 0.5 * kTurn / (kHeadings * kBodiesPerHeading) : 0.0)),
+        bodies_(kHeadings * kBodiesPerHeading) {}
 
   std::vector<Leg> run() {
     if (!measure()) return {};
@@ -46,7 +48,7 @@ class PoseSearch {
       if (closed_[k]) continue;
       closed_[k] = 1;
       if (norm(nodes_[k].pose.position() - p_.goal) <= std::max(p_.near, step_)) return legs(k);
-      if (nodes_.size() > kMostPoses) return {};
+      if (nodes_.size() > kMaxPoses) return {};
       if (p_.radius > 0.0) {
         arcs(k);
       } else {
@@ -57,10 +59,10 @@ class PoseSearch {
   }
 
  private:
-  /// Distances to the goal for the disc within the body; false if the start has none.
+  /// Compute distances to the goal for the disc within the body. Returns false if the goal cannot be reached.
   bool measure() {
     const double area = (p_.bounds.x1 - p_.bounds.x0) * (p_.bounds.y1 - p_.bounds.y0);
-    lattice_ = Lattice::over(p_.bounds, std::max(kFieldCell, std::sqrt(area / kMostField)));
+    lattice_ = Lattice::over(p_.bounds, std::max(kFieldCell, std::sqrt(area / kMaxFieldCells)));
     distance_.assign(static_cast<std::size_t>(lattice_.nodes()), kInfinity);
     Body disc = Body::disc(std::max(0.0, 0.9 * p_.room - 0.5 * norm(lattice_.cell)));
     const Space space{p_.blockers, disc, p_.bounds, false};
@@ -90,8 +92,9 @@ class PoseSearch {
   }
 
   Body& body(double heading) {
-    const double count = kHeadings * kFiner;
-    const int k = static_cast<int>(std::lround((wrap(heading) + kPi) / kTurn * count)) % (kHeadings * kFiner);
+    const double count = kHeadings * kBodiesPerHeading;
+    const int k =
+        static_cast<int>(std::lround((wrap(heading) + kPi) / kTurn * count)) % (kHeadings * kBodiesPerHeading);
     if (!bodies_[k]) bodies_[k] = Body::of(p_.shapes, p_.object, k * kTurn / count - kPi, margin_);
     return *bodies_[k];
   }
@@ -105,7 +108,7 @@ class PoseSearch {
     const std::int64_t i = static_cast<std::int64_t>(std::floor((pose.x - p_.bounds.x0) / cell_));
     const std::int64_t j = static_cast<std::int64_t>(std::floor((pose.y - p_.bounds.y0) / cell_));
     const std::int64_t turn = std::lround((wrap(pose.theta) + kPi) / kTurn * kHeadings) % kHeadings;
-    // a car comes and goes: which way it last went matters
+    // The last direction of a car belongs to the key, because changing it has a cost.
     const std::int64_t key = ((i * 1000003 + j) * kHeadings + turn) * 2 + (p_.radius > 0.0 && way < 0 ? 1 : 0);
     const auto [found, fresh] = best_.try_emplace(key, cost);
     if (!fresh) {
@@ -116,17 +119,18 @@ class PoseSearch {
     if (!std::isfinite(left)) return;
     nodes_.push_back({pose, cost, parent, way});
     closed_.push_back(0);
-    open_.push({-(cost + kGreed * left), static_cast<int>(nodes_.size()) - 1});
+    open_.push({-(cost + kHeuristicWeight * left), static_cast<int>(nodes_.size()) - 1});
   }
 
   double price(const PoseNode& from, double length, int way) const {
     const bool turned = from.way != 0 && way != 0 && from.way != way;
-    return from.cost + length * (way < 0 ? kBackward : 1.0) + (turned ? kSwitch : 0.0);
+    return from.cost + length * (way < 0 ? kBackwardCost : 1.0) + (turned ? kSwitchCost : 0.0);
   }
 
   void arcs(int k) {
     const PoseNode from = nodes_[k];
-    const int pieces = std::max(2, static_cast<int>(std::ceil(step_ / p_.radius * kHeadings * kFiner / kTurn)));
+    const int pieces =
+        std::max(2, static_cast<int>(std::ceil(step_ / p_.radius * kHeadings * kBodiesPerHeading / kTurn)));
     for (const int way : {1, -1}) {
       if (way < 0 && !p_.backs) continue;
       for (const double bend : {0.0, 1.0, -1.0}) {
@@ -139,13 +143,13 @@ class PoseSearch {
           free = clear(middle, pose.position(), next);
           pose = {next.x, next.y, wrap(pose.theta + turn)};
         }
-        if (free) add(pose, price(from, step_, way) + (bend != 0.0 ? kSteering : 0.0), k, way);
+        if (free) add(pose, price(from, step_, way) + (bend != 0.0 ? kSteeringCost : 0.0), k, way);
       }
     }
   }
 
   bool turn_is_free(Vec2 at, double from, double by) {
-    const int parts = std::max(1, static_cast<int>(std::ceil(std::fabs(by) / kTurn * kHeadings * kFiner)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::fabs(by) / kTurn * kHeadings * kBodiesPerHeading)));
     for (int part = 1; part <= parts; ++part) {
       if (p_.blockers.meet(body(from + by * part / parts).at(at))) return false;
     }
@@ -159,9 +163,10 @@ class PoseSearch {
     for (const double to : {std::floor(here - 1e-6) * slot, std::ceil(here + 1e-6) * slot}) {
       const double by = to - from.pose.theta;
       if (!turn_is_free(at, from.pose.theta, by)) continue;
-      add({at.x, at.y, wrap(to)}, from.cost + std::fabs(by) * 0.3 * (p_.reach + kLeastStep), k, 0);
+      add({at.x, at.y, wrap(to)}, from.cost + std::fabs(by) * 0.3 * (p_.reach + kMinStep), k, 0);
     }
-    if (from.parent < 0 && std::fabs(here - std::round(here)) > 1e-6) return;  // bodies are known at the headings only
+    if (from.parent < 0 && std::fabs(here - std::round(here)) > 1e-6)
+      return;  // go straight only at one of the headings
     for (const int way : {1, -1}) {
       if (way < 0 && !p_.backs) continue;
       const Vec2 next = at + unit(from.pose.theta) * (way * step_);
@@ -174,7 +179,7 @@ class PoseSearch {
     for (; k >= 0; k = nodes_[k].parent) found.push_back({nodes_[k].pose, nodes_[k].way});
     std::reverse(found.begin(), found.end());
     if (p_.radius > 0.0) return found;
-    std::vector<Leg> merged = {found.front()};  // pieces of one straight line, or of one turn
+    std::vector<Leg> merged = {found.front()};  // pieces of the same straight line are merged
     for (std::size_t n = 1; n < found.size(); ++n) {
       const bool same = merged.size() > 1 && found[n].way == merged.back().way;
       const Leg& last = merged.back();

@@ -1,4 +1,4 @@
-// Ways for bodies that must turn where there is hardly room: poses instead of points.
+// Paths of poses instead of points, for bodies that must turn in narrow places.
 #pragma once
 
 #include <vector>
@@ -7,29 +7,30 @@
 
 namespace irsim {
 
-/// A pose, and how it is reached from the one before.
+/// A pose and how it is reached from the pose before it.
 struct Leg {
   Pose pose;
-  int way;  // 1 forward, -1 backward, 0 by turning in place
+  int way;  // 1 forward, -1 backward, 0 by turning on the spot
 };
 
+/// What is to be planned.
 struct PoseProblem {
   const Blockers& blockers;
   const Shapes& shapes;
-  int object;  // whose footprint it is
-  Box bounds;  // of positions
+  int object;  // object whose footprint moves
+  Box bounds;  // limits of positions
   Pose start;
   Vec2 goal;
-  double near;    // the last pose is so near the goal [m]
-  bool backs;     // may go backward
-  double radius;  // of the turning circle [m]; 0: turns in place
+  double near;    // distance from the goal at which a path may end [m]
+  bool backs;     // whether it may go backward
+  double radius;  // radius of the turning circle [m]; 0 if it turns on the spot
   double reach;   // farthest point of the footprint from its origin [m]
   double room;    // radius of a disc about the origin within the footprint [m]
 };
 
-/// Legs from start to goal, the start first; empty if none are found. Hybrid A*: Dolgov, Thrun, Montemerlo, Diebel,
-/// "Practical Search Techniques in Path Planning for Autonomous Driving" (2008): short arcs, or straight pieces and
-/// turns in place, between poses of which one per cell of position and heading is kept.
+/// Legs from start to goal, starting with the start; empty if none are found. Hybrid A* (Dolgov, Thrun, Montemerlo,
+/// Diebel: "Practical Search Techniques in Path Planning for Autonomous Driving", 2008) with short arcs, or with
+/// straight pieces and turns on the spot. One pose is kept for each cell of position and heading.
 std::vector<Leg> search_poses(const PoseProblem& problem);
 
 }  // namespace irsim

@@ -10,7 +10,7 @@ double path_length(const std::vector<Vec2>& path) {
 
 void shorten(const Space& space, std::vector<Vec2>& path) {
   if (path.size() < 3) return;
-  // points on straight runs first: they are what most of a path on a grid is made of
+  // Points on straight runs are removed first, because most points of a path on a grid are such points.
   std::vector<Vec2> corners = {path.front()};
   for (std::size_t k = 1; k + 1 < path.size(); ++k) {
     const Vec2 before = path[k] - corners.back(), after = path[k + 1] - path[k];
@@ -23,7 +23,7 @@ void shorten(const Space& space, std::vector<Vec2>& path) {
     std::vector<Vec2> kept = {corners.front()};
     std::size_t from = 0;
     while (from + 1 < corners.size()) {
-      // doubling steps, then back: the farthest corner in a row that is in sight
+      // Search by doubling and then halving steps for the farthest corner in sight.
       std::size_t to = from + 1, step = 1;
       while (to + step < corners.size() && space.clear(corners[from], corners[to + step])) to += step, step *= 2;
       for (; step > 0; step /= 2) {
@@ -38,7 +38,7 @@ void shorten(const Space& space, std::vector<Vec2>& path) {
     }
     corners = std::move(kept);
     if (pass == 2) break;
-    // a point in the middle of long edges lets the next pass cut corners
+    // Points in the middle of edges let the next pass cut corners.
     std::vector<Vec2> finer = {corners.front()};
     for (std::size_t k = 1; k < corners.size(); ++k) {
       if (corners.size() > 2) finer.push_back((corners[k - 1] + corners[k]) * 0.5);
@@ -46,7 +46,7 @@ void shorten(const Space& space, std::vector<Vec2>& path) {
     }
     corners = std::move(finer);
   }
-  // the points put in that are of no use
+  // Remove added points that are not corners.
   path = {corners.front()};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
     const Vec2 before = corners[k] - path.back(), after = corners[k + 1] - corners[k];

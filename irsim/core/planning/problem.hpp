@@ -1,4 +1,4 @@
-// What a planner is asked, and what it answers.
+// The input and output of planners.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace irsim {
 
-/// Memory of searches, kept from one to the next.
+/// Memory that searches reuse.
 struct SearchMemory {
   struct Entry {
     double key;
     std::uint32_t order;
     int node;
-    bool operator<(const Entry& other) const {  // for heaps with the least on top
+    bool operator<(const Entry& other) const {  // for heaps with the smallest key on top
       return key > other.key || (key == other.key && order > other.order);
     }
   };
@@ -28,26 +28,26 @@ struct SearchMemory {
 struct Problem {
   const Space& space;
   Vec2 start, goal;
-  const Space* tight;  // the same without a margin: how start and goal are reached. Null: a grid planner starts and
-                       // ends in the cells of start and goal, not at these points.
-  const Lattice* own;  // cells of the map planned on, or null
-  bool explain;        // keep what was looked at
+  const Space* tight;  // the space without a margin, in which start and goal are reached. If null, grid planners start
+                       // and end in the cells of start and goal instead of at these points.
+  const Lattice* own;  // cells of the map, or null
+  bool explain;        // whether the nodes examined are returned
   Draws draws;
-  std::uint64_t first_draw;  // blocks of four draws from here on
+  std::uint64_t first_draw;  // first block of four draws that may be used
   SearchMemory& memory;
 };
 
-/// A path from start to goal; empty if there is none.
+/// A path from start to goal; empty without a path.
 struct Plan {
   std::vector<Vec2> path;
   double cost = kInfinity;    // length of the path [m]
-  std::vector<Vec2> nodes;    // points that were looked at
-  std::vector<int> parents;   // (nodes,) the point each was reached from; -1: none
-  std::vector<double> costs;  // (nodes,) length of the way there [m]
+  std::vector<Vec2> nodes;    // points that were examined
+  std::vector<int> parents;   // (nodes,) index of the point from which each was reached, or -1
+  std::vector<double> costs;  // (nodes,) length of the path there [m]
 };
 
 double path_length(const std::vector<Vec2>& path);
-/// The path without the points that the body can leave out.
+/// Remove the points of a path that the body can leave out.
 void shorten(const Space& space, std::vector<Vec2>& path);
 
 }  // namespace irsim

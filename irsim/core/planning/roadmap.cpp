@@ -5,7 +5,7 @@
 namespace irsim {
 namespace {
 
-constexpr int kDrawsPerSample = 100;  // draws for one free point before the search goes on with fewer
+constexpr int kMaxDrawsPerPoint = 100;  // largest number of draws per free point
 
 struct Edge {
   int to;
@@ -15,7 +15,7 @@ struct Edge {
 std::vector<Vec2> free_points(const Problem& problem, int count) {
   std::vector<Vec2> points;
   const Box& b = problem.space.bounds;
-  const std::uint64_t most = static_cast<std::uint64_t>(count) * kDrawsPerSample;
+  const std::uint64_t most = static_cast<std::uint64_t>(count) * kMaxDrawsPerPoint;
   for (std::uint64_t k = 0; k < most && static_cast<int>(points.size()) < count; ++k) {
     const auto u = problem.draws.uniforms(problem.first_draw + k);
     const Vec2 p{b.x0 + (b.x1 - b.x0) * u[0], b.y0 + (b.y1 - b.y0) * u[1]};

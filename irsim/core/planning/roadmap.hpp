@@ -5,7 +5,8 @@
 
 namespace irsim {
 
-/// `samples` free points, each joined to up to `neighbours` others nearer than `longest` [m]; the shortest path.
+/// The shortest path in a graph of `samples` free points, each joined to up to `neighbours` others nearer than
+/// `longest` [m].
 Plan search_roadmap(const Problem& problem, int samples, int neighbours, double longest);
 
 }  // namespace irsim

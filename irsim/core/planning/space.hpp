@@ -1,4 +1,4 @@
-// Where a body may be: what stands in the way, and the rectangle it must stay in.
+// Where a body may be: obstacles, and the rectangle that it must not leave.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace irsim {
 
-/// Things that stand still, looked at from a planner. Ids are those of `shapes`.
+/// Static obstacles of a planner. Ids are those of `shapes`.
 struct Blockers {
   const Shapes& shapes;
   const Outlines& outlines;
   const Grid& grid;
-  const std::uint8_t* passable;  // (N,) things that are no obstacle, or null
+  const std::uint8_t* passable;  // (N,) 1 for objects that are not obstacles; null if all are
 
   bool counts(int id) const { return passable == nullptr || !passable[id]; }
   bool meet(const Footprint& body) const;
 };
 
-/// Obstacles of its own, for maps that Python puts together.
+/// Obstacles with geometry of their own, for maps that Python assembles.
 class Terrain {
  public:
   explicit Terrain(const Box& bounds) : bounds_(bounds) {}
-  /// Outlines in the body frame, and where they stand. Questions are possible after `build`.
+  /// Add outlines in the body frame at a pose. Queries are possible after `build`.
   void add(const std::vector<Outline>& outlines, const Pose& pose);
   void build();
 
@@ -43,7 +43,7 @@ class Terrain {
 struct Space {
   const Blockers& blockers;
   Body& body;
-  Box bounds;  // positions (or, if `enclosed`, footprints) outside are not free
+  Box bounds;  // positions (footprints if `enclosed`) outside are not free
   bool enclosed;
 
   bool inside(Vec2 p) const;

@@ -5,7 +5,7 @@
 namespace irsim {
 namespace {
 
-constexpr std::uint64_t kTries = 16;  // draws for a sample within the world
+constexpr std::uint64_t kDrawsPerSample = 16;  // blocks of draws per sample, to find one within the world
 
 struct Node {
   Vec2 p;
@@ -25,7 +25,7 @@ class Tree {
     try_goal(0);
     for (int k = 0; k < options_.max_iter; ++k) {
       if (last_ >= 0 && !options_.search_until_max_iter) break;
-      const Vec2 target = sample(problem_.first_draw + kTries * static_cast<std::uint64_t>(k));
+      const Vec2 target = sample(problem_.first_draw + kDrawsPerSample * static_cast<std::uint64_t>(k));
       const int from = nearest(target);
       const Vec2 p = steer(nodes_[from].p, target);
       if (!(norm(p - nodes_[from].p) > 0.0) || !problem_.space.clear(nodes_[from].p, p)) continue;
@@ -57,13 +57,13 @@ class Tree {
     const Box& b = problem_.space.bounds;
     if (100.0 * u[0] < options_.goal_sample_rate) return problem_.goal;
     if (!options_.informed || last_ < 0) return {b.x0 + (b.x1 - b.x0) * u[1], b.y0 + (b.y1 - b.y0) * u[2]};
-    // the ellipse of points through which a way from start to goal is no longer than the best so far
+    // The ellipse of points through which paths from start to goal are no longer than the best path so far.
     const Vec2 along = problem_.goal - problem_.start;
     const double least = norm(along), most = std::max(end_cost(), least);
     const double a = 0.5 * most, c = 0.5 * std::sqrt(std::max(0.0, most * most - least * least));
     const Vec2 direction = least > 0.0 ? along * (1.0 / least) : Vec2{1.0, 0.0};
     Vec2 p;
-    for (std::uint64_t k = 0; k < kTries; ++k) {
+    for (std::uint64_t k = 0; k < kDrawsPerSample; ++k) {
       const auto v = problem_.draws.uniforms(block + k);
       const Vec2 disc = unit(kTurn * v[2]) * std::sqrt(v[1]);
       p = (problem_.start + problem_.goal) * 0.5 + rotate({a * disc.x, c * disc.y}, direction);
@@ -137,7 +137,7 @@ class Tree {
     last_ = node;
     if (options_.rewire) ends_.push_back(node);
   }
-  /// Rewiring has changed costs since the ends were found.
+  /// Choose the best end again, because rewiring has changed costs.
   void choose_end() {
     for (const int k : ends_) {
       if (nodes_[k].cost + norm(problem_.goal - nodes_[k].p) < end_cost()) last_ = k;
@@ -148,8 +148,8 @@ class Tree {
   const Problem& problem_;
   const TreeOptions& options_;
   std::vector<Node> nodes_;
-  std::vector<int> near_, ends_;  // ends: nodes from which the goal can be reached
-  int last_ = -1;                 // the best of them so far
+  std::vector<int> near_, ends_;  // ends: nodes with a free line to the goal
+  int last_ = -1;                 // the best end so far, -1 without one
 };
 
 }  // namespace

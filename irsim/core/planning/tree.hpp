@@ -7,14 +7,14 @@
 namespace irsim {
 
 struct TreeOptions {
-  double expand_dis;        // longest extension [m]
-  double path_resolution;   // extensions end on multiples of it [m]
-  double goal_sample_rate;  // share of samples that are the goal [%]
-  int max_iter;             // samples
-  bool rewire;              // choose the best parent, and become one where that is shorter
-  double connect_circle_dist;
-  bool search_until_max_iter;
-  bool informed;  // once there is a path, sample only where a shorter one can be
+  double expand_dis;           // longest extension [m]
+  double path_resolution;      // lengths of extensions are multiples of it [m]
+  double goal_sample_rate;     // share of samples that are the goal [%]
+  int max_iter;                // largest number of samples
+  bool rewire;                 // whether new nodes choose the best parent and replace longer paths of others
+  double connect_circle_dist;  // factor of the radius in which nodes are rewired [m]
+  bool search_until_max_iter;  // whether the search continues after the first path
+  bool informed;               // whether samples after the first path are limited to places of shorter ones
 };
 
 Plan grow_tree(const Problem& problem, const TreeOptions& options);

@@ -1,21 +1,21 @@
 // Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit (reference: section 7).
 #pragma once
 
-#include "beams.hpp"
 #include "fields.hpp"
+#include "sensing/beams.hpp"
 
 namespace irsim {
 
 struct FmcwLidar2dOptions {
   double range_min, range_max;   // [m]
   double angle_range;            // [rad]
-  int number;                    // of beams
-  bool noise;                    // of ranges and directions
-  double std;                    // of the range of a hit [m]
-  double angle_std;              // of the direction of a beam [rad]
+  int number;                    // number of beams
+  bool noise;                    // whether ranges and directions are noisy
+  double std;                    // standard deviation of ranges [m]
+  double angle_std;              // standard deviation of beam directions [rad]
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
-  bool motion_compensate;        // leave the carrier's own motion out
-  double velocity_noise_std;     // of the radial velocity, whatever `noise` says [m/s]
+  bool motion_compensate;        // whether the motion of the carrier is subtracted
+  double velocity_noise_std;     // standard deviation of radial velocities, also without `noise` [m/s]
   static constexpr auto fields() {
     using F = FmcwLidar2dOptions;
     return std::make_tuple(field("range_min", &F::range_min), field("range_max", &F::range_max),
@@ -32,11 +32,11 @@ inline std::vector<double> beams(const FmcwLidar2dOptions& options) {
 
 inline int velocity_rows(const FmcwLidar2dOptions&) { return 1; }
 
-/// A hit whose (noisy) range is outside the band is no measurement: its velocity is 0.
+/// Take a scan. A hit whose (noisy) range is outside the limits is not valid, and its velocity is 0.
 inline void fmcw_lidar2d(const FmcwLidar2dOptions& options, const Sensing& s) {
   const int n = s.mount.count;
   if (n == 0) return;
-  // of a scan: n range errors, n direction errors, n velocity errors
+  // draws of a scan: n range errors, n direction errors, n velocity errors
   const std::uint64_t first_draw = 3 * s.scan_number() * static_cast<std::uint64_t>(n);
   const Fan fan = cast_beams(options, s, first_draw + n);
   const bool noisy = options.noise && options.std > 0.0, shaky = options.velocity_noise_std > 0.0;

@@ -1,20 +1,20 @@
-// Planar lidar: exact ranges to the boundaries of everything that is not unobstructed (reference: section 7).
+// Planar lidar: exact ranges to the boundaries of all objects that are not unobstructed (reference: section 7).
 #pragma once
 
-#include "beams.hpp"
 #include "fields.hpp"
+#include "sensing/beams.hpp"
 
 namespace irsim {
 
 struct Lidar2dOptions {
-  double range_min, range_max;  // [m]
-  double angle_range;           // [rad]
-  int number;                   // of beams
-  bool noise;
-  double std;                    // of the range of a hit [m]
-  double angle_std;              // of the direction of a beam [rad]
+  double range_min, range_max;   // [m]
+  double angle_range;            // [rad]
+  int number;                    // number of beams
+  bool noise;                    // whether ranges and directions are noisy
+  double std;                    // standard deviation of ranges [m]
+  double angle_std;              // standard deviation of beam directions [rad]
   std::array<double, 3> offset;  // sensor pose in the body frame [m, m, rad]
-  bool has_velocity;             // record the world-frame velocity of what each beam hits
+  bool has_velocity;             // whether the world-frame velocity of the object hit by each beam is recorded
   static constexpr auto fields() {
     using L = Lidar2dOptions;
     return std::make_tuple(field("range_min", &L::range_min), field("range_max", &L::range_max),

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "fields.hpp"
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

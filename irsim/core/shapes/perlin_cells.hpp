@@ -1,4 +1,4 @@
-// The cells of a map of gradient noise that is drawn per scene.
+// The cells of a map of gradient noise, drawn for each scene.
 #pragma once
 
 #include "maps/perlin.hpp"
@@ -7,9 +7,9 @@
 namespace irsim {
 
 struct PerlinCells {
-  std::array<int, 2> size;          // of the noise, along x and y
-  int every;                        // of so many cells one is kept, along both axes, from the first
-  std::array<double, 2> origin;     // of the map, world frame [m]
+  std::array<int, 2> size;          // cells of the noise along x and y
+  int every;                        // one of this many cells is kept along each axis, starting with the first
+  std::array<double, 2> origin;     // lower left corner of the map, world frame [m]
   std::array<double, 2> cell_size;  // [m]
   double complexity, fill;
   int fractal;

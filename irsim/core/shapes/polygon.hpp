@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fields.hpp"
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

@@ -1,8 +1,8 @@
-// A disc whose radius is drawn per scene.
+// A disc whose radius is drawn for each scene.
 #pragma once
 
 #include "fields.hpp"
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 

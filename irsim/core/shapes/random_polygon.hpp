@@ -1,8 +1,8 @@
-// A star-shaped polygon, or the open polyline through its vertices, drawn per scene.
+// A star-shaped polygon, or the open polyline through its vertices, drawn for each scene.
 #pragma once
 
 #include "fields.hpp"
-#include "shapes.hpp"
+#include "geometry/shapes.hpp"
 
 namespace irsim {
 
@@ -23,8 +23,8 @@ struct RandomPolygon {
 
 constexpr bool is_drawn(const RandomPolygon&) { return true; }
 
-/// Angular steps of n vertices that sum to a turn. Steps of half a turn or more, which could make the polygon cross
-/// itself, are drawn again.
+/// Angular steps between n vertices, which sum to a full turn. They are drawn again if one is half a turn or more, with
+/// which the polygon could cross itself.
 inline std::vector<double> angular_steps(int n, double irregularity, const Draws& draws, std::uint64_t& next) {
   std::vector<double> steps(n, kTurn / n);
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -53,7 +53,7 @@ inline Outline outline(const RandomPolygon& p, const Draws& draws, std::uint64_t
   double angle = between(0.0, kTurn);
   Outline out{p.closed ? Kind::polygon : Kind::linestring, {}};
   for (int i = 0; i < n; ++i) {
-    // normals have their own range of draws; the lower bound keeps spikes from meeting in the centre
+    // Normals have their own range of draws. The lower bound keeps spikes from meeting in the centre.
     const double drawn = mean + spikeyness * mean * draws.normal(first + (std::uint64_t{1} << 31) + i);
     const double radius = clip(drawn, 1e-3 * mean, 2.0 * mean);
     out.vertices.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});

@@ -1,4 +1,4 @@
-// The outline of a room, seen from inside: what is solid is outside.
+// The walls of a room: the area outside of the outline is solid.
 #pragma once
 
 #include "shapes/polygon.hpp"

@@ -1,1 +1,1 @@
-"""Pixels as PNG, GIF, video and sheets of pictures."""
+"""Writes pixels as PNG, GIF, video and contact sheets."""

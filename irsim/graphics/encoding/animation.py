@@ -1,4 +1,4 @@
-"""Frames kept while a simulation runs, and the animation made of them: GIF, APNG or video."""
+"""Stores frames while a simulation runs, and writes them as an animation: GIF, APNG or video."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ import numpy as np
 from isal import isal_zlib
 from PIL import Image
 
+from irsim.common.files import replacing
 from irsim.graphics.encoding.gif import GifWriter
-from irsim.graphics.encoding.picture_files import replacing
+from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES, VIDEO_SUFFIXES
 from irsim.graphics.encoding.pixels import Pixels, fit, from_image
 from irsim.graphics.encoding.png import ApngWriter
-from irsim.graphics.encoding.video import VIDEO_SUFFIXES, VideoWriter
+from irsim.graphics.encoding.video import VideoWriter
 
 __all__ = ["ANIMATION_SUFFIXES", "AnimationOptions", "FrameBuffer", "FrameWriter", "write_frames"]
 
-ANIMATION_SUFFIXES = (".gif", ".apng", ".png", *VIDEO_SUFFIXES)
-"""What an animation can be saved as."""
+ANIMATION_SUFFIXES = (".png", *MOVING_SUFFIXES)
+"""File suffixes of animations."""
 
 
 class FrameWriter(Protocol):
-    """Takes frames one by one."""
+    """Writes an animation frame by frame."""
 
     frames: int
 
@@ -36,17 +37,17 @@ class FrameWriter(Protocol):
         """Append a frame."""
 
     def close(self, last_duration: float) -> None:
-        """Finish; the last frame is shown for ``last_duration`` seconds."""
+        """Finish the file; the last frame is shown for ``last_duration`` seconds."""
 
 
 @dataclass
 class AnimationOptions:
-    """How an animation plays.
+    """Playback options of an animation.
 
     Attributes:
         fps: Frames per second.
-        last_frame_duration: How long the last frame stays in a GIF or APNG [s].
-        loop: Times a GIF or APNG repeats; 0 for ever.
+        last_frame_duration: Duration of the last frame of a GIF or APNG [s].
+        loop: Number of repetitions of a GIF or APNG; 0 repeats without end.
         video: Options of the video encoder.
     """
 
@@ -57,7 +58,7 @@ class AnimationOptions:
 
     def __post_init__(self) -> None:
         if not self.fps > 0:
-            raise ValueError(f"fps must be positive, not {self.fps}")
+            raise ValueError(f"fps must be positive, got {self.fps}")
 
     @property
     def last(self) -> float:
@@ -69,15 +70,15 @@ class AnimationOptions:
 def write_frames(
     path: Path, options: AnimationOptions, colors: Sequence[tuple[int, int, int]] = ()
 ) -> Iterator[FrameWriter]:
-    """Write an animation; the file appears when the block ends well, and only then.
+    """Write an animation; the file appears only if the block ends without an error.
 
     Args:
-        path: Its suffix chooses GIF, APNG or a video format.
-        options: How it plays.
-        colors: (r, g, b) that must come out exactly in a GIF.
+        path: File to write; its suffix chooses GIF, APNG or a video format.
+        options: Playback options.
+        colors: (r, g, b) colours that a GIF must reproduce exactly.
 
     Raises:
-        ValueError: A suffix that nothing writes.
+        ValueError: The suffix is not supported.
     """
     check_suffix(path.suffix)
     with replacing(path) as temporary:
@@ -100,18 +101,18 @@ def write_frames(
 
 
 def check_suffix(suffix: str) -> None:
-    """Raise ValueError for a suffix that no animation can have."""
+    """Raise ValueError if animations cannot have this suffix."""
     if suffix.lower() not in ANIMATION_SUFFIXES:
         raise ValueError(f"cannot save an animation as {suffix!r}: choose one of {', '.join(ANIMATION_SUFFIXES)}")
 
 
 class FrameBuffer:
-    """Frames of one environment, in a temporary file of its own that vanishes with it.
+    """Frames of one environment, in a temporary file that is deleted together with the buffer.
 
     Args:
-        options: How they are meant to be played.
-        indexed: Keep them as the GIF they will become (256 colours); else in full colour.
-        colors: (r, g, b) that must come out exactly in a GIF.
+        options: Playback options.
+        indexed: Store the frames as a GIF (256 colours) rather than in full colour; saving a GIF is then a mere copy.
+        colors: (r, g, b) colours that a GIF must reproduce exactly.
     """
 
     def __init__(
@@ -131,15 +132,15 @@ class FrameBuffer:
 
     @property
     def frames(self) -> int:
-        """Frames kept."""
+        """Number of stored frames."""
         return len(self.counts)
 
     def add(self, pixels: Pixels, count: int) -> None:
-        """Keep a frame, cut or padded to the size of the first.
+        """Store a frame, cut or padded to the size of the first.
 
         Args:
             pixels: The frame.
-            count: Step number it shows.
+            count: Number of the step that the frame shows.
         """
         if self._size is None:
             self._size = pixels.shape[1], pixels.shape[0]
@@ -154,13 +155,13 @@ class FrameBuffer:
         self.counts.append(count)
 
     def save(self, path: Path, options: AnimationOptions) -> None:
-        """Write the animation; the buffer takes no more frames after that.
+        """Write the animation; no frames can be added after that.
 
         Raises:
-            ValueError: No frames, or a suffix that nothing writes.
+            ValueError: The buffer is empty, or the suffix is not supported.
         """
         if not self.frames:
-            raise ValueError("there are no frames to make an animation of")
+            raise ValueError("an animation must have at least one frame, got none")
         same = (options.fps, options.loop) == (self.options.fps, self.options.loop)
         if path.suffix.lower() == ".gif" and self._gif is not None and same:
             self._finish(self._gif, options.last)
@@ -172,7 +173,7 @@ class FrameBuffer:
                 writer.add(pixels)
 
     def read(self) -> Iterator[Pixels]:
-        """The frames, in order; the buffer takes no more after that."""
+        """Iterate over the frames in order; no frames can be added after that."""
         if self._gif is not None:
             self._finish(self._gif, self.options.last)
             with Image.open(self._file) as image:
@@ -197,5 +198,5 @@ class FrameBuffer:
         self._file.seek(0)
 
     def close(self) -> None:
-        """Let go of the temporary file."""
+        """Close and delete the temporary file."""
         self._file.close()

@@ -1,4 +1,4 @@
-"""Many small pictures on one sheet, each with a line under it."""
+"""Writes a contact sheet: many small pictures, each with a line of text below."""
 
 from __future__ import annotations
 
@@ -8,36 +8,37 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
 
-from irsim.graphics.encoding.picture_files import replacing
+from irsim.common.files import replacing
 
 __all__ = ["contact_sheet"]
 
-_LINE = 22
-_GAP = 12
+_LINE_HEIGHT_PX = 22
+_GAP_PX = 12
 
 
 def contact_sheet(
     pictures: Iterable[tuple[str, bytes]], path: str | Path, *, columns: int = 5, size: int = 320
 ) -> Path:
-    """Write a sheet.
+    """Write a contact sheet.
 
     Args:
-        pictures: Line of text and PNG of each.
-        path: File to write; the format is that of its suffix.
-        columns: Pictures in a row.
-        size: Side of the square that each is fitted into [px].
+        pictures: Pairs of a line of text and a PNG file.
+        path: File to write; its suffix chooses the format.
+        columns: Number of pictures in a row.
+        size: Side of the square that each picture is fitted into [px].
 
     Returns:
-        The file.
+        Path of the file.
     """
     cells: Sequence[tuple[str, bytes]] = list(pictures)
     rows = -(-len(cells) // columns) or 1
-    step = size + _GAP
-    sheet = Image.new("RGB", (columns * step + _GAP, rows * (step + _LINE) + _GAP), "white")
+    step = size + _GAP_PX
+    sheet_size = columns * step + _GAP_PX, rows * (step + _LINE_HEIGHT_PX) + _GAP_PX
+    sheet = Image.new("RGB", sheet_size, "white")
     draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(15)
     for number, (text, png) in enumerate(cells):
-        left = _GAP + (number % columns) * step
-        top = _GAP + (number // columns) * (step + _LINE)
+        left = _GAP_PX + (number % columns) * step
+        top = _GAP_PX + (number // columns) * (step + _LINE_HEIGHT_PX)
         with Image.open(io.BytesIO(png)) as opened:
             image = opened.convert("RGB")
         image.thumbnail((size, size))

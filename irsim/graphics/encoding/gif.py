@@ -1,4 +1,4 @@
-"""GIF written frame by frame: one palette for as long as it serves, and only the pixels that changed."""
+"""Writes GIF files frame by frame: a new palette only when the colours change, and only the pixels that changed."""
 
 from __future__ import annotations
 
@@ -14,30 +14,36 @@ from irsim.graphics.encoding.pixels import Pixels, changed_box, differing, to_im
 
 __all__ = ["GifWriter", "reduce_colors"]
 
-_COLORS = 255
+MAX_COLORS = 255
+"""Number of colours of a palette; the remaining index means transparent."""
 _TRANSPARENT = 255
-_KEEP = 1 << 2
-"""Disposal: the next frame is drawn over this one."""
+"""Index that leaves a pixel as it was in the previous frame."""
+_KEEP_PREVIOUS = 1 << 2
+"""Disposal method: the next frame is drawn over this one."""
 _TABLE_256 = 7
-_CLOSE = 8
-"""Colours nearer than this in all channels count as one (of 256 levels)."""
-_FAR = 32
-"""A pixel that misses its colour by more than this in a channel counts as wrong."""
-_WRONG_SHARE = 0.0005
-_MAX_HINTS = 64
-_SAMPLED = 100_000
-"""Of larger pictures every fourth pixel is enough to choose colours (time and memory)."""
-_DESCRIPTOR = 10
+"""Code for a table of 256 colours."""
+_SIMILAR_LEVELS = 8
+"""Two colours that differ by fewer levels (of 256) in every channel share an entry of the palette."""
+_WRONG_LEVELS = 32
+"""A pixel that misses its colour by more levels (of 256) in a channel counts as wrong."""
+MAX_WRONG_SHARE = 0.0005
+"""Share of additional wrong pixels in a frame above which a new palette is made."""
+MAX_HINTS = 64
+"""Number of given colours that a palette takes over."""
+MAX_SAMPLED_PIXELS = 100_000
+"""Colours of larger pictures are chosen from every fourth pixel, which saves time and memory."""
+_DESCRIPTOR_BYTES = 10
+"""Length of the image descriptor that Pillow writes, which is replaced by our own."""
 
 
 class GifWriter:
-    """Streams frames into a GIF; nothing but the last frame is held in memory.
+    """Streams frames into a GIF; only the last frame is held in memory.
 
     Args:
-        file: Open for writing and seeking, empty.
-        duration: Of a frame [s].
-        loop: Times to repeat; 0 for ever, None to play once.
-        colors: (r, g, b) that must come out exactly, 0..255.
+        file: Empty file, open for writing and seeking.
+        duration: Duration of a frame [s].
+        loop: Number of repetitions; 0 repeats without end, None plays once.
+        colors: (r, g, b) colours, 0..255, that must be reproduced exactly.
     """
 
     def __init__(
@@ -55,10 +61,10 @@ class GifWriter:
         self.frames = 0
 
     def add(self, pixels: Pixels) -> None:
-        """Append a frame; all have the size of the first."""
+        """Append a frame; all frames must have the size of the first."""
         if self._last is None:
             image = to_image(pixels)
-            self.__palette(image)
+            self._choose_palette(image)
             self._start(pixels.shape[1], pixels.shape[0])
             self._local = False
             self._frame(image, (0, 0, *image.size), None)
@@ -75,7 +81,7 @@ class GifWriter:
         """Finish the file.
 
         Args:
-            last_duration: Of the last frame [s].
+            last_duration: Duration of the last frame [s].
         """
         self._file.write(b";")
         self._file.seek(self._delay_at)
@@ -87,23 +93,24 @@ class GifWriter:
         if self._loop is not None:
             self._file.write(b"!\xff\x0bNETSCAPE2.0\x03\x01" + struct.pack("<H", self._loop) + b"\x00")
 
-    def __palette(self, image: Image.Image) -> None:
-        """Colours for this frame and those that look like it."""
+    def _choose_palette(self, image: Image.Image) -> None:
+        """Choose the palette for this frame and the following ones that have similar colours."""
         self._palette = _palette(image, self._hints)
         indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
-        self._accepted = 2 * _wrong(image, indexed)
+        self._accepted = 2 * _count_wrong_pixels(image, indexed)
 
     def _frame(self, image: Image.Image, box: tuple[int, int, int, int], changed: NDArray[np.bool_] | None) -> None:
         indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
-        if changed is not None and _wrong(image, indexed) > self._accepted + _WRONG_SHARE * changed.size + 1:
-            self.__palette(image)
-            self._local = True
-            indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
         if changed is not None:
+            max_wrong = self._accepted + MAX_WRONG_SHARE * changed.size + 1
+            if _count_wrong_pixels(image, indexed) > max_wrong:
+                self._choose_palette(image)
+                self._local = True
+                indexed = image.quantize(palette=self._palette, dither=Image.Dither.NONE)
             indices = np.array(indexed)
             indices[~changed] = _TRANSPARENT
             indexed = Image.fromarray(indices)
-        flags = _KEEP | (changed is not None)
+        flags = _KEEP_PREVIOUS | (changed is not None)
         self._file.write(b"!\xf9\x04" + bytes([flags]))
         self._delay_at = self._file.tell()
         self._file.write(_delay(self._duration) + bytes([_TRANSPARENT, 0]))
@@ -112,7 +119,7 @@ class GifWriter:
         self._file.write(b"," + struct.pack("<HHHHB", left, top, right - left, bottom - top, local))
         if self._local:
             self._file.write(_table(self._palette))
-        self._file.write(b"".join(GifImagePlugin.getdata(indexed))[_DESCRIPTOR:])
+        self._file.write(b"".join(GifImagePlugin.getdata(indexed))[_DESCRIPTOR_BYTES:])
 
 
 def _delay(seconds: float) -> bytes:
@@ -123,40 +130,41 @@ def _table(palette: Image.Image) -> bytes:
     return bytes(palette.getpalette() or []).ljust(3 * 256, b"\0")[: 3 * 256]
 
 
-def reduce_colors(image: Image.Image, hints: Sequence[tuple[int, int, int]], most: int) -> Image.Image:
-    """An image of at most so many colours; pixels of those asked for keep them exactly."""
-    palette = _palette(image, hints, most)
+def reduce_colors(image: Image.Image, hints: Sequence[tuple[int, int, int]], max_colors: int) -> Image.Image:
+    """Reduce an image to at most ``max_colors`` colours; pixels that have a colour of ``hints`` keep it exactly."""
+    palette = _palette(image, hints, max_colors)
     indexed = np.array(image.quantize(palette=palette, dither=Image.Dither.NONE))
     levels = np.asarray(image).astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)
-    for index, (r, g, b) in enumerate(list(dict.fromkeys(hints))[:_MAX_HINTS]):
+    for index, (r, g, b) in enumerate(list(dict.fromkeys(hints))[:MAX_HINTS]):
         indexed[levels == (r << 16) + (g << 8) + b] = index
     reduced = Image.fromarray(indexed)
     reduced.putpalette(palette.getpalette() or [])
     return reduced
 
 
-def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]], most: int = _COLORS) -> Image.Image:
-    """At most so many colours: those asked for, then the image's own that differ from them."""
+def _palette(image: Image.Image, hints: Sequence[tuple[int, int, int]], max_colors: int = MAX_COLORS) -> Image.Image:
+    """Choose at most ``max_colors`` colours: first the hints, then colours of the image that differ from them."""
     sample = image
-    if image.width * image.height > _SAMPLED:
+    if image.width * image.height > MAX_SAMPLED_PIXELS:
         sample = image.resize((image.width // 2, image.height // 2), Image.Resampling.NEAREST)
-    found = sample.quantize(most, method=Image.Quantize.MEDIANCUT).getpalette() or []
+    found = sample.quantize(max_colors, method=Image.Quantize.MEDIANCUT).getpalette() or []
     own = [(found[i], found[i + 1], found[i + 2]) for i in range(0, len(found), 3)]
-    chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:_MAX_HINTS]
+    chosen: list[tuple[int, int, int]] = list(dict.fromkeys(hints))[:MAX_HINTS]
     fixed = np.array(chosen or [(0, 0, 0)], dtype=np.int16)
     for color in own:
-        near = (np.abs(fixed - np.array(color, dtype=np.int16)) < _CLOSE).all(axis=1).any() if chosen else False
-        if not near and len(chosen) < most:
+        distance = np.abs(fixed - np.array(color, dtype=np.int16))
+        is_similar = (distance < _SIMILAR_LEVELS).all(axis=1).any() if chosen else False
+        if not is_similar and len(chosen) < max_colors:
             chosen.append(color)
     flat = [level for color in chosen for level in color]
-    flat += flat[:3] * (most - len(chosen))
+    flat += flat[:3] * (max_colors - len(chosen))
     palette = Image.new("P", (1, 1))
     palette.putpalette(flat)
     return palette
 
 
-def _wrong(image: Image.Image, indexed: Image.Image) -> int:
-    """Pixels whose colour is far from the one wanted."""
+def _count_wrong_pixels(image: Image.Image, indexed: Image.Image) -> int:
+    """Count the pixels whose colour is far from that of the original."""
     bands = ImageChops.difference(image, indexed.convert("RGB")).split()
     worst = ImageChops.lighter(ImageChops.lighter(bands[0], bands[1]), bands[2])
-    return sum(worst.histogram()[_FAR + 1 :])
+    return sum(worst.histogram()[_WRONG_LEVELS + 1 :])

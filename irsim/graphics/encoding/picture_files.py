@@ -1,16 +1,18 @@
-"""Where pictures go, and writing them so that no half-written file is ever left."""
+"""Paths of picture files."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["PICTURE_FORMATS", "picture_path", "replacing"]
+__all__ = ["MOVING_SUFFIXES", "PICTURE_FORMATS", "VIDEO_SUFFIXES", "picture_path"]
 
 PICTURE_FORMATS = ("png", "jpg", "jpeg", "webp", "tif", "tiff", "svg", "svgz", "pdf", "eps", "ps")
-"""What a figure can be saved as."""
+"""File formats of figures."""
+VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
+"""Suffixes of files that a video encoder writes."""
+MOVING_SUFFIXES = (".gif", ".apng", *VIDEO_SUFFIXES)
+"""Suffixes that always mean an animation."""
 
 
 def picture_path(
@@ -22,18 +24,18 @@ def picture_path(
     format: str | None = None,
     default_format: str | None = None,
 ) -> Path:
-    """The file a figure is saved to.
+    """Return the path of the file that a figure is saved to.
 
     Args:
-        folder: For names that are not absolute.
-        name: Name with or without suffix; None takes ``default``.
-        default: Name of the world.
+        folder: Folder of names that are not absolute.
+        name: File name with or without suffix; None stands for ``default``.
+        default: Default file name, such as the name of the world.
         count: Step number to append as ``_0042``.
-        format: Format wanted whatever the name says.
+        format: File format; it replaces the suffix of the name.
         default_format: Format of names without suffix (default png).
 
     Raises:
-        ValueError: A format nothing writes.
+        ValueError: The format is not supported.
     """
     given = str(name) if name is not None and str(name) else default
     stem, dot, suffix = given.rpartition(".")
@@ -44,18 +46,3 @@ def picture_path(
         raise ValueError(f"cannot save a figure as {suffix!r}: choose one of {', '.join(PICTURE_FORMATS)}")
     index = "" if count is None else f"_{count:04d}"
     return Path(folder) / f"{stem}{index}.{suffix}"
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A temporary file beside ``path`` that takes its place when all went well and vanishes when not.
-
-    The folder is made if need be.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}-{id(path):x}{path.suffix}")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -1,4 +1,7 @@
-"""PNG and animated PNG, written straight from pixels (flat drawings need no filters, and little effort)."""
+"""Writes PNG and animated PNG directly from pixels.
+
+This is faster than Pillow: flat drawings compress well without filters and at a low level of compression.
+"""
 
 from __future__ import annotations
 
@@ -15,19 +18,23 @@ from irsim.graphics.encoding.pixels import Pixels, changed_box, differing
 __all__ = ["ApngWriter", "png_bytes"]
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
-_LEVEL = 2
+_COMPRESSION_LEVEL = 2
 _TRUECOLOR = 2
-_DELAY_UNIT = 1000
-_FORGET, _REPLACE = 0, 0
+_DELAYS_PER_SECOND = 1000
+"""Denominator of the frame delays in the file: they count milliseconds."""
+_KEEP_PREVIOUS = 0
+"""Disposal method: the next frame is drawn over this one."""
+_OVERWRITE = 0
+"""Blend method: a frame replaces the pixels below it."""
 _NO_FILTER = b"\0"
 
 
 def png_bytes(pixels: Pixels, dpi: float | None = None) -> bytes:
-    """A PNG file.
+    """Return the content of a PNG file.
 
     Args:
         pixels: The picture.
-        dpi: Pixels per inch to note in the file.
+        dpi: Pixels per inch, stored in the file if given.
     """
     height, width = pixels.shape[:2]
     parts = [_SIGNATURE, _header(width, height)]
@@ -42,9 +49,9 @@ class ApngWriter:
     """Animated PNG in full colour: each frame after the first stores only the rectangle that changed.
 
     Args:
-        file: Open for writing and seeking, empty.
-        duration: Of a frame [s].
-        loop: Times to play; 0 for ever.
+        file: Empty file, open for writing and seeking.
+        duration: Duration of a frame [s].
+        loop: Number of times to play; 0 repeats without end.
     """
 
     def __init__(self, file: BinaryIO, *, duration: float = 0.1, loop: int = 0) -> None:
@@ -55,7 +62,7 @@ class ApngWriter:
         self.frames = 0
 
     def add(self, pixels: Pixels) -> None:
-        """Append a frame; all have the size of the first."""
+        """Append a frame; all frames must have the size of the first."""
         if self._last is None:
             height, width = pixels.shape[:2]
             self._file.write(_SIGNATURE + _header(width, height))
@@ -63,7 +70,7 @@ class ApngWriter:
             self._file.write(_chunk(b"acTL", struct.pack(">II", 1, self._loop)))
             left, top, part = 0, 0, pixels
         else:
-            left, top, part = _changed(self._last, pixels)
+            left, top, part = _changed_part(self._last, pixels)
         self._control(left, top, part, self._duration)
         data = _compress(part)
         if self._last is None:
@@ -77,7 +84,7 @@ class ApngWriter:
         """Finish the file.
 
         Args:
-            last_duration: Of the last frame [s].
+            last_duration: Duration of the last frame [s].
         """
         self._file.write(_chunk(b"IEND", b""))
         self._file.seek(self._control_at)
@@ -93,8 +100,8 @@ class ApngWriter:
 
     @staticmethod
     def _control_chunk(sequence: int, width: int, height: int, left: int, top: int, duration: float) -> bytes:
-        delay = round(duration * _DELAY_UNIT)
-        fields = sequence, width, height, left, top, delay, _DELAY_UNIT, _FORGET, _REPLACE
+        delay = round(duration * _DELAYS_PER_SECOND)
+        fields = sequence, width, height, left, top, delay, _DELAYS_PER_SECOND, _KEEP_PREVIOUS, _OVERWRITE
         return _chunk(b"fcTL", struct.pack(">IIIIIHHBB", *fields))
 
     def _next(self) -> int:
@@ -102,7 +109,8 @@ class ApngWriter:
         return self._sequence - 1
 
 
-def _changed(before: Pixels, after: Pixels) -> tuple[int, int, Pixels]:
+def _changed_part(before: Pixels, after: Pixels) -> tuple[int, int, Pixels]:
+    """Return left and top of the rectangle that changed, and its new pixels."""
     left, top, right, bottom = changed_box(differing(before, after))
     return left, top, after[top:bottom, left:right]
 
@@ -114,9 +122,9 @@ def _header(width: int, height: int) -> bytes:
 def _compress(pixels: Pixels) -> bytes:
     height, width = pixels.shape[:2]
     image = Image.frombuffer("RGBA", (width, height), np.ascontiguousarray(pixels), "raw", "RGBA", 0, 1)
-    # A stride of one byte more than a row has puts a zero, the filter of the next row, behind each row.
+    # The stride is one byte longer than a row, so a zero byte follows each row: the filter byte of the next row.
     rows = image.tobytes("raw", "RGB", 3 * width + 1, 1)
-    compressor = isal_zlib.compressobj(_LEVEL)
+    compressor = isal_zlib.compressobj(_COMPRESSION_LEVEL)
     return b"".join([compressor.compress(_NO_FILTER), compressor.compress(memoryview(rows)[:-1]), compressor.flush()])
 
 

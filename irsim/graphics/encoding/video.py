@@ -1,4 +1,4 @@
-"""MP4 and other videos through ffmpeg (the program that comes with imageio-ffmpeg)."""
+"""Writes MP4 and other videos with ffmpeg (the program that the package imageio-ffmpeg includes)."""
 
 from __future__ import annotations
 
@@ -11,30 +11,33 @@ from typing import BinaryIO, cast
 
 from irsim.graphics.encoding.pixels import Pixels, even
 
-__all__ = ["VIDEO_OPTIONS", "VIDEO_SUFFIXES", "VideoWriter"]
+__all__ = ["VIDEO_OPTIONS", "VideoWriter"]
 
-VIDEO_SUFFIXES = (".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi")
 VIDEO_OPTIONS = ("codec", "quality", "bitrate", "pixelformat", "input_params", "output_params")
-"""Options of the encoder, beside ``fps``."""
+"""Options of the encoder besides ``fps``."""
 
 _CODECS = {".webm": "libvpx-vp9", ".avi": "mpeg4"}
-_STREAMED = (".mp4", ".m4v", ".mov")
-_QUALITY = 7.0
-_WORST_CRF, _WORST_SCALE = 51, 31
-_SECONDS_TO_FINISH = 120
+_FASTSTART_SUFFIXES = (".mp4", ".m4v", ".mov")
+"""Formats whose index is moved to the start of the file, so that playing can begin during a download."""
+_DEFAULT_QUALITY = 7.0
+MAX_CRF = 51
+"""Constant rate factor (H.264, H.265, VP9) of the lowest quality."""
+MAX_QSCALE = 31
+"""Quantizer scale (other codecs) of the lowest quality."""
+_ENCODER_TIMEOUT_S = 120
 
 
 class VideoWriter:
-    """Streams frames to an encoder; use as a context, or ``close``.
+    """Streams frames to an encoder; call ``close`` at the end.
 
     Args:
         path: File to write; its suffix chooses the format.
         fps: Frames per second.
-        codec: Of ffmpeg; default: H.264, VP9 for webm, MPEG-4 for avi.
-        quality: 0 to 10.
-        bitrate: Bits per second, as ffmpeg writes them (``2M``); instead of ``quality``.
-        pixelformat: Of the video.
-        input_params, output_params: More arguments of ffmpeg, before and after its input.
+        codec: Codec of ffmpeg; default: H.264, VP9 for webm, MPEG-4 for avi.
+        quality: Quality from 0 (lowest) to 10.
+        bitrate: Bits per second in the notation of ffmpeg (``2M``); replaces ``quality``.
+        pixelformat: Pixel format of the video.
+        input_params, output_params: Additional ffmpeg arguments, before and after its input.
     """
 
     def __init__(
@@ -43,7 +46,7 @@ class VideoWriter:
         *,
         fps: float = 10,
         codec: str | None = None,
-        quality: float = _QUALITY,
+        quality: float = _DEFAULT_QUALITY,
         bitrate: str | int | None = None,
         pixelformat: str = "yuv420p",
         input_params: Sequence[str] = (),
@@ -51,8 +54,8 @@ class VideoWriter:
     ) -> None:
         suffix = path.suffix.lower()
         codec = codec or _CODECS.get(suffix, "libx264")
-        rate = ["-b:v", str(bitrate)] if bitrate is not None else _quality(codec, quality)
-        start = ["-movflags", "+faststart"] if suffix in _STREAMED else []
+        rate = ["-b:v", str(bitrate)] if bitrate is not None else _quality_arguments(codec, quality)
+        start = ["-movflags", "+faststart"] if suffix in _FASTSTART_SUFFIXES else []
         self._before = ["-r", f"{fps:g}", *input_params]
         self._after = ["-an", "-c:v", codec, "-pix_fmt", pixelformat, *rate, *start, *output_params, "-y", str(path)]
         self._process: subprocess.Popen[bytes] | None = None
@@ -60,10 +63,10 @@ class VideoWriter:
         self.frames = 0
 
     def add(self, pixels: Pixels) -> None:
-        """Append a frame; all have the size of the first.
+        """Append a frame; all frames must have the size of the first.
 
         Raises:
-            RuntimeError: The encoder gave up.
+            RuntimeError: The encoder failed.
         """
         frame = even(pixels)
         if self._process is None:
@@ -72,27 +75,27 @@ class VideoWriter:
         try:
             self._process.stdin.write(frame.tobytes())
         except OSError:
-            self._process.wait(_SECONDS_TO_FINISH)
+            self._process.wait(_ENCODER_TIMEOUT_S)
             raise self._failure() from None
         self.frames += 1
 
     def close(self, last_duration: float = 0.0) -> None:
-        """Finish the file; all frames of a video last equally long.
+        """Finish the file; ``last_duration`` is ignored, because all frames of a video last equally long.
 
         Raises:
-            RuntimeError: The encoder gave up.
+            RuntimeError: The encoder failed.
         """
         process = self._process
         if process is not None and process.stdin is not None:
             self._process = None
-            with suppress(OSError):  # it has ended already, and says why
+            with suppress(OSError):  # the encoder has already ended; its exit status is checked below
                 process.stdin.close()
-            if process.wait(_SECONDS_TO_FINISH) != 0:
+            if process.wait(_ENCODER_TIMEOUT_S) != 0:
                 raise self._failure()
         self._messages.close()
 
     def abandon(self) -> None:
-        """Stop the encoder; the file is of no use."""
+        """Stop the encoder; the file stays incomplete."""
         if self._process is not None:
             self._process.kill()
             self._process.communicate()
@@ -108,13 +111,13 @@ class VideoWriter:
 
     def _failure(self) -> RuntimeError:
         self._messages.seek(0)
-        said = self._messages.read().decode(errors="replace").strip()
-        return RuntimeError(f"the video encoder failed: {said or 'ffmpeg gave no reason'}")
+        message = self._messages.read().decode(errors="replace").strip()
+        return RuntimeError(f"the video encoder failed: {message or 'ffmpeg gave no reason'}")
 
 
-def _quality(codec: str, quality: float) -> list[str]:
+def _quality_arguments(codec: str, quality: float) -> list[str]:
     share = 1 - min(max(float(quality), 0.0), 10.0) / 10
     if codec in ("libx264", "libx265", "libvpx-vp9"):
         constant = ["-b:v", "0"] if codec == "libvpx-vp9" else []
-        return ["-crf", str(round(share * _WORST_CRF)), *constant]
-    return ["-qscale:v", str(max(1, round(share * _WORST_SCALE)))]
+        return ["-crf", str(round(share * MAX_CRF)), *constant]
+    return ["-qscale:v", str(max(1, round(share * MAX_QSCALE)))]

@@ -1,1 +1,1 @@
-"""Matplotlib figures of a scene."""
+"""Draws a scene with Matplotlib."""

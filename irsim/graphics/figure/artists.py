@@ -1,4 +1,4 @@
-"""Marks, labels and images of one object as Matplotlib artists of its own, on any axes."""
+"""Adds single marks, labels and images to any Matplotlib axes, each as an artist of its own."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["add_dots", "add_grid", "add_label", "add_mark", "add_picture"]
 
 
 def add_mark(ax: Axes, mark: Mark) -> Artist:
-    """A line for lines, a patch for everything else; the limits of the axes stay."""
+    """Add a mark: lines as a Matplotlib line, other geometries as a patch. The limits of the axes stay unchanged."""
     stroke = mark.stroke
     width = linewidth_from_data_units(stroke.width, ax) if stroke.metric else stroke.width
     edge = "none" if stroke.color is None else rgba(stroke.color, mark.alpha)
@@ -44,7 +44,7 @@ def add_mark(ax: Axes, mark: Mark) -> Artist:
 
 
 def add_dots(ax: Axes, dots: Dots) -> Artist:
-    """Round marks."""
+    """Add round marks."""
     colors: Any = dots.colors
     edge = rgba(dots.edge_color)
     return ax.scatter(
@@ -59,7 +59,7 @@ def add_dots(ax: Axes, dots: Dots) -> Artist:
 
 
 def add_label(ax: Axes, label: Label) -> Text:
-    """A text."""
+    """Add a text."""
     return ax.text(
         label.x,
         label.y,
@@ -74,7 +74,7 @@ def add_label(ax: Axes, label: Label) -> Text:
 
 
 def add_picture(ax: Axes, picture: Picture, images: Pictures) -> AxesImage:
-    """An image in place of a body."""
+    """Add an image in place of a body."""
     image = AxesImage(ax, interpolation="antialiased", label=picture.name, zorder=picture.zorder, alpha=picture.alpha)
     image.set_data(images.tinted(picture.name, picture.tint))
     x, y, length, width = picture.box
@@ -87,7 +87,7 @@ def add_picture(ax: Axes, picture: Picture, images: Pictures) -> AxesImage:
 
 
 def add_grid(ax: Axes, grid: GridImage) -> AxesImage:
-    """A map."""
+    """Add a map as an image."""
     layer = GridLayer(ax, grid.zorder)
     layer.show(grid)
     return layer.artist

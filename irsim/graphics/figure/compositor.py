@@ -1,7 +1,10 @@
-"""Figure → pixels, fast: axes and whatever rests is drawn once and kept, the rest is drawn over a copy of it.
+"""Draws a figure into pixels, fast.
 
-Drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw it. Only what lies
-below everything that moves may be kept.
+The axes and the layers that no longer change are drawn once and kept as a background; the other layers are drawn over a
+copy of it. The drawing order is Matplotlib's (by zorder), so a frame looks as ``figure.canvas.draw()`` would draw it.
+For that reason only layers below the lowest changing one can be part of the background.
+
+"Furniture" is what surrounds the scene: the paper, both axes with ticks and labels.
 """
 
 from __future__ import annotations
@@ -22,16 +25,16 @@ from irsim.graphics.figure.glyphs import QuickText
 
 __all__ = ["Compositor"]
 
-_RESTING_AFTER = 2
-"""Scenes without a change after which a layer counts as resting."""
+MIN_RESTING_SCENES = 2
+"""Number of scenes without a change after which a layer becomes part of the background."""
 
 
 class Compositor:
-    """Draws the one axes of a figure.
+    """Draws a figure that has a single axes.
 
     Args:
-        figure: Its canvas must be an Agg canvas (all of Matplotlib's usual windows are).
-        ax: Its only axes.
+        figure: The figure; its canvas must be an Agg canvas (all of Matplotlib's usual windows have one).
+        ax: The only axes of the figure.
     """
 
     def __init__(self, figure: Figure, ax: Axes) -> None:
@@ -40,7 +43,7 @@ class Compositor:
         self.forget()
 
     def forget(self) -> None:
-        """Keep nothing: the next frame is drawn from scratch."""
+        """Drop the kept background: the next frame is drawn from scratch."""
         self._furniture: Any = None
         self._furniture_key: tuple[Any, ...] | None = None
         self._furniture_box: Bbox | None = None
@@ -51,11 +54,12 @@ class Compositor:
         """Draw everything into the canvas.
 
         Args:
-            versions: (version, scenes at rest) of the artists whose changes are known; all others are drawn each time.
+            versions: Artist -> (version, number of scenes without a change). Artists that are not listed are drawn in
+                every frame.
         """
         canvas = self._canvas()
         if len(self.figure.axes) != 1 or self.figure.texts or self.figure.artists or self.figure.legends:
-            self.draw_plainly()
+            self.draw_without_cache()
             return
         furniture: tuple[Artist, ...] = (self.ax.xaxis, self.ax.yaxis, self.ax.patch)
         if not self.ax.axison:
@@ -65,8 +69,8 @@ class Compositor:
         self._draw_furniture(canvas)
         resting = []
         for artist in artists:
-            version, rested = versions.get(artist, (0, 0))
-            if rested < _RESTING_AFTER:
+            version, resting_scenes = versions.get(artist, (0, 0))
+            if resting_scenes < MIN_RESTING_SCENES:
                 break
             resting.append((artist, version))
         key = tuple((id(artist), version) for artist, version in resting)
@@ -84,15 +88,15 @@ class Compositor:
         for artist in artists[len(resting) :]:
             artist.draw(renderer)
 
-    def draw_plainly(self) -> None:
-        """Let Matplotlib draw everything, and keep nothing."""
+    def draw_without_cache(self) -> None:
+        """Let Matplotlib draw everything, and keep no background."""
         draw_all: Any = FigureCanvasAgg.draw
         draw_all(self._canvas())
         self.forget()
 
     def _canvas(self) -> Any:
         if not isinstance(self.figure.canvas, FigureCanvasAgg):
-            FigureCanvasAgg(self.figure)  # its window was closed
+            FigureCanvasAgg(self.figure)  # pyplot replaces the canvas of a window that is closed
         return self.figure.canvas
 
     def _draw_furniture(self, canvas: Any) -> None:
@@ -123,7 +127,10 @@ class Compositor:
             label.stale = False
 
     def tight_box(self, pad_inches: float) -> tuple[int, int, int, int]:
-        """Left, top, right, bottom [px] of what is drawn, with padding, within the figure. Draw first."""
+        """Return the padded bounding box (left, top, right, bottom) [px] of the drawing, clipped to the figure.
+
+        The figure must have been drawn before.
+        """
         if self._furniture_box is None:
             renderer = self._canvas().get_renderer()
             inches = self.figure.get_tightbbox(renderer)
@@ -132,7 +139,7 @@ class Compositor:
             boxes = [self._furniture_box]
             renderer = self._canvas().get_renderer()
             for artist in self.ax.get_children():
-                if artist.get_visible() and not _inside(artist, self.ax):
+                if artist.get_visible() and not _is_inside(artist, self.ax):
                     found = artist.get_tightbbox(renderer)
                     if found is not None and math.isfinite(found.width) and math.isfinite(found.height):
                         boxes.append(found)
@@ -150,10 +157,10 @@ class Compositor:
         return int(width), int(height)
 
     def pixels(self, crop: tuple[int, int, int, int] | None = None) -> Pixels:
-        """Copy of what was drawn last.
+        """Return a copy of the last drawn frame.
 
         Args:
-            crop: Left, top, right, bottom [px].
+            crop: Box to cut out: left, top, right, bottom [px].
         """
         rgba = np.asarray(self._canvas().buffer_rgba())
         if crop is not None:
@@ -162,8 +169,8 @@ class Compositor:
         return pixels
 
 
-def _inside(artist: Artist, ax: Axes) -> bool:
-    """Whether an artist cannot reach beyond what the axes themselves take up."""
+def _is_inside(artist: Artist, ax: Axes) -> bool:
+    """Whether an artist cannot reach beyond the area that the axes themselves cover."""
     if artist in (ax.xaxis, ax.yaxis, ax.patch) or artist in ax.spines.values():
         return True
     if isinstance(artist, QuickText):

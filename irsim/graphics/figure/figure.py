@@ -1,4 +1,4 @@
-"""One Matplotlib figure of one world: a scene in, artists updated in place, pixels out."""
+"""The Matplotlib figure of one world: it takes a scene, updates its artists in place, and returns pixels."""
 
 from __future__ import annotations
 
@@ -27,23 +27,28 @@ from irsim.graphics.scene.scene import Bounds, Floats, GridImage, Label, Picture
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
 
-_TITLE_PAD = 6.0
-_TITLE_SIZE = 12.0
-_SMALLEST_TITLE = 5.0
-_LABEL_MARGIN = 4.0
-_LABEL_RANK = 0.01
-_MOST_EXTENTS = 2000
-_HALO = 2.0
-_HAIR = 0.01
-_ROOM = 8.0
-"""Between what is drawn and the edge of the figure [pt]."""
-_MOST_ROOM = 0.7
-"""Share of the figure that ticks and labels may take; beyond that the layout is left alone."""
+_TITLE_PAD_PT = 6.0
+_TITLE_SIZE_PT = 12.0
+MIN_TITLE_SIZE_PT = 5.0
+"""A title that is too long for the figure is not made smaller than this [pt]."""
+_LABEL_MARGIN_PX = 4.0
+"""Distance that labels keep from the edge of the axes, and titles from the edge of the figure [px]."""
+_LABEL_ZORDER_STEP = 0.01
+"""Added to the zorder of labels, so that they cover marks of the same zorder."""
+MAX_CACHED_EXTENTS = 2000
+"""Number of label sizes after which the cache of label sizes is emptied."""
+_HALO_WIDTH_PT = 2.0
+_ROUNDING_RESERVE_PX = 0.01
+"""Added to the size of a figure, because Matplotlib truncates a product such as 599.9999 px to 599 px."""
+_PADDING_PT = 8.0
+"""Space between the drawing and the edge of the figure [pt]."""
+MAX_DECORATION_SHARE = 0.7
+"""Share of the figure that ticks and labels may take; beyond that the layout stays as it is."""
 _POINTS_PER_INCH = 72.0
-_MARGINS = {True: (0.75, 0.85), False: (0.25, 0.45)}
-"""Room beside and above and below the axes [inch], with ticks and labels and without."""
-_LEAST_WIDTH = 3.6
-"""Of a figure, for the sake of its title [inch]."""
+_MARGINS_INCH = {True: (0.75, 0.85), False: (0.25, 0.45)}
+"""Whether ticks and labels are drawn -> (left plus right, top plus bottom) margin around the axes [inch]."""
+MIN_WIDTH_INCH = 3.6
+"""Smallest width of a figure [inch], so that its title fits."""
 
 
 class SceneFigure:
@@ -54,12 +59,12 @@ class SceneFigure:
         dpi: Pixels per inch.
         axis: Draw axes, ticks and labels.
         tight: Fit the axes to the figure.
-        figure: A figure to use (of a window); default: a new one without a window.
+        figure: Figure to use, such as that of a window; default: a new one without a window.
         pictures: Images drawn in place of bodies.
-        halo: Labels have a white rim, to be read on dark ground too, and keep off bodies.
+        halo: Give labels a white outline, so that they can be read on dark ground, and move them away from bodies.
 
     Attributes:
-        figure, ax: For drawing more into it.
+        figure, ax: Matplotlib figure and axes, for drawing more.
     """
 
     def __init__(
@@ -80,7 +85,9 @@ class SceneFigure:
         self.axis, self.tight = axis, tight
         self._images = pictures or Pictures()
         self._halo = halo
-        self._effects: list[AbstractPathEffect] = [withStroke(linewidth=_HALO, foreground="white")] if halo else []
+        self._effects: list[AbstractPathEffect] = (
+            [withStroke(linewidth=_HALO_WIDTH_PT, foreground="white")] if halo else []
+        )
         self.ax: Axes = figure.add_subplot()
         self.compositor = Compositor(figure, self.ax)
         self._glyphs = Glyphs()
@@ -106,18 +113,18 @@ class SceneFigure:
         self.compositor.forget()
 
     def _quick_title(self) -> Text:
-        """The title of the axes, of the quick kind."""
-        usual = self.ax.set_title("", pad=_TITLE_PAD, y=1.0)
-        title = QuickText(self._glyphs, x=0.5, y=1.0, text="", parse_math=False, fontsize=_TITLE_SIZE, ha="center")
+        """Replace the title of the axes by a QuickText at the same place."""
+        original = self.ax.set_title("", pad=_TITLE_PAD_PT, y=1.0)
+        title = QuickText(self._glyphs, x=0.5, y=1.0, text="", parse_math=False, fontsize=_TITLE_SIZE_PT, ha="center")
         title.set_figure(self.figure)
         title.axes = self.ax
-        title.set_transform(usual.get_transform())
+        title.set_transform(original.get_transform())
         title.set_clip_box(None)
         self.ax.title = title
         return title
 
     def clear(self) -> None:
-        """Remove everything drawn, also by others, and start anew; the view shows the world again."""
+        """Remove everything drawn, including by scripts, and return to a view of the whole world."""
         self.ax.clear()
         self._start()
 
@@ -125,14 +132,14 @@ class SceneFigure:
         """Bring the artists up to date.
 
         Args:
-            scene: What to show.
-            title: Text above the axes; None for none.
+            scene: Scene to show.
+            title: Text above the axes, or None.
         """
         first = self._extent is None
         self._look_at(scene)
         fit_title = self._show_title(title or "")
         if first and self.tight:
-            self._use_room()
+            self._enlarge_axes()
         self.ax.apply_aspect()
         if fit_title:
             self._fit_title()
@@ -163,13 +170,13 @@ class SceneFigure:
     def draw(self) -> None:
         """Draw the artists into the canvas."""
         layers: list[GridLayer | MarkLayer] = [*self._grids.values(), *self._marks.values()]
-        self.compositor.draw({layer.artist: (layer.version, layer.rested) for layer in layers})
+        self.compositor.draw({layer.artist: (layer.version, layer.resting_scenes) for layer in layers})
 
     def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
-        """Draw and read the pixels.
+        """Draw the figure and return its pixels.
 
         Returns:
-            The pixels, and the box (left, top, right, bottom) they were cut from.
+            The pixels, and the box (left, top, right, bottom) they were cut from [px].
         """
         self.draw()
         box = self.compositor.tight_box(pad_inches) if tight else (0, 0, *self.compositor.size)
@@ -189,18 +196,18 @@ class SceneFigure:
                 low, high = get()
                 set_(value - (high - low) / 2, value + (high - low) / 2)
 
-    def _use_room(self) -> None:
-        """Let the axes fill the figure but for what ticks, labels and title need."""
+    def _enlarge_axes(self) -> None:
+        """Let the axes fill the figure, except for the space that ticks, labels and title need."""
         renderer, figure, ax = self._renderer(), self.figure, self.ax
         ax.apply_aspect()
         boxes = [artist.get_tightbbox(renderer) for artist in ((ax.xaxis, ax.yaxis) if self.axis else ())]
         outer = Bbox.union([ax.bbox, *(box for box in boxes if box is not None)])
         title = self._title_artist.get_window_extent(renderer)
-        pad = _ROOM * figure.dpi / _POINTS_PER_INCH
+        pad = _PADDING_PT * figure.dpi / _POINTS_PER_INCH
         width, height = figure.bbox.width, figure.bbox.height
         left, right = (ax.bbox.x0 - outer.x0 + pad) / width, (outer.x1 - ax.bbox.x1 + pad) / width
         bottom, top = (ax.bbox.y0 - outer.y0 + pad) / height, (max(outer.y1, title.y1) - ax.bbox.y1 + pad) / height
-        if left + right < _MOST_ROOM and bottom + top < _MOST_ROOM:
+        if left + right < MAX_DECORATION_SHARE and bottom + top < MAX_DECORATION_SHARE:
             figure.subplots_adjust(left=left, right=1 - right, bottom=bottom, top=1 - top)
 
     def _points_per_metre(self) -> float:
@@ -208,7 +215,7 @@ class SceneFigure:
         return float(self.ax.bbox.height / (high - low) * _POINTS_PER_INCH / self.figure.dpi)
 
     def _show_title(self, title: str) -> bool:
-        """Write the title; True when it may need another size."""
+        """Set the title; return whether it is longer than before, so that its size must be checked."""
         if title == self._title:
             return False
         longer = self._title is None or len(title) > len(self._title)
@@ -217,14 +224,14 @@ class SceneFigure:
         return longer
 
     def _fit_title(self) -> None:
-        """Write a title smaller that would stick out of the figure."""
+        """Reduce the size of a title that is wider than the figure."""
         artist, box, width = self._title_artist, self.ax.bbox, self.figure.bbox.width
-        artist.set_fontsize(_TITLE_SIZE)
+        artist.set_fontsize(_TITLE_SIZE_PT)
         middle = (box.x0 + box.x1) / 2
-        room = 2 * min(middle, width - middle) - 2 * _LABEL_MARGIN
+        available = 2 * min(middle, width - middle) - 2 * _LABEL_MARGIN_PX
         needed = artist.get_window_extent(self._renderer()).width
-        if needed > room:
-            artist.set_fontsize(max(_SMALLEST_TITLE, _TITLE_SIZE * room / needed))
+        if needed > available:
+            artist.set_fontsize(max(MIN_TITLE_SIZE_PT, _TITLE_SIZE_PT * available / needed))
 
     def _renderer(self) -> Any:
         return self.figure.canvas.get_renderer()  # type: ignore[attr-defined]
@@ -284,7 +291,7 @@ class SceneFigure:
             text.set_color(rgba(label.color))
             text.set_fontsize(label.size)
             text.set_alpha(label.alpha)
-            text.set_zorder(label.zorder + _LABEL_RANK)
+            text.set_zorder(label.zorder + _LABEL_ZORDER_STEP)
         for key, text in self._labels.items():
             if key not in shown:
                 text.set_visible(False)
@@ -292,13 +299,16 @@ class SceneFigure:
             self._move_labels(list(shown.values()), anchors[seen], scene)
 
     def _move_labels(self, shown: list[tuple[Label, Text]], anchors: Floats, scene: Scene) -> None:
-        """Shift labels that the edge of the axes would cut, and those that would cover another; names come first."""
+        """Shift labels that the edge of the axes would cut or that would cover another label.
+
+        Goal labels give way to all others.
+        """
         order = sorted(range(len(shown)), key=lambda i: shown[i][0].part == "goal")
         texts, anchors = [shown[i][1] for i in order], anchors[order]
         view, data = self.ax.bbox, self.ax.transData
         starts = data.transform([text.get_position() for text in texts])
         boxes = np.array([self._extent_of(text) for text in texts]) + np.concatenate([starts, starts], axis=1)
-        margin = np.array([_LABEL_MARGIN, _LABEL_MARGIN, -_LABEL_MARGIN, -_LABEL_MARGIN])
+        margin = _LABEL_MARGIN_PX * np.array([1.0, 1.0, -1.0, -1.0])
 
         def bodies() -> Floats:
             corners = np.array(small_bodies(scene), dtype=np.float64).reshape(-1, 2)
@@ -311,11 +321,11 @@ class SceneFigure:
                 text.set_position((x, y))
 
     def _extent_of(self, text: Text) -> Bounds:
-        """Left, bottom, right and top of a label, seen from where it begins [px]."""
+        """Return left, bottom, right and top of a label relative to its position [px]."""
         key = text.get_text(), float(text.get_fontsize()), float(self.figure.dpi)
         extent = self._extents.get(key)
         if extent is None:
-            if len(self._extents) >= _MOST_EXTENTS:
+            if len(self._extents) >= MAX_CACHED_EXTENTS:
                 self._extents.clear()
             box = text.get_window_extent(self._renderer())
             x, y = self.ax.transData.transform(text.get_position())
@@ -324,28 +334,28 @@ class SceneFigure:
 
 
 def _printable(text: str) -> str:
-    """Text without characters that no font has."""
+    """Replace control characters, which fonts lack, by spaces."""
     return "".join(character if character.isprintable() or character == "\n" else " " for character in text)
 
 
 def inches(size: tuple[float, float], dpi: float) -> tuple[float, float]:
-    """Size of a figure whose canvas has this many pixels; a hair more, since Matplotlib cuts fractions off."""
-    return (size[0] + _HAIR) / dpi, (size[1] + _HAIR) / dpi
+    """Convert the size of a canvas from pixels to inches."""
+    return (size[0] + _ROUNDING_RESERVE_PX) / dpi, (size[1] + _ROUNDING_RESERVE_PX) / dpi
 
 
 def fitting_size(width: float, height: float, side: float, dpi: float, *, axis: bool = True) -> tuple[float, float]:
-    """Size of a figure that shows a world without empty margins.
+    """Return the size of a figure that shows a world without empty margins.
 
     Args:
-        width: Of the world [m].
-        height: Of the world [m].
+        width: Width of the world [m].
+        height: Height of the world [m].
         side: Longer side of the figure [px].
         dpi: Pixels per inch.
-        axis: Whether ticks and labels take room.
+        axis: Whether ticks and labels are drawn, which need space.
 
     Returns:
-        Width and height [px]; never narrower than a title needs.
+        Width and height [px]; the width is large enough for a title.
     """
-    across, up = _MARGINS[axis][0] * dpi, _MARGINS[axis][1] * dpi
+    across, up = _MARGINS_INCH[axis][0] * dpi, _MARGINS_INCH[axis][1] * dpi
     scale = min((side - across) / width, (side - up) / height)
-    return min(side, max(scale * width + across, _LEAST_WIDTH * dpi)), min(side, max(scale * height + up, dpi))
+    return min(side, max(scale * width + across, MIN_WIDTH_INCH * dpi)), min(side, max(scale * height + up, dpi))

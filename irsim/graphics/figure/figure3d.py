@@ -1,4 +1,4 @@
-"""A world in three dimensions: the flat scene on the ground of a 3-D view."""
+"""A 3-D figure of a world: the flat scene on the ground of a 3-D view."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from irsim.graphics.scene.scene import Beams, Circle, Label, Line, Mark, Region,
 
 __all__ = ["SceneFigure3D"]
 
-_CORNERS = 48
-"""Of a drawn circle."""
-_LIFT = 1e-3
-"""Height of one layer above the next [m]: 3-D axes draw by depth, not by layer."""
+_CIRCLE_CORNERS = 48
+"""Number of corners of the polygon that stands for a circle."""
+_LAYER_HEIGHT_M = 1e-3
+"""Height [m] of one layer above the layer below; 3-D axes draw in order of depth, not of zorder."""
 
 
 class SceneFigure3D:
-    """Figure and 3-D axes; everything of a scene is drawn anew in each frame, at the height of its object.
+    """Figure with 3-D axes; all marks of a scene are replaced in each frame.
 
     Args:
         size: Width and height [px].
         dpi: Pixels per inch.
         depth: Extent along z [m].
         axis: Draw axes, ticks and labels.
-        figure: A figure to use (of a window); default: a new one without a window.
+        figure: Figure to use, such as that of a window; default: a new one without a window.
 
     Attributes:
-        figure, ax: For drawing more into it.
+        figure, ax: Matplotlib figure and axes, for drawing more.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class SceneFigure3D:
         self.clear()
 
     def clear(self) -> None:
-        """Remove everything drawn, also by others, and start anew."""
+        """Remove everything drawn, including by scripts, and restore the initial view."""
         self.ax.clear()
         self._artists: list[Any] = []
         self._extent: tuple[float, float, float, float] | None = None
@@ -58,11 +58,11 @@ class SceneFigure3D:
             self.ax.set_axis_off()
 
     def show(self, scene: Scene, title: str | None) -> None:
-        """Draw a scene; the view (angle, zoom) stays."""
+        """Show a scene; the angle and zoom of the view stay."""
         if scene.extent != self._extent:
             self._look_at(scene.extent)
         for artist in self._artists:
-            if artist.axes is not None:  # else a script has cleared the axes
+            if artist.axes is not None:  # None: a script has cleared the axes
                 artist.remove()
         self._artists = [self._mark(mark) for mark in scene.marks]
         self._artists += [self._beams(beams) for beams in scene.beams if len(beams.ends)]
@@ -81,8 +81,8 @@ class SceneFigure3D:
         self.ax.set_zlabel("z [m]")
 
     def _mark(self, mark: Mark) -> Any:
-        height = _LIFT * max(0.0, mark.zorder)
-        lines = [_raised(points, height) for points in outlines(mark.geometry)]
+        height = _LAYER_HEIGHT_M * max(0.0, mark.zorder)
+        lines = [_with_height(points, height) for points in outlines(mark.geometry)]
         edge = mark.stroke.color
         if isinstance(mark.geometry, Line):
             color = _rgba(edge if edge is not None else "none", mark.alpha)
@@ -93,8 +93,8 @@ class SceneFigure3D:
         return self.ax.add_collection3d(patch)
 
     def _beams(self, beams: Beams) -> Any:
-        start = np.broadcast_to(np.array([*beams.origin, _LIFT]), (len(beams.ends), 3))
-        ends = _raised(beams.ends, _LIFT)
+        start = np.broadcast_to(np.array([*beams.origin, _LAYER_HEIGHT_M]), (len(beams.ends), 3))
+        ends = _with_height(beams.ends, _LAYER_HEIGHT_M)
         color = _rgba(beams.color, beams.alpha)
         return self.ax.add_collection3d(Line3DCollection(np.stack([start, ends], axis=1), colors=[color]))
 
@@ -103,24 +103,24 @@ class SceneFigure3D:
 
     def draw(self) -> None:
         """Draw into the canvas."""
-        self.compositor.draw_plainly()
+        self.compositor.draw_without_cache()
 
     def pixels(self, *, tight: bool, pad_inches: float = 0.1) -> tuple[Pixels, tuple[int, int, int, int]]:
-        """Draw and read the pixels, and the box (left, top, right, bottom) they were cut from."""
+        """Draw the figure and return its pixels, and the box (left, top, right, bottom) they were cut from [px]."""
         self.draw()
         box = self.compositor.tight_box(pad_inches) if tight else (0, 0, *self.compositor.size)
         return self.compositor.pixels(box), box
 
 
 def outlines(geometry: Circle | Region | Line | Sector) -> list[NDArray[np.float64]]:
-    """(M, 2) points of each ring or line of a geometry."""
+    """Return the (M, 2) points of each ring or line of a geometry."""
     if isinstance(geometry, Region):
         return list(geometry.rings)
     if isinstance(geometry, Line):
         return [geometry.points]
     full = isinstance(geometry, Circle)
     first, last = (0.0, 2 * np.pi) if isinstance(geometry, Circle) else (geometry.start, geometry.end)
-    angles = np.linspace(first, last, _CORNERS, endpoint=not full)
+    angles = np.linspace(first, last, _CIRCLE_CORNERS, endpoint=not full)
     ring = geometry.radius * np.column_stack([np.cos(angles), np.sin(angles)]) + [geometry.x, geometry.y]
     return [ring if full else np.vstack([[geometry.x, geometry.y], ring])]
 
@@ -129,5 +129,5 @@ def _rgba(color: Any, alpha: float) -> tuple[float, float, float, float]:
     return to_rgba(color, alpha)
 
 
-def _raised(points: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+def _with_height(points: NDArray[np.float64], height: float) -> NDArray[np.float64]:
     return np.column_stack([points[:, :2], np.full(len(points), height)])

@@ -1,4 +1,4 @@
-"""Text drawn from kept bitmaps: the same few words and ten digits appear in every frame."""
+"""Text drawn from cached bitmaps, which is fast because the same few words and ten digits appear in every frame."""
 
 from __future__ import annotations
 
@@ -18,13 +18,20 @@ __all__ = ["Glyphs", "QuickText"]
 
 _PIECES = re.compile(r"\d|\D+")
 _MARGIN = 3
-"""Pixels round a bitmap, for what sticks out of its box."""
-_MOST_PIECES = 2000
+"""Margin [px] around a bitmap, for strokes that reach beyond the nominal box of the text."""
+MAX_CACHED_PIECES = 2000
+"""Number of bitmaps after which the cache is emptied."""
 
 
 @dataclass(slots=True)
 class _Piece:
-    """A bitmap (H, W, 4), its lowest row first, the rows of it below the baseline, and the advance [px]."""
+    """A bitmap of a piece of text.
+
+    Attributes:
+        bitmap: (H, W, 4) pixels, lowest row first.
+        below: Number of rows below the baseline.
+        advance: Distance to the start of the next piece [px].
+    """
 
     bitmap: Any
     below: int
@@ -32,27 +39,27 @@ class _Piece:
 
 
 class Glyphs:
-    """Bitmaps of pieces of text, by how they look."""
+    """Cache of bitmaps, by text, font, colour and resolution."""
 
     def __init__(self) -> None:
         self._known: dict[Hashable, _Piece] = {}
 
     def get(self, key: Hashable, make: Callable[[], _Piece]) -> _Piece:
-        """The piece of that text and look, made by ``make`` if it is new."""
+        """Return the piece with this key; a new one is made by ``make``."""
         found = self._known.get(key)
         if found is None:
-            if len(self._known) >= _MOST_PIECES:
+            if len(self._known) >= MAX_CACHED_PIECES:
                 self._known.clear()
             found = self._known[key] = make()
         return found
 
 
 class QuickText(Text):
-    """A line of plain text; on pixels it is put together from kept bitmaps, at whole pixels.
+    """A line of plain text; on a pixel canvas it is composed of cached bitmaps, at whole pixels.
 
     Args:
-        glyphs: Shared by the texts of a figure.
-        **kwargs: Of :class:`matplotlib.text.Text`.
+        glyphs: Cache that the texts of a figure share.
+        **kwargs: Arguments of :class:`matplotlib.text.Text`.
     """
 
     def __init__(self, glyphs: Glyphs, **kwargs: Any) -> None:
@@ -60,14 +67,17 @@ class QuickText(Text):
         self._glyphs = glyphs
 
     def draw(self, renderer: Any) -> None:
-        """Draw; as Matplotlib would where the text is turned, has effects or several lines, or becomes curves."""
+        """Draw the text.
+
+        Matplotlib draws rotated text, text with effects or several lines, and text on a vector canvas.
+        """
         text = self.get_text()
         if not self._is_plain(renderer):
             super().draw(renderer)
             return
         if not self.get_visible() or not text:
             return
-        pieces, across, up = self._laid_out(renderer)
+        pieces, across, up = self._layout(renderer)
         context = renderer.new_gc()
         for piece in pieces:
             renderer.draw_image(context, round(across) - _MARGIN, round(up) - piece.below, piece.bitmap)
@@ -76,10 +86,10 @@ class QuickText(Text):
         self.stale = False
 
     def get_window_extent(self, renderer: Any = None, dpi: float | None = None) -> Bbox:
-        """Box of the text [px]; from the bitmaps where it is drawn with them."""
+        """Return the bounding box of the text [px]."""
         if dpi is not None or not self.get_text() or not self._is_plain(renderer):
             return super().get_window_extent(renderer, dpi)
-        pieces, across, up = self._laid_out(renderer)
+        pieces, across, up = self._layout(renderer)
         below = max(piece.below for piece in pieces) - _MARGIN
         height = max(piece.bitmap.shape[0] for piece in pieces) - 2 * _MARGIN
         return Bbox.from_bounds(across, up - below, sum(piece.advance for piece in pieces), height)
@@ -88,11 +98,11 @@ class QuickText(Text):
         plain = not self.get_path_effects() and self.get_rotation() == 0 and "\n" not in self.get_text()
         return plain and isinstance(renderer, RendererAgg)
 
-    def _laid_out(self, renderer: Any) -> tuple[list[_Piece], float, float]:
-        """The pieces, and where the first begins on the baseline [px]."""
+    def _layout(self, renderer: Any) -> tuple[list[_Piece], float, float]:
+        """Return the pieces, and the position of the first on the baseline [px]."""
         look = (self.get_fontproperties(), self.get_color(), self.get_alpha(), renderer.dpi)
         pieces = [
-            self._glyphs.get((text, *look), partial(self._rendered, text, renderer))
+            self._glyphs.get((text, *look), partial(self._render_piece, text, renderer))
             for text in _PIECES.findall(self.get_text())
         ]
         across, up = self.get_transform().transform(self.get_unitless_position())
@@ -100,7 +110,7 @@ class QuickText(Text):
         across -= {"left": 0.0, "center": total / 2, "right": total}[self.get_horizontalalignment()]
         return pieces, float(across), float(up)
 
-    def _rendered(self, piece: str, renderer: Any) -> _Piece:
+    def _render_piece(self, piece: str, renderer: Any) -> _Piece:
         properties = self.get_fontproperties()
 
         def width(text: str) -> float:

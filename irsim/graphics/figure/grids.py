@@ -1,4 +1,4 @@
-"""The grid layer: a map as one image under everything else."""
+"""The grid layer: a map as one image below everything else."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from irsim.graphics.scene.scene import GridImage
 
 __all__ = ["GridLayer"]
 
-_RESTING = 1_000_000  # a map never changes within a scene
+_ALWAYS_RESTING = 1_000_000
+"""Number of resting scenes given for a map, which never changes."""
 
 
 class GridLayer:
@@ -18,8 +19,8 @@ class GridLayer:
 
     Attributes:
         artist: The image that shows it.
-        version: Counts changes of content.
-        rested: Scenes in a row without a change: a map rests from the beginning.
+        version: Number of changes of the content.
+        resting_scenes: Number of consecutive scenes without a change; a map counts as resting from the beginning.
     """
 
     def __init__(self, ax: Axes, zorder: float) -> None:
@@ -28,11 +29,11 @@ class GridLayer:
         self.artist.set_zorder(zorder)
         ax.add_image(self.artist)
         self.artist.set_clip_path(ax.patch)
-        self.version, self.rested = 0, _RESTING
+        self.version, self.resting_scenes = 0, _ALWAYS_RESTING
         self._shown: GridImage | None = None
 
     def show(self, grid: GridImage | None) -> None:
-        """Draw this map; None draws nothing."""
+        """Show a map, or nothing for None."""
         self.artist.set_visible(grid is not None)
         if grid is self._shown or grid is None:
             return

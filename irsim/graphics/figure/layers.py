@@ -1,4 +1,4 @@
-"""Marks and beams as a handful of Matplotlib collections, one per layer, updated in place."""
+"""Layers of a figure: marks and beams as few Matplotlib collections, one per layer, updated in place."""
 
 from __future__ import annotations
 
@@ -20,18 +20,21 @@ from irsim.graphics.scene.scene import Beams, Circle, Dots, Floats, Fog, Geometr
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 
 _PARTS = ("field", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
-"""Order of drawing within one zorder."""
+"""Drawing order of the parts that have the same zorder."""
 
-_RANK = 1e-3
-"""Artists of equal zorder are drawn in the order they were added; this much above it makes the parts' order certain."""
+_ZORDER_STEP = 1e-3
+"""Added to the zorder per rank in `_PARTS`.
 
-_UNIT = Path.unit_circle()
-_BEAM_WIDTH = 1.0
-_NONE = (0.0, 0.0, 0.0, 0.0)
+Matplotlib draws artists of equal zorder in the order in which they were added, which is not the order of the parts.
+"""
+
+_UNIT_CIRCLE = Path.unit_circle()
+_BEAM_WIDTH_PT = 1.0
+_TRANSPARENT = (0.0, 0.0, 0.0, 0.0)
 
 
 def layer_key(part: str, zorder: float, round_caps: bool = False) -> tuple[Any, ...]:
-    """Sorts layers in the order they are drawn."""
+    """Return the key of the layer that a mark belongs to; keys sort in drawing order."""
     return float(zorder), _PARTS.index(part), round_caps
 
 
@@ -40,24 +43,24 @@ class MarkLayer:
 
     Attributes:
         artist: The collection that shows them.
-        version: Counts changes of content.
-        rested: Scenes in a row without a change.
+        version: Number of changes of the content.
+        resting_scenes: Number of consecutive scenes without a change.
     """
 
     def __init__(self, ax: Axes, key: tuple[Any, ...]) -> None:
         caps, joins = ("round", "round") if key[2] else ("butt", "miter")
         joins = "round" if key[1] == _PARTS.index("trajectory") else joins
-        self.artist = PathCollection([], capstyle=caps, joinstyle=joins, zorder=key[0] + _RANK * key[1])
+        self.artist = PathCollection([], capstyle=caps, joinstyle=joins, zorder=key[0] + _ZORDER_STEP * key[1])
         ax.add_collection(self.artist, autolim=False)
-        self.version = self.rested = 0
+        self.version = self.resting_scenes = 0
         self._marks: list[Mark] = []
         self._scale = 0.0
 
     def show(self, marks: Sequence[Mark], points_per_metre: float) -> None:
-        """Draw exactly these marks.
+        """Show exactly these marks.
 
         Args:
-            marks: Marks that are the same objects as last time are taken as unchanged.
+            marks: The marks; those that are the same Python objects as last time count as unchanged.
             points_per_metre: Scale of the view, for line widths given in metres.
         """
         old = self._marks
@@ -66,10 +69,10 @@ class MarkLayer:
         )
         rescaled = points_per_metre != self._scale and any(mark.stroke.metric for mark in marks)
         if same == len(old) == len(marks) and not rescaled:
-            self.rested += 1
+            self.resting_scenes += 1
             return
         self.version += 1
-        self.rested = 0
+        self.resting_scenes = 0
         self._marks, self._scale = list(marks), points_per_metre
         self.artist.set_paths(
             [*self.artist.get_paths()[:same], *(geometry_path(mark.geometry) for mark in marks[same:])]
@@ -77,8 +80,8 @@ class MarkLayer:
         self.artist.set_facecolor(_colors([mark.fill for mark in marks], [mark.alpha for mark in marks]))
         self.artist.set_edgecolor(_colors([mark.stroke.color for mark in marks], [mark.alpha for mark in marks]))
         widths = [mark.stroke.width * (points_per_metre if mark.stroke.metric else 1.0) for mark in marks]
-        self.artist.set_linewidth(_shared(widths) or [0.0])
-        self.artist.set_linestyle(_shared([mark.stroke.style for mark in marks]) or ["-"])
+        self.artist.set_linewidth(_shorten(widths) or [0.0])
+        self.artist.set_linestyle(_shorten([mark.stroke.style for mark in marks]) or ["-"])
 
 
 class BeamLayer:
@@ -86,12 +89,12 @@ class BeamLayer:
 
     def __init__(self, ax: Axes, zorder: float) -> None:
         self._ax = ax
-        self.artist = _Spokes(zorder + _RANK * _PARTS.index("beams"))
+        self.artist = _Spokes(zorder + _ZORDER_STEP * _PARTS.index("beams"))
         ax.add_collection(self.artist, autolim=False)
         self._dots: PathCollection | None = None
 
     def show(self, beams: Beams | None) -> None:
-        """Draw this scan; None draws nothing."""
+        """Show a scan, or nothing for None."""
         self.artist.set_visible(beams is not None)
         self._show_dots(None if beams is None else beams.dots)
         if beams is None:
@@ -102,7 +105,7 @@ class BeamLayer:
         for beam, color, alpha in beams.highlights:
             colors[beam] = rgba(color, alpha)
         self.artist.set_edgecolor(colors)
-        self.artist.set_linewidth(_BEAM_WIDTH if beams.widths is None else beams.widths.tolist())
+        self.artist.set_linewidth(_BEAM_WIDTH_PT if beams.widths is None else beams.widths.tolist())
 
     def _show_dots(self, dots: Dots | None) -> None:
         if self._dots is not None:
@@ -119,14 +122,14 @@ class BeamLayer:
         self._dots.set_linewidth(dots.edge_width)
 
     def remove(self) -> None:
-        """Take the artists out of the axes."""
+        """Remove the artists from the axes."""
         self.artist.remove()
         if self._dots is not None:
             self._dots.remove()
 
 
 class FogLayer:
-    """The fog as an image over the world, redrawn only when it has lifted somewhere.
+    """The fog as an image over the world, updated only when more cells have been explored.
 
     Attributes:
         artist: The image.
@@ -139,7 +142,7 @@ class FogLayer:
         self._shown: Any = None
 
     def show(self, fog: Fog) -> None:
-        """Draw it."""
+        """Show the fog."""
         if self._shown is not None and np.array_equal(self._shown, fog.explored):
             return
         self._shown = fog.explored
@@ -151,15 +154,18 @@ class FogLayer:
 
 
 class _Spokes(Collection):
-    """Lines from one point: a unit line, turned and stretched for each (cheaper than as many lines)."""
+    """Lines from one point.
+
+    A single unit line is rotated and stretched for each, which is cheaper than a path for each.
+    """
 
     def __init__(self, zorder: float) -> None:
-        super().__init__(facecolors="none", linewidths=_BEAM_WIDTH, zorder=zorder)
+        super().__init__(facecolors="none", linewidths=_BEAM_WIDTH_PT, zorder=zorder)
         self._paths = [Path([(0.0, 0.0), (1.0, 0.0)])]
         self._matrices = np.empty((0, 3, 3))
 
     def set_ends(self, origin: tuple[float, float], ends: Floats) -> None:
-        """Spokes from ``origin`` to ``ends`` (B, 2)."""
+        """Set the lines from ``origin`` to ``ends`` (B, 2)."""
         matrices = np.zeros((len(ends), 3, 3))
         matrices[:, :2, 0] = ends - origin
         matrices[:, 2, 2] = 1.0
@@ -167,11 +173,14 @@ class _Spokes(Collection):
         self.set_offsets(np.tile(origin, (len(ends), 1)))
 
     def get_transforms(self) -> Any:
-        """(B, 3, 3) unit line → spoke at the origin."""
+        """Return the (B, 3, 3) matrices that turn the unit line into lines from (0, 0)."""
         return self._matrices
 
     def draw(self, renderer: Any) -> None:
-        """Turn and stretch by the transforms, move by the offsets: the data transform must not move as well."""
+        """Draw the lines.
+
+        The offsets already move each line to its origin, so the data transform is used without its translation.
+        """
         assert self.axes is not None
         linear = self.axes.transData.get_matrix().copy()
         linear[:2, 2] = 0.0
@@ -181,10 +190,10 @@ class _Spokes(Collection):
 
 
 def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
-    """A colour that may bring its own opacity, times ``alpha``.
+    """Convert a colour to red, green, blue and opacity (0..1); ``alpha`` multiplies the colour's own opacity.
 
     Raises:
-        ValueError: Not a colour.
+        ValueError: The colour is not valid.
     """
     given: Any = color
     red, green, blue, opacity = to_rgba(given)
@@ -192,30 +201,33 @@ def rgba(color: Color, alpha: float = 1.0) -> tuple[float, float, float, float]:
 
 
 def opaque_colors(scene: Scene) -> list[tuple[int, int, int]]:
-    """Colours that a reduced palette must keep (0..255): paper, ink, opaque bodies and arrows, some texts."""
+    """Return the colours (0..255) that a reduced palette must keep: white, black, opaque marks, some labels."""
     colors = [rgba(mark.fill)[:3] for mark in scene.marks if mark.fill is not None and mark.alpha == 1]
     colors += [rgba(label.color)[:3] for label in scene.labels if label.part in ("field", "plan")]
     levels = [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), *dict.fromkeys(colors)]
     return [(round(r * 255), round(g * 255), round(b * 255)) for r, g, b in levels]
 
 
-def _shared(values: list[Any]) -> list[Any]:
-    """The values, or the one they all are: collections repeat what is too short."""
+def _shorten(values: list[Any]) -> list[Any]:
+    """Return only the first value if all are equal: collections repeat the values of a list that is too short."""
     return values[:1] if all(value == values[0] for value in values) else values
 
 
 def _colors(colors: Sequence[Color | None], alphas: Sequence[float]) -> Any:
-    """(N, 4) RGBA; None is transparent; (0, 4), which Matplotlib need not draw at all, when all are None."""
+    """Return (N, 4) RGBA, with None as transparent.
+
+    If all colours are None, the array is (0, 4), and Matplotlib draws nothing.
+    """
     if all(color is None for color in colors):
         return np.empty((0, 4))
-    levels = [_NONE if c is None else rgba(c, a) for c, a in zip(colors, alphas, strict=True)]
+    levels = [_TRANSPARENT if c is None else rgba(c, a) for c, a in zip(colors, alphas, strict=True)]
     return np.array(levels, dtype=np.float64)
 
 
 def geometry_path(geometry: Geometry) -> Path:
-    """The outline of a mark."""
+    """Return the outline of a mark as a Matplotlib path."""
     if isinstance(geometry, Circle):
-        return _scaled(_UNIT, geometry)
+        return _scale_and_move(_UNIT_CIRCLE, geometry)
     if isinstance(geometry, Line):
         return Path(geometry.points)
     if isinstance(geometry, Sector):
@@ -233,9 +245,9 @@ def _ring(points: Floats) -> Path:
 
 
 def _sector(sector: Sector) -> Path:
-    return _scaled(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
+    return _scale_and_move(Path.wedge(math.degrees(sector.start), math.degrees(sector.end)), sector)
 
 
-def _scaled(unit: Path, place: Circle | Sector) -> Path:
-    """A path of radius 1 about the origin, brought to size and place."""
-    return Path(np.asarray(unit.vertices) * place.radius + (place.x, place.y), unit.codes)
+def _scale_and_move(unit: Path, target: Circle | Sector) -> Path:
+    """Scale and move a path of radius 1 about the origin to the radius and centre of ``target``."""
+    return Path(np.asarray(unit.vertices) * target.radius + (target.x, target.y), unit.codes)

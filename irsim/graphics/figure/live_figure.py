@@ -1,4 +1,4 @@
-"""A figure that shows the present whenever somebody looks: drawn, saved or read pixel by pixel."""
+"""A figure that updates itself before it is drawn, saved or read pixel by pixel."""
 
 from __future__ import annotations
 
@@ -12,51 +12,51 @@ __all__ = ["LiveCanvas", "LiveFigure", "Shown"]
 
 
 class Shown(Protocol):
-    """What a figure shows."""
+    """The plot that a figure shows."""
 
     def before_drawing(self) -> None:
-        """Bring the artists up to date; the figure is about to be drawn."""
+        """Bring the artists up to date, because the figure is about to be drawn."""
 
     def is_outdated(self) -> bool:
-        """Whether the pixels show another moment than the present one."""
+        """Whether the pixels show an earlier moment than the present one."""
 
 
-def _nothing() -> Shown | None:
+def _no_plot() -> Shown | None:
     return None
 
 
 class LiveFigure(Figure):
-    """Asks for the present before it is drawn, by whomever: ``canvas.draw()``, ``savefig``, a window.
+    """Updates its artists before every drawing, whether by ``canvas.draw()``, ``savefig`` or a window.
 
     Attributes:
-        shown: Gives what it shows; None once that is gone.
+        shown: Returns the plot that the figure shows, or None once that no longer exists.
     """
 
-    shown: Callable[[], Shown | None] = staticmethod(_nothing)
+    shown: Callable[[], Shown | None] = staticmethod(_no_plot)
 
     def draw(self, renderer: Any) -> None:
-        """Draw the present."""
+        """Draw the present moment."""
         if (shown := self.shown()) is not None:
             shown.before_drawing()
         super().draw(renderer)
 
 
 class LiveCanvas(FigureCanvasAgg):
-    """Canvas of a figure without a window; its pixels may be read without drawing first."""
+    """Canvas of a figure without a window; reading its pixels draws first if they are outdated."""
 
     def buffer_rgba(self) -> memoryview:
-        """(height, width, 4) pixels of the present moment, uint8."""
-        self._look()
+        """Return the (height, width, 4) pixels of the present moment, uint8."""
+        self._draw_if_outdated()
         pixels: memoryview = FigureCanvasAgg.buffer_rgba(self)  # type: ignore[no-untyped-call]
         return pixels
 
     def tostring_argb(self) -> bytes:
-        """The same pixels as bytes, alpha first."""
-        self._look()
+        """Return the pixels of the present moment as bytes, alpha first."""
+        self._draw_if_outdated()
         pixels: bytes = FigureCanvasAgg.tostring_argb(self)  # type: ignore[no-untyped-call]
         return pixels
 
-    def _look(self) -> None:
+    def _draw_if_outdated(self) -> None:
         shown = self.figure.shown() if isinstance(self.figure, LiveFigure) else None
         if shown is not None and shown.is_outdated():
             self.draw()  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""What scripts draw over the scene: paths, points, boxes, arrows; kept until a reset, or for one frame."""
+"""Drawings of scripts over the scene: paths, points, boxes, arrows. They stay until a reset, or for one frame."""
 
 from __future__ import annotations
 
@@ -20,19 +20,22 @@ _COLOR_IN_FORMAT = re.compile(r"C\d+|[bgrcmykw]")
 
 
 class Overlay:
-    """Drawings of a script on the axes of an environment."""
+    """The drawings of a script on the axes of an environment.
+
+    Each method draws until the next reset, or, with ``refresh``, for one frame only.
+    """
 
     def __init__(self, palette: Palette) -> None:
         self.palette = palette
         self.forget()
 
     def forget(self) -> None:
-        """Drop the list of drawings (the axes were cleared)."""
+        """Empty the list of drawings, because the axes were cleared."""
         self._waiting: list[Artist] = []
         self._shown: list[Artist] = []
 
     def next_frame(self) -> None:
-        """Remove drawings for one frame that have had theirs; those drawn since then get the coming one."""
+        """Remove the one-frame drawings of the last frame; those added since then appear in the coming frame."""
         for artist in self._shown:
             artist.remove()
         self._shown, self._waiting = self._waiting, []
@@ -48,8 +51,11 @@ class Overlay:
         refresh: bool = False,
         **kwargs: Any,
     ) -> None:
-        """A path through ``traj`` (columns, or (2 or more, N)); ``show_direction`` draws the headings (row 2) too."""
-        rows = coordinates(traj, least=3 if show_direction else 2)
+        """Draw a path through ``traj``, given as columns or as an array (2 or more, N).
+
+        ``show_direction`` also draws the headings, which are row 2.
+        """
+        rows = coordinates(traj, min_rows=3 if show_direction else 2)
         kwargs = self._with_color(traj_type, kwargs, self.palette.path)
         artists: list[Artist] = list(ax.plot(rows[0], rows[1], traj_type, label=label, **kwargs))
         if show_direction:
@@ -57,21 +63,21 @@ class Overlay:
         self._keep(artists, refresh)
 
     def points(self, ax: Axes, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
-        """Dots of ``s`` points squared; None or no points draws nothing."""
-        rows = coordinates(points, least=2) if points is not None else np.empty((2, 0))
+        """Draw dots with an area of ``s`` square points; None or an empty list draws nothing."""
+        rows = coordinates(points, min_rows=2) if points is not None else np.empty((2, 0))
         if rows.shape[1]:
             color = self.palette.marker if c is None else c
             self._keep([ax.scatter(rows[0], rows[1], s, color, **kwargs)], refresh)
 
     def box(self, ax: Axes, vertices: Any, refresh: bool = False, color: str = "-") -> None:
-        """A closed outline through (2, N) vertices; ``color`` is a Matplotlib line format."""
-        rows = coordinates(vertices, least=2)
+        """Draw a closed outline through (2, N) vertices; ``color`` is a Matplotlib line format."""
+        rows = coordinates(vertices, min_rows=2)
         closed = np.concatenate([rows, rows[:, :1]], axis=1)
         kwargs = self._with_color(color, {}, self.palette.path)
         self._keep(list(ax.plot(closed[0], closed[1], color, **kwargs)), refresh)
 
     def quivers(self, ax: Axes, arrows: Any, refresh: bool = False, color: Any = None, **kwargs: Any) -> None:
-        """A dot and an arrow for each (x, y, u, v)."""
+        """Draw a dot and an arrow for each (x, y, u, v)."""
         if arrows is None:
             return
         rows = np.array([np.asarray(arrow, dtype=float).reshape(-1)[:4] for arrow in arrows]).reshape(-1, 4).T
@@ -90,15 +96,15 @@ class Overlay:
         return kwargs if named or "color" in kwargs or "c" in kwargs else {**kwargs, "color": default}
 
 
-def coordinates(points: Any, least: int) -> NDArray[np.float64]:
-    """Points as rows of x, y, …: (at least ``least``, N).
+def coordinates(points: Any, min_rows: int) -> NDArray[np.float64]:
+    """Convert points to rows of x, y, …: (at least ``min_rows``, N).
 
     Args:
         points: (2 or more, N) array, or a list of points (columns, rows or plain sequences).
-        least: Rows needed.
+        min_rows: Number of rows that are needed.
 
     Raises:
-        ValueError: Too few numbers per point.
+        ValueError: The points have too few numbers each.
     """
     if isinstance(points, np.ndarray):
         rows = np.asarray(points, dtype=np.float64)
@@ -106,8 +112,8 @@ def coordinates(points: Any, least: int) -> NDArray[np.float64]:
     else:
         given: Sequence[Any] = list(points)
         columns = [np.asarray(point, dtype=np.float64).reshape(-1) for point in given]
-        size = min((len(column) for column in columns), default=least)
+        size = min((len(column) for column in columns), default=min_rows)
         rows = np.array([column[:size] for column in columns]).reshape(-1, size).T
-    if rows.shape[0] < least:
-        raise ValueError(f"points need {least} numbers each, not {rows.shape[0]}")
+    if rows.shape[0] < min_rows:
+        raise ValueError(f"each point must have at least {min_rows} numbers, got {rows.shape[0]}")
     return rows

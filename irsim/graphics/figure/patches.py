@@ -1,4 +1,4 @@
-"""Single shapes on Matplotlib axes, as scripts of IR-SIM draw them."""
+"""Helpers with which user scripts draw single shapes on Matplotlib axes."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _POINTS_PER_INCH = 72
 
 
 def geometry_to_path(geometry: Any) -> Path:
-    """A shapely polygon, line, or collection of them as a Matplotlib path."""
+    """Convert a shapely polygon, line, or collection of them to a Matplotlib path."""
     from shapely.geometry.polygon import orient
 
     pieces = []
     for piece in getattr(geometry, "geoms", [geometry]):
         rings = [piece]
         if piece.geom_type == "Polygon":
-            turned = orient(piece)  # holes run the other way round
-            rings = [turned.exterior, *turned.interiors]
+            oriented = orient(piece)  # Matplotlib leaves a hole open only if it runs opposite to the outline
+            rings = [oriented.exterior, *oriented.interiors]
         for ring in rings:
             points = np.asarray(ring.coords)[:, :2]
             pieces.append(Path(points, closed=piece.geom_type != "LineString"))
@@ -30,7 +30,13 @@ def geometry_to_path(geometry: Any) -> Path:
 
 
 def linewidth_from_data_units(linewidth: float, axis: Any, reference: str = "y") -> float:
-    """The line width in points that is as wide as ``linewidth`` in the units of the axes [m]."""
+    """Convert a line width in the units of the axes [m] to points.
+
+    Args:
+        linewidth: Width [m].
+        axis: Matplotlib axes.
+        reference: Direction whose scale is used, ``x`` or ``y``.
+    """
     figure, box = axis.get_figure(), axis.get_position()
     if reference == "x":
         length, span = figure.bbox_inches.width * box.width, np.diff(axis.get_xlim())[0]
@@ -40,7 +46,7 @@ def linewidth_from_data_units(linewidth: float, axis: Any, reference: str = "y")
 
 
 def set_patch_property(element: Any, **properties: Any) -> None:
-    """Set colour, alpha, zorder, … of an artist; what is None stays."""
+    """Set colour, alpha, zorder, … of an artist; properties that are None stay unchanged."""
     element.set(**{key: value for key, value in properties.items() if value is not None})
 
 
@@ -59,19 +65,22 @@ def draw_patch(
     """Add one shape to axes.
 
     Args:
-        ax: Axes.
-        shape: ``circle``, ``rectangle``, ``ellipse``, ``wedge`` or ``polygon``.
+        ax: Matplotlib axes.
+        shape: ``circle``, ``rectangle``, ``ellipse``, ``wedge``, ``polygon`` or ``path``.
         state: x, y [m] and heading [rad], by default zeros.
-        radius: Of a circle or wedge [m].
-        width: Along x of a rectangle or ellipse [m].
-        height: Along y of a rectangle or ellipse [m].
-        vertices: (2, N) corners of a polygon, world frame.
-        theta1: Where a wedge begins [degrees].
-        theta2: Where it ends [degrees].
-        **kwargs: Of the Matplotlib patch.
+        radius: Radius of a circle or wedge [m].
+        width: Extent of a rectangle or ellipse along x [m].
+        height: Extent of a rectangle or ellipse along y [m].
+        vertices: (2, N) corners of a polygon in the world frame, or the Matplotlib path of a ``path``.
+        theta1: First angle of a wedge [degrees].
+        theta2: Last angle of a wedge [degrees].
+        **kwargs: Arguments of the Matplotlib patch.
+
+    Returns:
+        The patch.
 
     Raises:
-        ValueError: Another shape.
+        ValueError: The shape is unknown.
     """
     x, y, theta = (*(np.zeros(3) if state is None else np.asarray(state, dtype=float).reshape(-1)), 0.0, 0.0)[:3]
     turn = float(np.degrees(theta))

@@ -1,4 +1,4 @@
-"""Images drawn in place of bodies: the bundled ones, or a file of the user's."""
+"""Images drawn in place of bodies: bundled images, or files of the user."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from irsim.scenario.resolve.images import BUNDLED, image_places
 
 __all__ = ["BUNDLED", "Pictures"]
 
-_LONGEST = 512
-"""Side that larger images are reduced to [px]."""
+MAX_SIDE_PX = 512
+"""Larger images are reduced to this length of the longer side [px]."""
 
 
 class Pictures:
     """The images that a scenario's ``description`` keys name, each read once.
 
     Args:
-        folder: Folder of the scenario, looked in as well.
-        warn: Told about an image that is missing or unreadable, once.
+        folder: Folder of the scenario, which is searched too.
+        warn: Callback that receives a message about each image that is missing or unreadable.
     """
 
     def __init__(self, folder: str | Path | None = None, warn: Callable[[str], None] | None = None) -> None:
@@ -34,23 +34,31 @@ class Pictures:
         self._tinted: dict[tuple[str, str], NDArray[np.uint8]] = {}
 
     def get(self, name: str) -> NDArray[np.uint8] | None:
-        """(H, W, 4) pixels; None where there is no such image."""
+        """Return the (H, W, 4) pixels of an image, or None if the image is missing or unreadable."""
         if name not in self._known:
             self._known[name] = self._read(name)
         return self._known[name]
 
     def tinted(self, name: str, color: Color | None) -> NDArray[np.uint8] | None:
-        """The same with its colourful parts in another colour, as light and as dark as they are; None: as it is."""
+        """Return an image with the hue of its colourful parts replaced; their brightness stays.
+
+        Args:
+            name: Name of the image.
+            color: The new hue; None returns the image unchanged.
+
+        Returns:
+            (H, W, 4) pixels, or None if the image is missing or unreadable.
+        """
         pixels = self.get(name)
         if pixels is None or color is None:
             return pixels
         key = name, str(color)
         if key not in self._tinted:
-            self._tinted[key] = _tinted(pixels, color)
+            self._tinted[key] = _tint(pixels, color)
         return self._tinted[key]
 
     def has(self, name: str) -> bool:
-        """Whether there is such an image."""
+        """Whether the image exists and can be read."""
         return self.get(name) is not None
 
     def _read(self, name: str) -> NDArray[np.uint8] | None:
@@ -58,7 +66,7 @@ class Pictures:
         for path in image_places(name, self._folder):
             try:
                 with Image.open(path) as image:
-                    image.thumbnail((_LONGEST, _LONGEST))
+                    image.thumbnail((MAX_SIDE_PX, MAX_SIDE_PX))
                     return np.asarray(image.convert("RGBA"))
             except (FileNotFoundError, NotADirectoryError):
                 continue
@@ -69,8 +77,8 @@ class Pictures:
         return None
 
 
-def _tinted(pixels: NDArray[np.uint8], color: Color) -> NDArray[np.uint8]:
-    """(H, W, 4) pixels whose colours, but for greys, give way to one."""
+def _tint(pixels: NDArray[np.uint8], color: Color) -> NDArray[np.uint8]:
+    """Replace all colours except greys by shades of one colour; (H, W, 4) pixels."""
     from matplotlib.colors import to_rgb
 
     given: Any = color

@@ -1,8 +1,9 @@
-"""Figures of environments among those of pyplot, so that ``plt.gcf()`` and ``plt.savefig()`` find them.
+"""Lists the figures of environments in pyplot, so that ``plt.gcf()`` and ``plt.savefig()`` find them.
 
-Nothing here imports pyplot: its list of figures is a module of its own. An environment made after a script has imported
-pyplot is listed at once, and its figure made when pyplot asks for it; any other is listed when its figure is made. An
-entry goes with the figure: after ``env.end()``, or when the environment is gone.
+This module does not import pyplot, which is slow: pyplot's list of figures is a separate module of Matplotlib. If a
+script has imported pyplot before it makes an environment, the environment is listed at once, and its figure is made
+when pyplot asks for it; otherwise the figure is listed when it is made. The entry is removed after ``env.end()``, or
+when the environment no longer exists.
 """
 
 from __future__ import annotations
@@ -18,10 +19,10 @@ __all__ = ["PyplotEntry"]
 
 
 class PyplotEntry(FigureManagerBase):
-    """Manager, in the sense of pyplot, of a figure that has no window and may not be made yet.
+    """Figure manager of pyplot for a figure without a window, which is possibly not made yet.
 
     Args:
-        make: Makes the figure and gives its canvas; None when the environment is gone.
+        make: Makes the figure and returns its canvas, or None if the environment no longer exists.
     """
 
     def __init__(self, make: Callable[[], Any]) -> None:
@@ -47,7 +48,7 @@ class PyplotEntry(FigureManagerBase):
         return self._canvas
 
     def adopt(self, canvas: Any) -> None:
-        """The figure was made, without a window."""
+        """Manage the canvas of a figure that was made without a window."""
         self._canvas = canvas
         canvas.manager = self
         canvas.figure._number = self.num
@@ -55,39 +56,39 @@ class PyplotEntry(FigureManagerBase):
             canvas.figure.number = self.num
 
     def give_way(self, canvas: Any) -> None:
-        """The figure has got a window, which pyplot lists by itself."""
+        """Remove this entry, because the figure has a window, which pyplot lists itself."""
         self._canvas = canvas
         self.leave()
 
     def leave(self) -> None:
-        """Be listed no longer."""
+        """Remove this entry from pyplot's list."""
         if Gcf.figs.get(self.num) is self:
             Gcf.figs.pop(self.num)
 
     def get_window_title(self) -> str:
-        """What a window would be called."""
+        """Return the title that a window would have."""
         return self._title
 
     def set_window_title(self, title: str) -> None:
-        """Keep the title; there is no window."""
+        """Store the title; no window shows it."""
         self._title = title
 
     def show(self) -> None:
-        """Nothing: there is no window."""
+        """Do nothing, because the figure has no window."""
 
 
 def active() -> Any:
-    """The manager of the current figure of pyplot, None without one."""
+    """Return the manager of pyplot's current figure, or None without one."""
     return Gcf.get_active()
 
 
 def activate(manager: Any) -> None:
-    """Make a figure the current one of pyplot."""
+    """Make a figure pyplot's current one."""
     Gcf.set_active(manager)
 
 
 def _forget_unmade() -> None:
-    """At the end of the program no figure is made just to be closed."""
+    """Remove the entries of figures that were never made, so that pyplot does not make them only to close them."""
     for manager in list(Gcf.figs.values()):
         if isinstance(manager, PyplotEntry) and not manager.made:
             manager.leave()

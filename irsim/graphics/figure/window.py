@@ -1,4 +1,4 @@
-"""A window, where there is a screen and a toolkit to draw on it; chosen when first needed, never at import."""
+"""Opens a window if there is a screen and a GUI toolkit; the toolkit is chosen on first use, never at import."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from irsim.graphics.figure.live_figure import LiveFigure
 
 __all__ = ["Window", "has_screen", "open_window"]
 
-_WITHOUT_WINDOW = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
+_WINDOWLESS_BACKENDS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
 
 
 def has_screen() -> bool:
-    """Whether a window could appear at all: an X or Wayland display on Linux; MPLBACKEND may rule windows out."""
-    if os.environ.get("MPLBACKEND", "").lower() in _WITHOUT_WINDOW:
+    """Whether a window can appear: Linux needs an X or Wayland display, and MPLBACKEND can rule windows out."""
+    if os.environ.get("MPLBACKEND", "").lower() in _WINDOWLESS_BACKENDS:
         return False
     if sys.platform.startswith("linux"):
         return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -34,13 +34,13 @@ class Window:
 
     @property
     def open(self) -> bool:
-        """Whether the user has not closed it."""
+        """Whether the window is still open."""
         from matplotlib import pyplot
 
         return pyplot.fignum_exists(self.figure.number)
 
     def refresh(self, seconds: float) -> None:
-        """Show what was drawn into the canvas, and let the window live for some time."""
+        """Show the canvas and process window events for this long."""
         canvas: Any = self.figure.canvas
         if not self._shown:
             canvas.manager.show()
@@ -50,27 +50,30 @@ class Window:
         canvas.start_event_loop(max(seconds, 1e-3))
 
     def wait(self) -> None:
-        """Until the user closes it."""
+        """Wait until the user closes the window."""
         from matplotlib import pyplot
 
         while self.open:
             pyplot.pause(0.1)
 
     def close(self) -> None:
-        """Remove it from the screen."""
+        """Close the window."""
         from matplotlib import pyplot
 
         pyplot.close(self.figure)
 
 
 def open_window(size: tuple[float, float], dpi: float, *, full: bool, title: str) -> Window | None:
-    """A new window, or None where none can be had.
+    """Open a new window.
 
     Args:
-        size: Of the figure [px].
+        size: Width and height of the figure [px].
         dpi: Pixels per inch.
         full: Fill the screen.
-        title: Of the window.
+        title: Title of the window.
+
+    Returns:
+        The window, or None without a screen or a GUI toolkit.
     """
     if not has_screen():
         return None
@@ -78,11 +81,11 @@ def open_window(size: tuple[float, float], dpi: float, *, full: bool, title: str
 
     try:
         figure = pyplot.figure(num=None, figsize=inches(size, dpi), dpi=dpi, FigureClass=LiveFigure)
-    except Exception:  # toolkits raise errors of their own when they find no screen
+    except Exception:  # without a screen, each toolkit raises its own kind of error
         return None
     manager = figure.canvas.manager
     if (
-        pyplot.get_backend().lower() in _WITHOUT_WINDOW
+        pyplot.get_backend().lower() in _WINDOWLESS_BACKENDS
         or manager is None
         or not hasattr(figure.canvas, "copy_from_bbox")
     ):

@@ -1,1 +1,1 @@
-"""Pictures that a scenario's `description` may name; drawn by ``python -m irsim.graphics.images``."""
+"""Bundled pictures that the key `description` of a scenario can name; drawn by ``python -m irsim.graphics.images``."""

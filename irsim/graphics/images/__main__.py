@@ -8,20 +8,24 @@ from PIL import Image, ImageDraw
 
 Rgb = tuple[int, int, int]
 
-_OVERSAMPLED = 4
+_OVERSAMPLING = 4
+"""Pictures are drawn this many times larger and then reduced, for smooth edges."""
 _CARS: dict[str, Rgb] = {"car_green.png": (0, 158, 115), "car_blue.png": (0, 114, 178), "car_red.png": (204, 51, 17)}
 _ROBOTS: dict[str, Rgb] = {"diff_robot0.png": (0, 158, 115), "diff_robot1.png": (230, 159, 0)}
-_TYRE, _GLASS, _LAMP, _BRAKE = (35, 38, 42), (52, 70, 84), (255, 236, 160), (150, 20, 20)
+_TYRE: Rgb = (35, 38, 42)
+_GLASS: Rgb = (52, 70, 84)
+_LAMP: Rgb = (255, 236, 160)
+_BRAKE: Rgb = (150, 20, 20)
 
 
 def shade(color: Rgb, factor: float) -> Rgb:
-    """Darker (below 1) or lighter (above) of the same hue."""
+    """Make a colour darker (factor below 1) or lighter (above 1)."""
     red, green, blue = (min(255, round(level * factor)) for level in color)
     return red, green, blue
 
 
 def car(color: Rgb, width: int = 368, height: int = 160) -> Image.Image:
-    """A car whose body fills the picture."""
+    """Draw a car whose body fills the picture."""
     image, pen, u = _canvas(width, height)
 
     def box(x0: float, y0: float, x1: float, y1: float, radius: float, fill: Rgb) -> None:
@@ -46,7 +50,7 @@ def car(color: Rgb, width: int = 368, height: int = 160) -> Image.Image:
 
 
 def round_robot(color: Rgb, size: int = 200) -> Image.Image:
-    """A disc on two wheels with a sensor; the dark wedge is its front."""
+    """Draw a disc on two wheels with a sensor; a dark wedge marks the front."""
     image, pen, u = _canvas(size, size)
     middle = size / 2
 
@@ -66,8 +70,8 @@ def round_robot(color: Rgb, size: int = 200) -> Image.Image:
 
 
 def _canvas(width: int, height: int) -> tuple[Image.Image, ImageDraw.ImageDraw, int]:
-    image = Image.new("RGBA", (width * _OVERSAMPLED, height * _OVERSAMPLED), (255, 255, 255, 0))
-    return image, ImageDraw.Draw(image), _OVERSAMPLED
+    image = Image.new("RGBA", (width * _OVERSAMPLING, height * _OVERSAMPLING), (255, 255, 255, 0))
+    return image, ImageDraw.Draw(image), _OVERSAMPLING
 
 
 def main(folder: Path = Path(__file__).parent) -> None:

@@ -1,1 +1,1 @@
-"""A scene as data: bodies, labels, colours, styles."""
+"""The scene, a picture as plain data: bodies, labels, colours, styles."""

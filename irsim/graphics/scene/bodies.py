@@ -1,4 +1,4 @@
-"""Shapes in the body frame, and moved to a pose."""
+"""Shapes of objects in the body frame, and their transformation to a pose."""
 
 from __future__ import annotations
 
@@ -18,20 +18,26 @@ __all__ = ["Body", "Pose", "arrow", "bounds", "box", "ellipse", "picture_outline
 Pose = tuple[float, float, float]
 """x, y [m] and heading [rad]."""
 
-_SHAFT, _HEAD, _NECK = 0.1, 0.3, 0.6
+_SHAFT_HALF_WIDTH = 0.1
+"""Half the width of the shaft of an arrow, as a share of the width given."""
+_HEAD_HALF_WIDTH = 0.3
+"""Half the width of the head of an arrow, as a share of the width given."""
+_SHAFT_LENGTH = 0.6
+"""Length of the shaft, as a share of the length of the arrow."""
 _ELLIPSE_POINTS = 64
-_UNION_SEGMENTS = 32
+_SEGMENTS_PER_QUARTER = 32
+"""Number of segments that stand for a quarter circle where shapes are united."""
 
 
 @dataclass(slots=True)
 class Body:
-    """What an object looks like in its own frame.
+    """Shape of an object in its own frame.
 
     Attributes:
         kind: ``circle``, ``polygon``, ``linestring`` or ``compound``.
-        geometry: The shape; the union of the parts of a compound.
-        low, high: Corners of its bounding box [m].
-        radius: Radius of the smallest circle round it [m].
+        geometry: The shape; for a compound, the union of its parts.
+        low, high: Corners of the bounding box [m].
+        radius: Radius of the bounding circle [m].
     """
 
     kind: str
@@ -57,7 +63,7 @@ class Body:
 
 
 def read_body(state: State, row: int) -> Body:
-    """The shape of one row of the simulation."""
+    """Read the shape of the object in one row of the simulation."""
     geometries: list[Geometry] = []
     kinds = state.parts(row)
     for part, kind in enumerate(kinds):
@@ -83,7 +89,7 @@ def read_body(state: State, row: int) -> Body:
 
 
 def place(geometry: Geometry, pose: Pose) -> Geometry:
-    """``geometry`` turned by the heading of ``pose`` and moved there."""
+    """Transform a geometry from the body frame to a pose."""
     x, y, theta = pose
     c, s = math.cos(theta), math.sin(theta)
     if isinstance(geometry, Circle):
@@ -93,38 +99,38 @@ def place(geometry: Geometry, pose: Pose) -> Geometry:
         return Region([ring @ turn + (x, y) for ring in geometry.rings])
     if isinstance(geometry, Line):
         return Line(geometry.points @ turn + (x, y))
-    raise TypeError(f"a {type(geometry).__name__} is not part of a body")
+    raise TypeError(f"a body must consist of circles, regions and lines, got a {type(geometry).__name__}")
 
 
 def arrow(length: float, width: float) -> Region:
-    """An arrow along body x that starts at the origin; the head is 0.6 ``width`` across [m]."""
-    shaft, head, neck = _SHAFT * width, _HEAD * width, _NECK * length
+    """Make an arrow along body x that starts at the origin; its head is 0.6 ``width`` wide [m]."""
+    shaft, head, neck = _SHAFT_HALF_WIDTH * width, _HEAD_HALF_WIDTH * width, _SHAFT_LENGTH * length
     outline = [(0, -shaft), (neck, -shaft), (neck, -head), (length, 0), (neck, head), (neck, shaft), (0, shaft)]
     return Region([np.array(outline, dtype=np.float64)])
 
 
 def box(body: Body) -> Region:
-    """The bounding box of a body."""
+    """Return the bounding box of a body as a region."""
     (x0, y0), (x1, y1) = body.low, body.high
     return Region([np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], dtype=np.float64)])
 
 
 def ellipse(body: Body) -> Region:
-    """The ellipse inscribed in the bounding box of a body."""
+    """Return the ellipse inscribed in the bounding box of a body."""
     angles = np.linspace(0, 2 * math.pi, _ELLIPSE_POINTS, endpoint=False)
     (x, y), rx, ry = body.middle, body.length / 2, body.width / 2
     return Region([np.stack([x + rx * np.cos(angles), y + ry * np.sin(angles)], axis=1)])
 
 
 def picture_outline(picture: Picture) -> Geometry:
-    """The rectangle an image covers."""
+    """Return the rectangle that an image covers."""
     x, y, length, width = picture.box
     corners = [(x, y), (x + length, y), (x + length, y + width), (x, y + width)]
     return place(Region([np.array(corners, dtype=np.float64)]), picture.pose)
 
 
 def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
-    """Left, bottom, right, top."""
+    """Return left, bottom, right and top of a geometry [m]."""
     if isinstance(geometry, Circle | Sector):
         x, y, r = geometry.x, geometry.y, geometry.radius
         return x - r, y - r, x + r, y + r
@@ -134,17 +140,19 @@ def bounds(geometry: Geometry) -> tuple[float, float, float, float]:
 
 
 def _union(geometries: list[Geometry]) -> Geometry:
-    """One outline for overlapping parts, so that a translucent compound has no darker overlaps."""
+    """Unite overlapping parts in one outline, so that a translucent compound has no darker overlaps."""
     import shapely
 
     shapes = []
     for geometry in geometries:
         if isinstance(geometry, Circle):
-            shapes.append(shapely.Point(geometry.x, geometry.y).buffer(geometry.radius, quad_segs=_UNION_SEGMENTS))
+            shapes.append(
+                shapely.Point(geometry.x, geometry.y).buffer(geometry.radius, quad_segs=_SEGMENTS_PER_QUARTER)
+            )
         elif isinstance(geometry, Region):
             shapes.append(shapely.Polygon(geometry.rings[0]))
         else:
-            raise TypeError(f"a {type(geometry).__name__} cannot be part of a compound")
+            raise TypeError(f"a compound must consist of circles and regions, got a {type(geometry).__name__}")
     union = shapely.union_all(shapes)
     rings: list[Floats] = []
     for polygon in getattr(union, "geoms", [union]):

@@ -1,4 +1,4 @@
-"""Colours of everything drawn, one name each; the colours themselves are those of :mod:`irsim.options.colors`."""
+"""The palette: a colour for each kind of drawing; those of objects come from :mod:`irsim.options.colors`."""
 
 from __future__ import annotations
 
@@ -9,18 +9,22 @@ from irsim.options.colors import ACKER_COLOR, CYCLE, OBSTACLE_COLOR, PUSHABLE_CO
 __all__ = ["Color", "Palette"]
 
 Color = str | tuple[float, ...]
-"""Anything Matplotlib reads as a colour: a name, ``#rrggbb``, a grey level, or an RGB(A) tuple of 0..1."""
+"""A colour that Matplotlib accepts: a name, ``#rrggbb``, a grey level, or an RGB(A) tuple of 0..1."""
 
-_SKY, _BLUE, _PINK, _YELLOW, _RED = "#56B4E9", "#0072B2", "#CC79A7", "#F0E442", "#CC3311"
-"""Okabe and Ito: Color Universal Design (2008); the red is of Paul Tol's vibrant scheme."""
+# Okabe and Ito: Color Universal Design (2008); the red comes from Paul Tol's vibrant scheme.
+_SKY = "#56B4E9"
+_BLUE = "#0072B2"
+_PINK = "#CC79A7"
+_YELLOW = "#F0E442"
+_RED = "#CC3311"
 
 
 @dataclass
 class Palette:
-    """One colour per kind of drawing; scenario and code override them.
+    """One colour per kind of drawing; a scenario or a script can override them.
 
     Attributes:
-        robot: Robots of every drive but ``acker``.
+        robot: Robots with any drive except ``acker``.
         robot_acker: Car-like robots.
         obstacle: Obstacles and maps.
         pushable: Objects without a drive that contact may push.
@@ -28,11 +32,12 @@ class Palette:
         fov, fov_edge: View sector and its outline.
         lidar: Beams.
         laser_highlight: Beams picked out by ``set_laser_color``.
-        fmcw_zero_velocity, fmcw_positive_velocity, fmcw_negative_velocity: Doppler beams: still, receding, approaching.
-        marker: ``draw_points``.
-        path: ``draw_trajectory`` and ``draw_box``.
-        quiver: ``draw_quiver``.
-        cycle: Handed out in turn by ``color: cycle``.
+        fmcw_zero_velocity, fmcw_positive_velocity, fmcw_negative_velocity: Doppler beams whose target keeps its
+            distance, recedes, approaches.
+        marker: Points of ``draw_points``.
+        path: Lines of ``draw_trajectory`` and ``draw_box``.
+        quiver: Arrows of ``draw_quiver``.
+        cycle: Colours that ``color: cycle`` assigns in turn.
     """
 
     robot: str = ROBOT_COLOR
@@ -53,5 +58,5 @@ class Palette:
     cycle: list[str] = field(default_factory=lambda: list(CYCLE))
 
     def cycle_color(self, index: int) -> str:
-        """Colour of the ``index``-th object of a group drawn with ``color: cycle``."""
+        """Return the colour of the object with this index in a group drawn with ``color: cycle``."""
         return self.cycle[index % len(self.cycle)]

@@ -1,8 +1,8 @@
-"""What a picture of the simulation contains, as plain data in world coordinates: no drawing library, JSON-able.
+"""The scene: the content of a picture as plain data in world coordinates, independent of any drawing library.
 
-The class :class:`irsim.objects.drawing.scene_builder.SceneBuilder` makes a :class:`Scene` from the state of one world;
-the Matplotlib figure draws it, and :meth:`Scene.as_dict` is what a replay in a web page reads. All lengths are in
-metres, angles in radians, colours as the user wrote them; ``zorder`` is the layer: higher ones cover lower ones.
+:class:`irsim.objects.drawing.scene_builder.SceneBuilder` makes a :class:`Scene` from the state of one world. The
+Matplotlib figure draws it, and a replay in a web page reads it as JSON (:meth:`Scene.as_dict`). Lengths are in metres,
+angles in radians, and colours as the user wrote them; marks of a higher ``zorder`` cover those of a lower one.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Circle:
 
 @dataclass(slots=True, eq=False)
 class Region:
-    """A filled area. ``rings``: (M, 2) outlines; the first of a part counter-clockwise, holes clockwise."""
+    """A filled area. ``rings``: (M, 2) rings; outlines run counter-clockwise, holes clockwise."""
 
     rings: list[Floats]
 
@@ -79,7 +79,12 @@ class Sector:
 Geometry = Circle | Region | Line | Sector
 
 _OCCUPIED = 50
-_CORNERS, _FARTHEST, _SMALLEST = 4, 1e7, 1e-3
+"""Cells with a higher occupancy (0 to 100) count as occupied."""
+_REGION_VALUES = 4
+MAX_COORDINATE_M = 1e7
+"""Largest absolute coordinate of a region [m]."""
+MIN_REGION_SIDE_M = 1e-3
+"""Smallest side of a region [m]."""
 
 
 @dataclass(slots=True, eq=False)
@@ -87,10 +92,11 @@ class Stroke:
     """Outline of a mark.
 
     Attributes:
-        color: None draws no outline.
-        width: In points, or in metres when ``metric``.
+        color: Colour; None draws no outline.
+        width: Line width in points, or in metres when ``metric``.
+        metric: Whether ``width`` is in metres.
         style: ``-``, ``--``, ``-.``, ``:`` or their long names.
-        round_caps: Ends of open lines.
+        round_caps: Whether open lines have round ends.
     """
 
     color: Color | None
@@ -102,7 +108,10 @@ class Stroke:
 
 @dataclass(slots=True, eq=False)
 class Mark:
-    """Something with a shape: body, goal, arrow, view sector, trajectory or trail snapshot (``part``) of an object."""
+    """A shape that shows one part of an object.
+
+    ``part`` says which: body, goal, arrow, view sector, trajectory, trail snapshot, …
+    """
 
     object: int
     part: str
@@ -115,7 +124,7 @@ class Mark:
 
 @dataclass(slots=True, eq=False)
 class Label:
-    """Text whose left end of the baseline is at ``x, y``; ``anchor`` is the position of what it names."""
+    """A text. Its baseline starts at ``x, y``; ``anchor`` is the position of the thing that it names."""
 
     object: int
     part: str
@@ -145,8 +154,8 @@ class Dots:
 class Beams:
     """One scan: lines from ``origin`` to ``ends`` (B, 2).
 
-    ``highlights`` are (beam, colour, alpha) of beams that differ from the rest. ``colors`` (B, 4) RGBA and ``widths``
-    (B,) in points are there when each beam has its own, ``dots`` when hits are marked.
+    ``highlights`` lists (beam, colour, alpha) of the beams that differ from the others. ``colors`` (B, 4) RGBA and
+    ``widths`` (B,) in points are given if each beam has its own, and ``dots`` if hits are marked.
     """
 
     object: int
@@ -164,7 +173,7 @@ class Beams:
 
 @dataclass(slots=True, eq=False)
 class Fog:
-    """What nobody has seen yet: ``explored`` (nx, ny) tells which cells over ``extent`` are clear."""
+    """Fog over the unexplored area; ``explored`` (nx, ny) marks the cells of ``extent`` that are free of fog."""
 
     explored: NDArray[np.bool_]
     extent: tuple[float, float, float, float]
@@ -175,9 +184,10 @@ class Fog:
 
 @dataclass(slots=True, eq=False)
 class Picture:
-    """An image in place of a body: ``box`` (x, y, length, width) in the body frame, moved to the pose.
+    """An image in place of a body.
 
-    What is colourful in it is drawn in the hue ``tint``, unless that is None.
+    ``box`` (x, y, length, width) is in the body frame, which ``pose`` places in the world. The colourful parts of the
+    image are drawn in the hue ``tint``, unless that is None.
     """
 
     object: int
@@ -207,8 +217,8 @@ class Scene:
         time: Simulated seconds.
         status: The environment's status word.
         extent: The world: x from, x to, y from, y to.
-        center: Point the view is centred on; None shows the world.
-        fog: None in a world without fog.
+        center: Centre of the view; None shows the whole world.
+        fog: The fog, or None in a world without fog.
     """
 
     time: float
@@ -223,40 +233,43 @@ class Scene:
     grids: list[GridImage] = field(default_factory=list)
 
     def look_at(self, extent: tuple[float, float, float, float]) -> None:
-        """Show this instead: x from, x to, y from, y to."""
+        """Show this part of the world instead: x from, x to, y from, y to."""
         self.extent, self.center = extent, None
 
     def of(self, object_id: int, part: str) -> Iterator[Mark]:
-        """The marks that show ``part`` of one object."""
+        """Iterate over the marks that show a part of one object."""
         return (mark for mark in self.marks if mark.object == object_id and mark.part == part)
 
     def as_dict(self) -> dict[str, Any]:
-        """The scene as lists, mappings, numbers and text; geometries carry their kind."""
+        """Convert the scene to lists, dictionaries, numbers and strings; each geometry has a key ``kind``."""
         plain: dict[str, Any] = _plain(self)
         return plain
 
 
 class RegionError(ArgumentError):
-    """There is no such part of a world."""
+    """The region is not a valid part of a world."""
 
     where = "region"
 
 
 def region_extent(region: Sequence[float]) -> tuple[float, float, float, float]:
-    """X from, x to, y from, y to of a part of a world given as x_min, y_min, x_max, y_max [m].
+    """Convert a region from (x_min, y_min, x_max, y_max) to (x from, x to, y from, y to) [m].
 
     Raises:
-        RegionError: It is none.
+        RegionError: The region is empty, too large, or does not have four numbers.
     """
     corners = [float(value) for value in region]
-    if len(corners) == _CORNERS and all(abs(value) <= _FARTHEST for value in corners):
+    if len(corners) == _REGION_VALUES and all(abs(value) <= MAX_COORDINATE_M for value in corners):
         x0, y0, x1, y1 = corners
-        if x1 - x0 >= _SMALLEST and y1 - y0 >= _SMALLEST:
+        if x1 - x0 >= MIN_REGION_SIDE_M and y1 - y0 >= MIN_REGION_SIDE_M:
             return x0, x1, y0, y1
     given = ", ".join(f"{value:g}" for value in corners)
-    sizes = f"x_max and y_max at least {_SMALLEST:g} m beyond x_min and y_min, all within {_FARTHEST:g} m of 0"
+    limits = (
+        f"x_max and y_max must exceed x_min and y_min by at least {MIN_REGION_SIDE_M:g} m, "
+        f"and all must lie within {MAX_COORDINATE_M:g} m of 0"
+    )
     raise RegionError(
-        f"there is no region {given}", f"give x_min, y_min, x_max, y_max in metres, in this order: {sizes}"
+        f"region {given} is not valid", f"give x_min, y_min, x_max, y_max in metres, in this order; {limits}"
     )
 
 
@@ -278,7 +291,7 @@ def _plain(value: Any) -> Any:
 
 
 def _plain_grid(grid: GridImage) -> dict[str, Any]:
-    """Occupied cells as run lengths: row by row from the lowest, free and occupied in turn, free first."""
+    """Encode occupied cells as run lengths: row by row from the lowest, alternately free and occupied, free first."""
     full = (grid.levels.T > _OCCUPIED).ravel()
     ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
     runs = np.diff(np.concatenate([[0], ends, [full.size]])).tolist()

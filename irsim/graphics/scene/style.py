@@ -1,4 +1,4 @@
-"""How one object is drawn: its `plot` keys, what the object itself decides, and the overrides of a frame."""
+"""The style of one object: its `plot` keys, defaults that depend on the object, and the overrides of a frame."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ __all__ = ["STYLE_KEYS", "ObjectStyle", "resolve_style", "tint_of"]
 
 @dataclass(slots=True)
 class ObjectStyle:
-    """The plot keys of the scenario language (:class:`irsim.scenario.model.plot.ObjectPlot`), nothing left open.
+    """The plot keys of the scenario language (:class:`irsim.scenario.model.plot.ObjectPlot`), all with a value.
 
-    Lengths are metres; line widths and text sizes are points.
+    Lengths are in metres, line widths and text sizes in points.
     """
 
     obj_color: Color
@@ -72,9 +72,10 @@ class ObjectStyle:
 
 
 STYLE_KEYS = frozenset(entry.name for entry in fields(ObjectStyle)) - {"image_zorder"}
-"""The keys that a scenario's `plot` and ``env.render(...)`` understand."""
+"""Keys that the section `plot` of an object and ``env.render(...)`` accept."""
 
-_TEXT_GAP = 0.1
+_TEXT_GAP_M = 0.1
+"""Default distance between a label and the bounding circle of its object [m]."""
 
 
 def resolve_style(
@@ -87,48 +88,48 @@ def resolve_style(
     palette: Palette,
     overrides: Mapping[str, Any],
 ) -> ObjectStyle:
-    """The style of one object.
+    """Return the style of one object.
 
     Args:
         record: The object.
-        color: Its colour.
+        color: Colour of the object.
         shape: ``circle``, ``polygon``, ``linestring`` or ``compound``.
         radius: Radius of the bounding circle [m].
         width: Extent along body y [m], the default width of the trajectory.
-        palette: Colours of arrows and view sectors, where the scenario chose none.
-        overrides: Keys given for this frame; they win. None stands for "not given".
+        palette: Default colours of arrows and view sectors.
+        overrides: Keys given for this frame, which take precedence. A value of None counts as not given.
     """
     plot = record.plot
     values: dict[str, Any] = {key: value for key, value in plot.__dict__.items() if key in STYLE_KEYS}
-    for key, standard in (
+    for key, default in (
         ("arrow_color", palette.arrow),
         ("fov_color", palette.fov),
         ("fov_edge_color", palette.fov_edge),
     ):
         if key not in plot.model_fields_set:
-            values[key] = standard
+            values[key] = default
     values.update((key, value) for key, value in overrides.items() if key in STYLE_KEYS and value is not None)
-    own = {
+    defaults = {
         "obj_color": color,
         "goal_color": color,
         "traj_color": color,
         "trail_color": color,
         "trail_edgecolor": color,
         "traj_width": width,
-        "text_position": (-radius - _TEXT_GAP, radius + _TEXT_GAP),
+        "text_position": (-radius - _TEXT_GAP_M, radius + _TEXT_GAP_M),
         "trail_type": shape,
         "show_arrow": getattr(record.kinematics, "arrow", False) and not record.static,
         "image_zorder": 2.0 if values["obj_zorder"] is None else values["obj_zorder"],
         "obj_zorder": 3.0 if record.role == "robot" else 1.0,
     }
-    values.update((key, value) for key, value in own.items() if values.get(key) is None)
+    values.update((key, value) for key, value in defaults.items() if values.get(key) is None)
     return ObjectStyle(**values)
 
 
 def tint_of(record: ObjectRecord, image: str, color: Color) -> Color | None:
-    """The colour that the image of a drive takes on: that of the object, if somebody chose one.
+    """Return the hue in which the image of an object is drawn, or None to leave the image as it is.
 
-    An image that the scenario names is drawn as it is.
+    Only the default image of a drive is tinted, and only if the object has another colour than its default.
     """
     drive = record.kinematics
     if drive is None or image != getattr(drive, "picture", None) or color == "none":

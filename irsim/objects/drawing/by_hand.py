@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.objects.base import SimObject
+
 if TYPE_CHECKING:
     from irsim.graphics.figure.pictures import Pictures
     from irsim.objects.drawing.scene_builder import SceneBuilder
-    from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObjectDrawing"]
 
@@ -46,7 +47,7 @@ class PlotKeys(dict[str, Any]):
         self._view.record = replace(record, plot=type(record.plot).model_validate(dict(self)))
 
 
-class ObjectDrawing:
+class ObjectDrawing(SimObject):
     """Part of :class:`irsim.objects.view.ObjectView`.
 
     Every ``plot_*`` adds what it draws to some axes, by default those of the environment, and lists it here until
@@ -58,17 +59,6 @@ class ObjectDrawing:
         plot_patch_list, plot_line_list, plot_text_list, plot_trail_list: Artists by kind.
         object_patch, object_img, goal_patch, arrow_patch, fov_patch, trajectory_line: What was drawn last, or None.
     """
-
-    if TYPE_CHECKING:
-        _simulation: Simulation
-        world: int
-        row: int
-        shape: Any
-        kinematics: Any
-        sensors: list[Any]
-        description: Any
-        record: Any
-        trajectory: Any
 
     object_patch: Any = None
     object_img: Any = None
@@ -131,7 +121,7 @@ class ObjectDrawing:
         if self.shape == "map":
             self.plot_object(axes)
             return
-        style = self._builder().style(self, kwargs)  # type: ignore[arg-type]
+        style = self._builder().style(self, kwargs)
         if self.description is None or not self.plot_object_image(axes, state, **kwargs):
             self.plot_object(axes, state, vertices, **kwargs)
         for wanted, draw in (
@@ -150,7 +140,7 @@ class ObjectDrawing:
                 draw_at(axes, state, **kwargs)
         for sensor in self.sensors if style.show_sensor else ():
             if hasattr(sensor, "plot"):
-                sensor.plot(axes, self.state if state is None else state)  # type: ignore[attr-defined]
+                sensor.plot(axes, self.state if state is None else state)
 
     def plot_object(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
         """Draw the body; of a map, its cells. ``vertices`` as in :meth:`plot`."""
@@ -160,7 +150,7 @@ class ObjectDrawing:
         if self.shape == "map":
             from irsim.graphics.figure.artists import add_grid
 
-            self.object_img = add_grid(axes, self._builder().grid(self))  # type: ignore[arg-type]
+            self.object_img = add_grid(axes, self._builder().grid(self))
             self.plot_patch_list.append(self.object_img)
             return
         mark = self._mark("body", state, kwargs)
@@ -185,7 +175,7 @@ class ObjectDrawing:
         images = self._images()
         if axes is None or name is None or not images.has(name):
             return False
-        style = self._builder().style(self, kwargs)  # type: ignore[arg-type]
+        style = self._builder().style(self, kwargs)
         body, pose = read_body(self._simulation.state, self.row), self._pose_of(state)
         box = (*body.low, body.length, body.width)
         tint = tint_of(self.record, name, style.obj_color)
@@ -276,7 +266,7 @@ class ObjectDrawing:
             return
         pose = None if state is None else self._pose_of(state)
         keys = {**kwargs, "show_text": True}
-        labels = self._builder().drawn_alone(self, keys, pose)[1]  # type: ignore[arg-type]
+        labels = self._builder().drawn_alone(self, keys, pose)[1]
         self.plot_text_list.extend(add_label(axes, label) for label in labels)
 
     def plot_trajectory(
@@ -288,14 +278,14 @@ class ObjectDrawing:
     ) -> None:
         """Draw the line of its states, or of a list of states; nothing for fewer than two."""
         axes = self._on(ax)
-        states = self.trajectory if trajectory is None else trajectory
+        states = self._simulation.state.trajectory(self.row) if trajectory is None else trajectory
         rows = np.array([np.asarray(state, dtype=float).reshape(-1)[:3] for state in states])
         if axes is None or len(rows) < 2:
             return
         if rows.shape[1] < 3:
             rows = np.hstack([rows, np.zeros((len(rows), 1))])
         keys = {**kwargs, "keep_traj_length": keep_traj_length}
-        self.trajectory_line = self._add(axes, self._builder().path_of(self, rows, keys))  # type: ignore[arg-type]
+        self.trajectory_line = self._add(axes, self._builder().path_of(self, rows, keys))
 
     def plot_trail(
         self,
@@ -370,7 +360,7 @@ class ObjectDrawing:
 
     def _mark(self, part: str, state: Any, keys: dict[str, Any], goal: Any = None) -> Any:
         pose = None if state is None else self._pose_of(state)
-        marks = self._builder().drawn_alone(self, keys, pose, goal)[0]  # type: ignore[arg-type]
+        marks = self._builder().drawn_alone(self, keys, pose, goal)[0]
         return next(mark for mark in marks if mark.part == part)
 
     def _add(self, axes: Any, mark: Any) -> Any:

@@ -30,11 +30,10 @@ from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
 from irsim.objects.sensors.lidar import Lidar2D
 from irsim.objects.sensors.lidar_drawing import draw_scan
-from irsim.objects.view import views
 from irsim.simulation.fog import FOG_COLOR
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["MODES", "SceneBuilder"]
@@ -139,7 +138,7 @@ class SceneBuilder:
             fog=self._fog(),
         )
         overrides = overrides or {}
-        objects = views(simulation, self.world)
+        objects = simulation.views(self.world)
         poses = simulation.pose[objects[0].row : objects[-1].row + 1].tolist() if objects else []
         goals = simulation.goal[objects[0].row : objects[-1].row + 1].tolist() if objects else []
         for view, pose, goal in zip(objects, poses, goals, strict=True):
@@ -155,14 +154,14 @@ class SceneBuilder:
         return scene
 
     # one object ------------------------------------------------------------------------------------------------------
-    def body(self, view: ObjectView) -> Body:
+    def body(self, view: SimObject) -> Body:
         """Shape of an object in its own frame."""
         body = self._bodies.get(view.id)
         if body is None:
             body = self._bodies[view.id] = read_body(self.simulation.state, view.row)
         return body
 
-    def style(self, view: ObjectView, overrides: Mapping[str, Any]) -> ObjectStyle:
+    def style(self, view: SimObject, overrides: Mapping[str, Any]) -> ObjectStyle:
         """Resolved plot keys of an object."""
         key = (view.record.plot, view.color, overrides)
         cached = self._styles.get(view.id)
@@ -181,7 +180,7 @@ class SceneBuilder:
         self._styles[view.id] = (view.record.plot, view.color, dict(overrides)), style
         return style
 
-    def _add(self, scene: Scene, view: ObjectView, pose: Pose, goal: list[float], overrides: Mapping[str, Any]) -> None:
+    def _add(self, scene: Scene, view: SimObject, pose: Pose, goal: list[float], overrides: Mapping[str, Any]) -> None:
         if view.shape == "map":
             scene.grids.append(self._grid(view))
             return
@@ -204,7 +203,7 @@ class SceneBuilder:
                 start = self.simulation.state.initial_state(view.row)[None, :3]
                 scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
 
-    def _grid(self, view: ObjectView) -> GridImage:
+    def _grid(self, view: SimObject) -> GridImage:
         """The image of a map, made once per scene."""
         if view.id not in self._grids:
             grid = self.simulation.scenario.grid
@@ -217,7 +216,7 @@ class SceneBuilder:
             self._grids[view.id] = GridImage(view.id, levels, (x, x + nx * dx, y, y + ny * dy), _GRID_ZORDER)
         return self._grids[view.id]
 
-    def _heading(self, view: ObjectView, pose: Pose) -> float:
+    def _heading(self, view: SimObject, pose: Pose) -> float:
         if view.kinematics != "omni":
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
@@ -236,7 +235,7 @@ class SceneBuilder:
 
     def drawn_alone(
         self,
-        view: ObjectView,
+        view: SimObject,
         overrides: Mapping[str, Any],
         pose: Pose | None = None,
         goal: Sequence[float] | None = None,
@@ -256,20 +255,20 @@ class SceneBuilder:
         drawn = _draw(view, body, style, placed, heading, shown, (), self._has_picture)
         return drawn.marks, drawn.labels, drawn.picture
 
-    def path_of(self, view: ObjectView, states: Floats, overrides: Mapping[str, Any]) -> Mark:
+    def path_of(self, view: SimObject, states: Floats, overrides: Mapping[str, Any]) -> Mark:
         """The line through (N, 3 or more) states of an object."""
         return _trajectory(view.id, self.body(view), self.style(view, overrides), states)
 
-    def trail_mark(self, view: ObjectView, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
+    def trail_mark(self, view: SimObject, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
         """One snapshot of an object at a pose."""
         return _trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
 
-    def grid(self, view: ObjectView) -> GridImage:
+    def grid(self, view: SimObject) -> GridImage:
         """The image of a map."""
         return self._grid(view)
 
     # sensors ---------------------------------------------------------------------------------------------------------
-    def _add_beams(self, scene: Scene, objects: Sequence[ObjectView], overrides: Mapping[str, Any], mode: str) -> None:
+    def _add_beams(self, scene: Scene, objects: Sequence[SimObject], overrides: Mapping[str, Any], mode: str) -> None:
         for view in objects:
             chosen = mode == "all" or (mode == "static") == view.static
             if not view.sensors or not self.style(view, overrides if chosen else {}).show_sensor:
@@ -293,7 +292,7 @@ class SceneBuilder:
 
 
 def _draw(
-    view: ObjectView,
+    view: SimObject,
     body: Body,
     style: ObjectStyle,
     pose: Pose,

@@ -13,7 +13,7 @@ from irsim.diagnostics.errors import BehaviorError, ScenarioError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
@@ -74,10 +74,8 @@ class PythonBehaviors:
             worlds: Where.
             anew: Also where there are some already.
         """
-        from irsim.objects.view import views
-
         for world in worlds:
-            objects = views(self._simulation, world)
+            objects = self._simulation.views(world)
             for index in self.objects:
                 view = objects[index]
                 key = (world, view.id, "behavior")
@@ -92,7 +90,7 @@ class PythonBehaviors:
                     chosen = [objects[index] for index in group]
                     self._construct(key, maker, chosen, _written(leader.record.group_behavior))
 
-    def forget(self, view: ObjectView) -> None:
+    def forget(self, view: SimObject) -> None:
         """Drop what was constructed for an object."""
         self._instances.pop((view.world, view.id, "behavior"), None)
 
@@ -105,10 +103,8 @@ class PythonBehaviors:
 
     def __call__(self, simulation: Simulation) -> None:
         """Fill ``command`` of the rows that are theirs; a group acts before its members' own behaviors."""
-        from irsim.objects.view import views
-
         for world in range(simulation.copies):
-            objects = views(simulation, world)
+            objects = simulation.views(world)
             for group in self.groups:
                 self._decide_group(world, [objects[index] for index in group])
             for index in self.objects:
@@ -118,7 +114,7 @@ class PythonBehaviors:
                 name = _name(view.record.behavior)
                 _impose(simulation, view, name, self.control(view))
 
-    def control(self, view: ObjectView) -> Any:
+    def control(self, view: SimObject) -> Any:
         """What user code wants one object to do.
 
         Raises:
@@ -133,7 +129,7 @@ class PythonBehaviors:
         others = [o for o in view.environment_objects if o is not view and roles in ("all", o.role)]
         return act(ego_object=view, external_objects=others, **_written(options))
 
-    def _decide_group(self, world: int, members: list[ObjectView]) -> None:
+    def _decide_group(self, world: int, members: list[SimObject]) -> None:
         leader, simulation = members[0], self._simulation
         options = leader.record.group_behavior
         name = _name(options)
@@ -169,11 +165,11 @@ def _is_own(record: ObjectRecord, options: Any, table: CustomBehaviors) -> bool:
     return table.has(_name(record.kinematics), name) or BEHAVIORS.get(name) is None
 
 
-def _impose(simulation: Simulation, view: ObjectView, name: str, control: Any) -> None:
+def _impose(simulation: Simulation, view: SimObject, name: str, control: Any) -> None:
     simulation.impose(view.row, _checked(control, name, view))
 
 
-def _unknown(simulation: Simulation, view: ObjectView, name: str) -> ScenarioError:
+def _unknown(simulation: Simulation, view: SimObject, name: str) -> ScenarioError:
     """Nothing has registered the behavior by the time it is needed."""
     known = [*BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(view.kinematics)]
     finding = Diagnostic(
@@ -189,7 +185,7 @@ def _unknown(simulation: Simulation, view: ObjectView, name: str) -> ScenarioErr
     return ScenarioError([finding], simulation.scenario.text)
 
 
-def _checked(control: object, name: str, view: ObjectView) -> NDArray[np.float64]:
+def _checked(control: object, name: str, view: SimObject) -> NDArray[np.float64]:
     """What a behavior returned, as finite control components."""
     problem = f"behavior-failed: behavior {name!r} of {view.name!r} returned"
     if control is None:
@@ -222,7 +218,7 @@ def attach_python_behaviors(simulation: Simulation, *, anew: bool = False) -> No
     part.prepare(range(simulation.copies), anew=anew)
 
 
-def forget_behavior(simulation: Simulation, view: ObjectView) -> None:
+def forget_behavior(simulation: Simulation, view: SimObject) -> None:
     """An object gets another behavior: where that is a class, it is constructed anew when user code is attached."""
     for part in simulation.decisions:
         if isinstance(part, PythonBehaviors):

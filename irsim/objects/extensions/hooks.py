@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.objects.base import SimObject
 
 if TYPE_CHECKING:
-    from irsim.scenario.resolve.resolved import ObjectRecord
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["HOOKS", "Hooks", "ObjectHooks", "overridable"]
@@ -44,16 +44,10 @@ class overridable(Generic[Method]):
         del view.__dict__[self.name]
 
 
-class ObjectHooks:
+class ObjectHooks(SimObject):
     """What an object does in its step; part of :class:`irsim.objects.view.ObjectView`."""
 
-    _simulation: Simulation
     _subclassed: ClassVar[frozenset[str]] = frozenset()
-    record: ObjectRecord
-    row: int
-    static: bool
-    state_dim: int
-    vel_dim: int
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)

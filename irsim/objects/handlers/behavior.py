@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from irsim.objects.handlers import registration as behavior_registry
+from irsim.options.registry import CUSTOM_BEHAVIORS
 
 __all__ = ["Behavior"]
 
@@ -46,9 +46,7 @@ class Behavior:
 
     def _construct(self) -> None:
         name = self.behavior_dict.get("name")
-        maker = behavior_registry.behaviors_class_map.get(
-            (getattr(self.object_info, "kinematics", None) or "", name or "")
-        )
+        maker = CUSTOM_BEHAVIORS.classes.get((getattr(self.object_info, "kinematics", None) or "", name or ""))
         self._made = None
         if maker is None:
             return
@@ -99,7 +97,8 @@ class Behavior:
         Raises:
             ValueError: There is none.
         """
-        behaviors_map = behavior_registry.behaviors_map
+        from irsim.objects.handlers.behavior_maps import behaviors_map
+
         function = behaviors_map.get((kinematics, action))
         if function is None:
             known = sorted(name for drive, name in behaviors_map if drive == kinematics)

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.compat.util import WrapToPi, relative_position, vel_world2diff, vel_world2omni
-from irsim.functions._decide import behavior_options, dash, decide, decide_among
+from irsim.functions._decide import behavior_options, dash, decide
+from irsim.functions.frames import WrapToPi, relative_position, vel_world2diff, vel_world2omni
 from irsim.functions.rvo import reciprocal_vel_obs
 from irsim.functions.social_force import social_force_model
+from irsim.objects.handlers.decide import decide_among
 from irsim.objects.handlers.registration import register_behavior
 from irsim.options.registry import CUSTOM_BEHAVIORS
 

@@ -8,8 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.functions._random import current_rng
+from irsim.functions.inequalities import polygon_inequality
 from irsim.functions.polygons import random_generate_polygon
+from irsim.simulation.active_env import current_rng
 
 __all__ = [
     "CircleGeometry",
@@ -110,7 +111,8 @@ class geometry_handler:
 
     def get_polygon_Gh(self, vertices: Floats | None = None) -> Inequality:
         """``G p <= h`` of a convex polygon (2, M): outward normals, cone ``Rpositive``."""
-        return _NOT_CONVEX if vertices is None else _inequality(np.asarray(vertices, dtype=np.float64).T)
+        found = None if vertices is None else polygon_inequality(np.asarray(vertices, dtype=np.float64).T)
+        return _NOT_CONVEX if found is None else (*found, "Rpositive", True)
 
     def get_circle_Gh(self, center: Floats, radius: float) -> Inequality:
         """``G p <= h`` of a disc, in the cone ``norm2``."""
@@ -351,20 +353,6 @@ def handler_of(view: Any) -> geometry_handler:
     made: geometry_handler = maker(view.shape, body=view.original_geometry, wheelbase=view.wheelbase)
     made.step(view.state)
     return made
-
-
-def _inequality(points: Floats) -> Inequality:
-    """``G p <= h`` of a polygon (M, 2), one row per edge, in counter-clockwise order."""
-    edges = np.roll(points, -1, axis=0) - points
-    ahead = np.roll(edges, -1, axis=0)
-    turns = edges[:, 0] * ahead[:, 1] - edges[:, 1] * ahead[:, 0]
-    if (turns < 0).any() and (turns > 0).any():
-        return _NOT_CONVEX
-    if turns.sum() < 0:
-        points = points[::-1]
-        edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([edges[:, 1], -edges[:, 0]])
-    return normals, (normals * points).sum(axis=1, keepdims=True), "Rpositive", True
 
 
 def _random_vertices(is_convex: bool, keys: dict[str, Any]) -> Any:

@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any
 
-from irsim.objects.handlers import registration as behavior_registry
-from irsim.objects.handlers.registration import group_behaviors_map
+from irsim.objects.handlers.behavior_maps import group_behaviors_class_map, group_behaviors_map
 
 __all__ = ["GroupBehavior"]
 
@@ -30,9 +29,8 @@ class GroupBehavior:
         self._construct()
 
     def _construct(self) -> None:
-
         key = (self.kinematics or "static", self.name or "")
-        maker = behavior_registry.group_behaviors_class_map.get(key)
+        maker = group_behaviors_class_map.get(key)
         self._made = None
         if maker is None:
             if self.name is not None and key not in group_behaviors_map:

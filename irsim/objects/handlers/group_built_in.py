@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from irsim.functions._decide import behavior_options, decide_among
+from irsim.functions._decide import behavior_options
+from irsim.objects.handlers.decide import decide_among
 from irsim.options.registry import CUSTOM_GROUP_BEHAVIORS
 
 __all__ = [

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 
 __all__ = [
-    "behaviors_class_map",
-    "behaviors_map",
-    "group_behaviors_class_map",
-    "group_behaviors_map",
     "register_behavior",
     "register_behavior_class",
     "register_group_behavior",
@@ -20,25 +15,6 @@ __all__ = [
 ]
 
 Made = TypeVar("Made", bound=Callable[..., Any])
-
-behaviors_class_map = CUSTOM_BEHAVIORS.classes
-"""Classes by (kinematics, name), of user code only; so are ``group_behaviors_map``."""
-group_behaviors_map = CUSTOM_GROUP_BEHAVIORS.functions
-
-if TYPE_CHECKING:
-    behaviors_map = CUSTOM_BEHAVIORS.functions
-    group_behaviors_class_map = CUSTOM_GROUP_BEHAVIORS.classes
-
-
-def __getattr__(name: str) -> Any:
-    """``behaviors_map`` and ``group_behaviors_class_map``, the built-in ones included, which are imported for it."""
-    if name == "behaviors_map":
-        import_module("irsim.objects.handlers.built_in")
-        return CUSTOM_BEHAVIORS.functions
-    if name == "group_behaviors_class_map":
-        import_module("irsim.objects.handlers.group_built_in")
-        return CUSTOM_GROUP_BEHAVIORS.classes
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def register_behavior(kinematics: str, action: str) -> Callable[[Made], Made]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import irsim._core as core
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Contact", "Contact2D", "ContactReport", "contact_step", "contacts_of"]
@@ -32,8 +32,8 @@ class Contact:
         force: What pushed them apart [N].
     """
 
-    a: ObjectView
-    b: ObjectView
+    a: SimObject
+    b: SimObject
     normal: Floats
     depth: float
     point: Floats
@@ -44,7 +44,7 @@ class Contact:
 class ContactReport:
     """A contact as one of its objects sees it: ``normal`` points to that object."""
 
-    other: ObjectView
+    other: SimObject
     point: Floats
     normal: Floats
     depth: float
@@ -61,7 +61,7 @@ class Contact2D:
 
     sensor_type = "contact2d"
 
-    def __init__(self, parent: ObjectView, options: Any = None) -> None:
+    def __init__(self, parent: SimObject, options: Any = None) -> None:
         if options is None:
             from irsim.components.sensors.contact2d import Contact2d
 
@@ -94,7 +94,7 @@ class Contact2D:
         ]
 
     @property
-    def partners(self) -> list[ObjectView]:
+    def partners(self) -> list[SimObject]:
         """The objects touched, each once."""
         return list(dict.fromkeys(report.other for report in self.reports))
 
@@ -172,9 +172,7 @@ class Contact2D:
 
 def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
     """The contacts of the last step of one world, in the order in which they were found."""
-    from irsim.objects.view import views
-
-    objects = views(simulation, world)
+    objects = simulation.views(world)
     return [
         Contact(objects[a], objects[b], np.array([nx, ny]), depth, np.array([x, y]), force)
         for a, b, nx, ny, depth, x, y, force in simulation.state.contacts(world)
@@ -182,7 +180,7 @@ def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
 
 
 def contact_step(
-    pairs: Sequence[tuple[ObjectView, ObjectView]],
+    pairs: Sequence[tuple[SimObject, SimObject]],
     iterations: int = 32,
     slop: float = 1e-6,
     margin: float = 0.0,

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from irsim.graphics.scene.scene import Beams, Dots, Line, Mark, Stroke
-from irsim.objects.sensors.contact import Contact2D
 
 __all__ = ["draw_forces"]
 
 _ZORDER = 5
 
 
-def draw_forces(contact: Contact2D, sensor: int = 0) -> tuple[list[Mark], list[Beams]]:
+def draw_forces(contact: Any, sensor: int = 0) -> tuple[list[Mark], list[Beams]]:
     """Lines of the contact forces on an object, and the dots they start from.
 
     Args:
-        contact: What the object feels.
+        contact: The :class:`irsim.objects.sensors.contact.Contact2D` of the object.
         sensor: Its place among the sensors of its object.
     """
     reports = contact.reports

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
-from irsim.objects.geometry import column
+from irsim.objects.base import column
 from irsim.objects.setters import refuse, sensor_options
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["FMCWLidar2D", "Lidar2D"]
@@ -69,7 +69,8 @@ class Lidar2D:
         colors: {beam: (colour, alpha)} of beams drawn differently, see :meth:`set_laser_color`.
     """
 
-    parent: ObjectView
+    drawing: dict[str, Any] | None = None
+    parent: SimObject
     obj_id: int
     sensor_type: str
     number: int
@@ -107,7 +108,7 @@ class Lidar2D:
         "has_velocity",
     )
 
-    def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
+    def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
         self.options = options
         self.__dict__.update(parent=parent, obj_id=parent.id, sensor_type=str(options.name))
         self.alpha, self.color = options.drawn_alpha, options.drawn_color
@@ -319,11 +320,12 @@ class FMCWLidar2D(Lidar2D):
         drawing: Drawing options by name; may be changed.
     """
 
+    drawing: dict[str, Any]
     motion_compensate: bool
     velocity_noise_std: float
     _settings: ClassVar[tuple[str, ...]] = (*Lidar2D._settings, "motion_compensate", "velocity_noise_std")
 
-    def __init__(self, simulation: Simulation, parent: ObjectView, options: Any, index: int) -> None:
+    def __init__(self, simulation: Simulation, parent: SimObject, options: Any, index: int) -> None:
         super().__init__(simulation, parent, options, index)
         self.drawing: dict[str, Any] = options.drawing()
 

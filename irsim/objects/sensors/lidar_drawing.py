@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from irsim.graphics.scene.scene import Beams, Dots, Floats
-from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
 
 __all__ = ["BEAM_ZORDER", "draw_scan"]
 
@@ -15,7 +14,35 @@ BEAM_ZORDER = 2
 _DOT_ZORDER = 4
 
 
-def draw_scan(lidar: Lidar2D, sensor: int = 0, origin: Any = None) -> Beams:
+class Scan(Protocol):
+    """What a drawing needs of a lidar; :class:`irsim.objects.sensors.lidar.Lidar2D` has it.
+
+    Attributes:
+        drawing: How radial velocities are drawn; None for a lidar that does not measure them.
+    """
+
+    obj_id: int
+    number: int
+    angle_list: Floats
+    color: Any
+    alpha: float
+    colors: dict[int, tuple[str, float]]
+    drawing: dict[str, Any] | None
+
+    @property
+    def lidar_origin(self) -> Any:
+        """(3, 1) pose of the sensor, world frame."""
+
+    @property
+    def range_data(self) -> Any:
+        """(number,) ranges [m]."""
+
+    @property
+    def valid(self) -> Any:
+        """(number,) which beams have hit something."""
+
+
+def draw_scan(lidar: Scan, sensor: int = 0, origin: Any = None) -> Beams:
     """The present scan.
 
     Args:
@@ -38,15 +65,15 @@ def draw_scan(lidar: Lidar2D, sensor: int = 0, origin: Any = None) -> Beams:
         zorder=BEAM_ZORDER,
         highlights=[(beam, c, a) for beam, (c, a) in lidar.colors.items() if 0 <= beam < lidar.number],
     )
-    if isinstance(lidar, FMCWLidar2D):
-        _add_velocities(beams, lidar)
+    if lidar.drawing is not None:
+        _add_velocities(beams, lidar, lidar.drawing)
     return beams
 
 
-def _add_velocities(beams: Beams, lidar: FMCWLidar2D) -> None:
+def _add_velocities(beams: Beams, lidar: Any, look: dict[str, Any]) -> None:
     from matplotlib.colors import to_rgba
 
-    look, valid = lidar.drawing, lidar.valid
+    valid = lidar.valid
     beams.widths = np.where(valid, look["velocity_linewidth"], look["no_hit_linewidth"])
     if look["velocity_color"]:
         colors = velocity_colors(lidar.radial_velocity, look)

@@ -17,7 +17,7 @@ from irsim.options.registry import SENSORS, Feature
 from irsim.simulation.random_streams import generator
 
 if TYPE_CHECKING:
-    from irsim.objects.view import ObjectView
+    from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["PythonSensor", "attach_python_sensors", "attach_sensors", "sensors_of"]
@@ -45,7 +45,7 @@ class PythonSensor:
         instance: The object of a registered class, or None.
     """
 
-    def __init__(self, parent: ObjectView, options: Any, feature: Feature, index: int) -> None:
+    def __init__(self, parent: SimObject, options: Any, feature: Feature, index: int) -> None:
         self.parent, self.obj_id, self.options, self.sensor_type = parent, parent.id, options, feature.name
         self.data: Any = None
         self._index = index
@@ -100,7 +100,7 @@ def _nothing() -> None:
     """What a sensor without ``reset`` does when an episode begins."""
 
 
-def sensors_of(simulation: Simulation, view: ObjectView) -> list[Any]:
+def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
     """The sensors of an object, in the order of its entry; those that nothing computes are left out."""
     native = _native(simulation, view)
     sensors: list[Any] = []
@@ -115,7 +115,7 @@ def sensors_of(simulation: Simulation, view: ObjectView) -> list[Any]:
     return sensors
 
 
-def attach_sensors(simulation: Simulation, view: ObjectView) -> None:
+def attach_sensors(simulation: Simulation, view: SimObject) -> None:
     """Let the sensors of an object read its place in another simulation."""
     native = _native(simulation, view)
     for sensor in view.sensors:
@@ -123,17 +123,15 @@ def attach_sensors(simulation: Simulation, view: ObjectView) -> None:
             sensor.attach(simulation, next(native))
 
 
-def _native(simulation: Simulation, view: ObjectView) -> Iterator[int]:
+def _native(simulation: Simulation, view: SimObject) -> Iterator[int]:
     """Numbers, one by one, of the sensors of an object among the native ones of its world."""
     return count(simulation.first_scan(view.index))
 
 
 def _measure(simulation: Simulation, mask: NDArray[np.bool_] | None) -> None:
     """Let the registered sensors measure, in every world or in those of a mask."""
-    from irsim.objects.view import views
-
     for world in range(simulation.copies) if mask is None else np.flatnonzero(mask):
-        for view in views(simulation, int(world)):
+        for view in simulation.views(int(world)):
             for sensor in view.sensors:
                 if isinstance(sensor, PythonSensor):
                     sensor.step()

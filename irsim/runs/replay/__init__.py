@@ -1,1 +1,1 @@
-"""A recorded run as one HTML page that needs nothing else: ``irsim.replay("last")``."""
+"""Replay of a recorded run as one self-contained HTML page: ``irsim.replay("last")``."""

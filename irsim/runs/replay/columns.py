@@ -1,4 +1,4 @@
-"""Numbers made small: series of integers whose differences compress well, and how a page reads them back."""
+"""Compact encoding of series of integers whose differences compress well, as the replay page reads them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 __all__ = ["Columns", "changes", "quantised"]
 
 Integers = NDArray[np.int32]
-_MOST = 2**31 - 1
-_LEVEL = 9
+_MAX_INTEGER = 2**31 - 1
+_COMPRESSION_LEVEL = 9
 
 
 class Columns:
@@ -22,8 +22,8 @@ class Columns:
 
     Decompressed (zlib), a block is: length of the head (4 bytes, little endian); the head as JSON, whose ``columns``
     lists name, shape and order of each array; the arrays. An array is differenced ``order`` times along its last
-    axis (in wrapping arithmetic, before the first value are zeros), its numbers folded so that small ones of either
-    sign have few bits, and their lowest bytes written first, then all the second ones, and so on.
+    axis (in wrapping arithmetic, with zeros before the first value), its numbers are zigzag-encoded so that small ones
+    of either sign have few bits, and first all lowest bytes are written, then all second bytes, and so on.
     """
 
     def __init__(self) -> None:
@@ -34,9 +34,9 @@ class Columns:
         """Add an array.
 
         Args:
-            name: What it is called in the page.
+            name: Name of the array in the page.
             values: Integers that fit into 32 bits, of any shape.
-            order: How often neighbours along the last axis are subtracted.
+            order: Number of times that neighbours along the last axis are subtracted.
 
         Raises:
             OverflowError: A number does not fit.
@@ -49,13 +49,13 @@ class Columns:
         self._bytes.append(folded(array, order))
 
     def block(self, head: dict[str, Any]) -> bytes:
-        """Everything, compressed."""
+        """The compressed block."""
         text = json.dumps({**head, "columns": self._list}, separators=(",", ":"), allow_nan=False).encode()
-        return zlib.compress(len(text).to_bytes(4, "little") + text + b"".join(self._bytes), _LEVEL)
+        return zlib.compress(len(text).to_bytes(4, "little") + text + b"".join(self._bytes), _COMPRESSION_LEVEL)
 
 
 def folded(array: Integers, order: int) -> bytes:
-    """Bytes of one array."""
+    """Bytes of one array, differenced ``order`` times and zigzag-encoded."""
     values = array.astype(np.int32)
     for _ in range(order):
         before = np.zeros((*values.shape[:-1], 1), dtype=np.int32)
@@ -65,19 +65,20 @@ def folded(array: Integers, order: int) -> bytes:
 
 
 def quantised(values: Any, quantum: float) -> Integers:
-    """Whole multiples of ``quantum``; what is not finite counts as 0, what does not fit as the most that does."""
-    scaled = np.nan_to_num(np.asarray(values, dtype=np.float64) / quantum, nan=0.0, posinf=_MOST, neginf=-_MOST)
-    return np.clip(np.rint(scaled), -_MOST, _MOST).astype(np.int32)
+    """Values as whole multiples of ``quantum``; NaN becomes 0, and values beyond 32 bits the largest that fit."""
+    quanta = np.asarray(values, dtype=np.float64) / quantum
+    scaled = np.nan_to_num(quanta, nan=0.0, posinf=_MAX_INTEGER, neginf=-_MAX_INTEGER)
+    return np.clip(np.rint(scaled), -_MAX_INTEGER, _MAX_INTEGER).astype(np.int32)
 
 
 def changes(series: Sequence[NDArray[Any]]) -> tuple[Integers, Integers]:
-    """Where anything changes, per object, the first row included.
+    """Find the rows in which the values of each object change; the first row counts as a change.
 
     Args:
         series: Arrays (T, N); NaN equals NaN.
 
     Returns:
-        Rows and objects, sorted by object, then by row.
+        Rows and objects of the changes, sorted by object, then by row.
     """
     changed = np.zeros(series[0].shape, dtype=bool)
     changed[0] = True

@@ -1,4 +1,4 @@
-"""What the page needs of a run, as one block of bytes."""
+"""Pack everything that the replay page shows of a run into one block of bytes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from irsim.env import Env
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
-from irsim.runs.replay.drawing import drawn_grid, drawn_objects
+from irsim.runs.replay.drawing import page_grid, page_objects
 from irsim.runs.resimulation import scenario_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import Event
@@ -26,28 +26,34 @@ from irsim.simulation.trace import Trace
 __all__ = ["Packed", "pack_run"]
 
 FORMAT = 1
-_MOST_POSES = 2_000_000
-"""Rows times moving objects; runs beyond that show every so many-th step."""
-_MOST_EVENTS = 4000
+"""Version of the packed format."""
+_MAX_POSES = 2_000_000
+"""Number of rows times moving objects; of longer runs the page shows every Nth step."""
+_MAX_EVENTS = 4000
+"""Number of events that the page shows."""
 _RANKS = {"collision": 0, "no_path": 1, "arrival": 2, "waypoint": 3}
-_MOST_RANGES = 2_000_000
-_MOST_SCAN_BYTES = 700_000
-"""Recorded scans are shown as long as they take no more than this; others the page computes."""
+"""Importance of the kinds of events, the most important first."""
+_MAX_RANGES = 2_000_000
+"""Number of recorded ranges up to which the page shows them; of longer scans it computes the ranges."""
+_MAX_SCANS_BYTES = 700_000
+"""Compressed size of the recorded scans up to which the page shows them."""
 _TURN_QUANTUM = 2.0**-11
-"""Of headings [rad]."""
-_FINEST, _COARSEST = -13, -4
-"""Powers of two: of positions [m]."""
+"""Resolution of headings [rad]."""
+_MIN_EXPONENT = -13
+"""Finest resolution of positions, as a power of two [m]."""
+_MAX_EXPONENT = -4
+"""Coarsest resolution of positions, as a power of two [m]."""
 _RANGE_STEPS = 4000
-"""Parts of the longest range of a sensor."""
+"""Number of steps into which the range of a sensor is divided."""
 
 
 @dataclass(frozen=True)
 class Packed:
-    """A run for the page.
+    """A run as the page reads it.
 
     Attributes:
-        data: Compressed; what it looks like inside tells :class:`irsim.runs.replay.columns.Columns`.
-        head: The part that is plain data.
+        data: The compressed block, in the format of :class:`irsim.runs.replay.columns.Columns`.
+        head: Its head, as plain data.
     """
 
     data: bytes
@@ -55,25 +61,26 @@ class Packed:
 
 
 def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
-    """Read a run and the shapes of its objects.
+    """Pack a run and the shapes of its objects.
 
     Args:
-        run: Recorded; one that was cut short is shown as far as it was kept.
-        limits: Of the reader of its scenario.
+        run: The recorded run; an interrupted run is shown as far as it was recorded.
+        limits: Limits of the reader of its scenario.
 
     Raises:
-        RunError: It cannot be read, or its scenario starts elsewhere now, because a map or irsim has changed.
-        ScenarioError: Its scenario cannot be used any more.
+        RunError: The run cannot be read, or its scenario now has other initial poses, because a map or irsim itself has
+            changed.
+        ScenarioError: The scenario has errors, for example because another file of it has changed.
     """
     trace = run.trace()
     env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
     try:
         start = env.simulation.pose
         if trace.pose[0].shape != start.shape or not np.array_equal(trace.pose[0], start, equal_nan=True):
-            what = f"the scenario of run {run.id} starts at other poses now"
+            what = f"the scenario of run {run.id} now has other initial poses"
             raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
-        shapes, objects, lidars = drawn_objects(env)
-        grid = drawn_grid(env)
+        shapes, objects, lidars = page_objects(env)
+        grid = page_grid(env)
         world = env.simulation.scenario.world
         title = env.simulation.scenario.name
     finally:
@@ -86,7 +93,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     for number, row in enumerate(moving.tolist()):
         objects[row]["track"] = number
     rows, every = _rows(len(trace), len(moving))
-    quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _FINEST), _COARSEST)
+    quantum = 2.0 ** min(max(math.floor(math.log2(max(width, height) / 20_000)), _MIN_EXPONENT), _MAX_EXPONENT)
     columns.add("step", trace.step[rows], 2)
     _add_poses(columns, trace.pose[np.ix_(rows, moving)], quantum)
     travellers = np.array([item["role"] == "robot" or "track" in item for item in objects], dtype=bool)
@@ -120,14 +127,14 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
 
 
 def _rows(count: int, moving: int) -> tuple[NDArray[np.int64], int]:
-    """Rows of the trace that are shown, the last one always among them, and how many steps apart they are."""
-    every = max(1, math.ceil(count * max(1, moving) / _MOST_POSES))
+    """Rows of the trace that are shown, including the last one, and the number of steps between them."""
+    every = max(1, math.ceil(count * max(1, moving) / _MAX_POSES))
     rows = np.arange(0, count, every)
     return (rows if rows[-1] == count - 1 else np.append(rows, count - 1)), every
 
 
 def _add_poses(columns: Columns, poses: NDArray[np.float64], quantum: float) -> None:
-    """``x``, ``y``, ``heading`` (moving objects, rows); headings go on beyond a full turn."""
+    """Add ``x``, ``y``, ``heading`` (moving objects, rows); headings are unwrapped, so they exceed a full turn."""
     columns.add("x", quantised(poses[:, :, 0].T, quantum), 2)
     columns.add("y", quantised(poses[:, :, 1].T, quantum), 2)
     headings = np.nan_to_num(poses[:, :, 2].T, posinf=0.0, neginf=0.0)
@@ -135,7 +142,7 @@ def _add_poses(columns: Columns, poses: NDArray[np.float64], quantum: float) -> 
 
 
 def _add_goals(columns: Columns, goal: NDArray[np.float64], quantum: float) -> None:
-    """``goal_row``, ``goal_object``, ``goal_set``, ``goal_x``, ``goal_y``, ``goal_heading``: from that row on."""
+    """Add ``goal_row``, ``goal_object``, ``goal_set``, ``goal_x``, ``goal_y``, ``goal_heading`` from that row on."""
     row, of = changes([goal[:, :, axis] for axis in range(3)])
     values = goal[row, of]
     there: NDArray[np.bool_] = np.isfinite(values[:, 0]) & np.isfinite(values[:, 1])
@@ -149,10 +156,10 @@ def _add_goals(columns: Columns, goal: NDArray[np.float64], quantum: float) -> N
 
 
 def _add_flags(columns: Columns, trace: Trace, rows: NDArray[np.int64]) -> None:
-    """``flag_row``, ``flag_object``, ``flags``: 1 arrived, 2 collided, 4 stopped, from that row on."""
+    """Add ``flag_row``, ``flag_object``, ``flags`` (1 arrived, 2 collided, 4 stopped): flags from a row on."""
     flags = np.zeros((len(rows), len(trace.names)), dtype=np.int32)
-    for bit, told in ((1, trace.arrived), (2, trace.collided), (4, trace.stopped)):
-        flags[told[rows]] |= bit
+    for bit, is_set in ((1, trace.arrived), (2, trace.collided), (4, trace.stopped)):
+        flags[is_set[rows]] |= bit
     row, of = changes([flags])
     keep = (flags[row, of] != 0) | (row > 0)
     columns.add("flag_row", row[keep], 1)
@@ -161,18 +168,18 @@ def _add_flags(columns: Columns, trace: Trace, rows: NDArray[np.int64]) -> None:
 
 
 def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: list[dict[str, Any]]) -> str:
-    """``scan0``, … (beams, rows) of recorded ranges; a number above :data:`_RANGE_STEPS` means that nothing was hit.
+    """Add ``scan0``, … (beams, rows): recorded ranges; a number above :data:`_RANGE_STEPS` means that nothing was hit.
 
     Returns:
-        ``none``, ``recorded`` or ``computed``: what the page shows of some or all of them.
+        ``none`` without lidars, ``recorded`` if the page shows recorded ranges of all lidars, else ``computed``.
     """
     if not lidars:
         return "none"
     keys = [lidar.pop("key") for lidar in lidars]
     known = [block if block is not None and len(block) == len(trace) else None for block in map(trace.ranges.get, keys)]
-    if sum(0 if block is None else block.shape[1] * len(rows) for block in known) > _MOST_RANGES:
+    if sum(0 if block is None else block.shape[1] * len(rows) for block in known) > _MAX_RANGES:
         return "computed"
-    room, scans = _MOST_SCAN_BYTES, "recorded"
+    space, scans = _MAX_SCANS_BYTES, "recorded"
     for number, (lidar, block) in enumerate(zip(lidars, known, strict=True)):
         if block is None or block.shape[1] != lidar["beams"]:
             scans = "computed"
@@ -180,8 +187,8 @@ def _add_scans(columns: Columns, trace: Trace, rows: NDArray[np.int64], lidars: 
         quantum = lidar["range_max"] / _RANGE_STEPS
         parts = np.where(np.isfinite(block[rows]), block[rows] / quantum, _RANGE_STEPS + 1)
         values = np.clip(np.rint(parts), 0, _RANGE_STEPS + 1).astype(np.int32).T
-        room -= len(zlib.compress(folded(values, 1), 1))
-        if room < 0:
+        space -= len(zlib.compress(folded(values, 1), 1))
+        if space < 0:
             return "computed"
         columns.add(f"scan{number}", values, 1)
         lidar["scan"] = f"scan{number}"
@@ -198,7 +205,7 @@ def _ending(run: Run) -> dict[str, Any]:
 
 
 def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
-    """[step, kind, object, partner or -1, x, y] each, and how many of each kind are left out if there are too many."""
+    """Events as [step, kind, object, partner or -1, x, y], their number, and how many of each kind are left out."""
     number = {name: row for row, name in enumerate(trace.names)}
     last = int(trace.step[-1])
     events = [event for event in run.events if event.step <= last and event.object in number]
@@ -206,7 +213,7 @@ def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, 
     left = Counter(event.kind for event in events)
     events = _most_important(events, {trace.names[k] for k, item in enumerate(objects) if item["role"] == "robot"})
     left.subtract(event.kind for event in events)
-    told = [
+    shown = [
         [
             event.step,
             event.kind,
@@ -217,13 +224,13 @@ def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, 
         ]
         for event in events
     ]
-    return {"events": told, "event_count": count, "left_out": {kind: most for kind, most in left.items() if most}}
+    return {"events": shown, "event_count": count, "left_out": {kind: most for kind, most in left.items() if most}}
 
 
 def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
-    """As many as are shown: collisions of robots before others, then what concerns nobody else, waypoints last.
+    """The events that are shown, by rank of their kind, and within a kind those of robots before those of others.
 
-    Those of a rank that do not all fit are thinned evenly.
+    If the events of a rank do not all fit, they are thinned evenly.
     """
     ranks: dict[tuple[int, bool], list[int]] = {}
     for place, event in enumerate(events):
@@ -232,8 +239,8 @@ def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
     chosen = list[int]()
     for rank in sorted(ranks):
         places = ranks[rank]
-        room = min(len(places), _MOST_EVENTS - len(chosen))
-        chosen += [places[k] for k in np.linspace(0, len(places) - 1, room).round().astype(int)]
+        count = min(len(places), _MAX_EVENTS - len(chosen))
+        chosen += [places[k] for k in np.linspace(0, len(places) - 1, count).round().astype(int)]
     return [events[place] for place in sorted(chosen)]
 
 

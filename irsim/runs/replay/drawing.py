@@ -1,4 +1,4 @@
-"""Shapes, colours, sensors and cells as the page draws them, as plain data."""
+"""Shapes, colours, sensors and map cells of a run as plain data, as the replay page draws them."""
 
 from __future__ import annotations
 
@@ -12,24 +12,26 @@ from irsim.common.text import clean
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
-from irsim.objects.view import views
+from irsim.objects.views import views
 
 if TYPE_CHECKING:
     from irsim.env import Env
 
-__all__ = ["drawn_grid", "drawn_objects"]
+__all__ = ["page_grid", "page_objects"]
 
 _DECIMALS = 4
-_OCCUPIED = 50
+"""Decimals of coordinates."""
+_OCCUPIED_LEVEL = 50
+"""Level above which a map cell is drawn as occupied."""
 
 
-def drawn_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[dict[str, Any]]]:
+def page_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]], list[dict[str, Any]]]:
     """Shapes, objects and lidars of an environment at its start.
 
     Returns:
-        Shapes in their own frame, each once; objects in the order of the trace, ``shape`` is a place among the
-        shapes; lidars, ``object`` is a place among the objects, ``pose`` is in the frame of the object, and ``key``
-        names its ranges in the trace.
+        The distinct shapes, each in its own frame; the objects in the order of the trace, with the index of their
+        ``shape``; the lidars, with the index of their ``object``, their ``pose`` in the frame of the object, and the
+        ``key`` of their ranges in the trace.
     """
     builder = SceneBuilder(env.simulation)
     shapes: dict[str, int] = {}
@@ -63,13 +65,18 @@ def drawn_objects(env: Env) -> tuple[list[dict[str, Any]], list[dict[str, Any]],
     return [json.loads(text) for text in shapes], objects, lidars
 
 
-def drawn_grid(env: Env) -> dict[str, Any] | None:
-    """Cells of the map: how many along x and y, where, and ``runs``: how many are free and occupied in turn."""
+def page_grid(env: Env) -> dict[str, Any] | None:
+    """Cells of the map, None without a map.
+
+    Returns:
+        Number of cells along x and y, ``extent`` [m], and ``runs``: lengths of alternating runs of free and occupied
+        cells.
+    """
     builder = SceneBuilder(env.simulation)
     for view in views(env.simulation):
         if view.shape == "map":
             grid = builder.grid(view)
-            full = (grid.levels.T > _OCCUPIED).ravel()
+            full = (grid.levels.T > _OCCUPIED_LEVEL).ravel()
             ends = np.flatnonzero(np.diff(full.astype(np.int8), prepend=0))
             runs = np.diff(np.concatenate([[0], ends, [full.size]]))
             return {"cells": list(grid.levels.shape), "extent": [float(v) for v in grid.extent], "runs": runs}
@@ -90,7 +97,7 @@ def _lidar(sensor: Lidar2D, row: int, key: str) -> dict[str, Any]:
 
 
 def _plain(geometry: Geometry) -> dict[str, Any]:
-    """A geometry with its coordinates as flat lists: x, y, x, y and so on."""
+    """A geometry as plain data, with coordinates as flat lists of alternating x and y."""
     if isinstance(geometry, Circle):
         return {"circle": [_rounded(value) for value in (geometry.x, geometry.y, geometry.radius)]}
     if isinstance(geometry, Region):
@@ -108,7 +115,7 @@ def _rounded(value: float) -> float:
 
 
 def _hex(color: Any) -> str:
-    """``#rrggbb`` of any colour a scenario may name."""
+    """A colour of a scenario as ``#rrggbb``."""
     from matplotlib.colors import to_hex
 
     return str(to_hex("black" if color is None or color == "none" else color))

@@ -1,4 +1,4 @@
-"""``irsim.replay``: write the page of a recorded run."""
+"""``irsim.replay``: write the HTML page of a recorded run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from irsim.common.files import check_suffix, write_atomically
 from irsim.common.text import clean
-from irsim.results.results import ReplayResult
+from irsim.results.run import ReplayResult
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.replay.data import pack_run
@@ -25,18 +25,18 @@ def replay(
     workspace: str | Path | None = None,
     limits: Limits | None = None,
 ) -> ReplayResult:
-    """Write a recorded run as one HTML page: play, scrub, follow a robot, in any browser, without a network.
+    """Write a recorded run as one HTML page that plays in any browser, without a network.
 
     Args:
-        run: Its id, its folder, or ``last``.
-        out: File to write; by default ``<id>.html`` in the current directory. One that exists is replaced.
-        workspace: Folder whose ``.irsim/runs`` holds the run; the current directory by default.
-        limits: Limits of the reader of its scenario.
+        run: Id of the run, its folder, or ``last``.
+        out: File to write; default: ``<id>.html`` in the current directory. An existing file is replaced.
+        workspace: Folder whose ``.irsim/runs`` holds the run; default: the current directory.
+        limits: Limits of the reader of the scenario.
 
     Raises:
         RunError: There is no such run, it cannot be read, or the file cannot be written.
-        TargetError: The file has another suffix.
-        ScenarioError: The scenario of the run can't be used any more.
+        TargetError: The file has an unsupported suffix.
+        ScenarioError: The scenario has errors, for example because another file of it has changed.
     """
     opened = run if isinstance(run, Run) else open_run(run, workspace)
     target = Path(f"{opened.id}.html") if out is None else Path(out)

@@ -1,8 +1,8 @@
-"""The page, put together from the files in ``web/``: HTML, style sheet and modules become one text.
+"""The replay page: HTML, style sheet and JavaScript modules from ``web/`` as one text.
 
-The modules are ordinary ones for editors and tools. Here they become one script: what one of them imports comes before
-it, and the words ``import`` and ``export`` go. So a name at the top of a module is used once in the whole page.
-Standard library only: the MCP server serves the page without NumPy.
+The modules become one script, each after those it imports and without its ``import`` and ``export`` statements, so a
+name at the top level of a module must be unique in all modules. Uses the standard library only: the MCP server serves
+the page without NumPy.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def page(data: bytes | None = None, *, title: str = "irsim replay") -> str:
     """The page as text.
 
     Args:
-        data: A packed run (:func:`irsim.runs.replay.data.pack_run`); without one the page asks the host that shows it.
-        title: Of the window.
+        data: A packed run (:func:`irsim.runs.replay.data.pack_run`); without one the page asks its host for the run.
+        title: Title of the window.
     """
     style = (_SOURCES / "replay.css").read_text(encoding="utf-8")
     script = f'"use strict";\n(() => {{\n{bundle()}}})();\n'
@@ -49,7 +49,7 @@ def bundle() -> str:
     def add(name: str) -> None:
         if name in done:
             return
-        done[name] = ""  # modules that import each other: functions only meet when they are called
+        done[name] = ""  # allows circular imports, as functions refer to each other only when they are called
         text = (_SOURCES / f"{name}.js").read_text(encoding="utf-8")
         for other in _IMPORT.findall(text):
             add(other)
@@ -61,5 +61,5 @@ def bundle() -> str:
 
 
 def _fingerprint(text: str) -> str:
-    """As a content security policy names the one script or style sheet that is allowed."""
+    """Hash of a script or style sheet, as a content security policy lists it."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,7 +16,7 @@ from irsim.scenario.resolve.per_object import is_per_object, kind_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.scenario.yaml.document import Document
 
-__all__ = ["Context"]
+__all__ = ["Context", "distinct"]
 
 
 @dataclass(frozen=True)
@@ -87,3 +87,13 @@ class Context:
         for part in record.path:
             value = value[part]
         return value.get(key) is not None
+
+
+def distinct(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield one finding per code and path: objects of one entry have the same problems."""
+    seen: set[tuple[str, Path]] = set()
+    for finding in findings:
+        key = finding.diagnostic.code, finding.diagnostic.path
+        if key not in seen:
+            seen.add(key)
+            yield finding

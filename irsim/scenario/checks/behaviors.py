@@ -9,7 +9,7 @@ from typing import Any
 from irsim.components.behaviors._options import BehaviorOptions, CustomOptions
 from irsim.diagnostics.diagnostic import Edit, is_slip_of, nearest
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, CustomBehaviors
-from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.model.lookup import at
 from irsim.scenario.resolve.resolved import ObjectRecord
@@ -25,13 +25,7 @@ _SPEEDS = {"sfm": ("vmax",), "rvo": ("vxmax", "vymax"), "orca": ("maxSpeed",)}
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    seen: set[tuple[Any, ...]] = set()
-    for record in context.entry_objects:
-        for finding in _of_object(context, record):
-            key = (finding.diagnostic.code, finding.diagnostic.path)
-            if key not in seen:
-                seen.add(key)
-                yield finding
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit
-from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.messages.findings import Finding, error, hint, warning
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.scenario.yaml.formatting import flow
@@ -22,13 +22,7 @@ _QUARTER_TURN = 1.58
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    seen: set[tuple[Any, ...]] = set()
-    for record in context.entry_objects:
-        for finding in _of_object(context, record):
-            key = (finding.diagnostic.code, finding.diagnostic.path)
-            if key not in seen:
-                seen.add(key)
-                yield finding
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
 
 
 def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.components.behaviors._options import CustomOptions
-from irsim.diagnostics.diagnostic import Edit, Path
-from irsim.scenario.checks._context import Context
+from irsim.diagnostics.diagnostic import Edit
+from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.checks.magnitude import MAX_MAGNITUDE
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.resolve.body_size import top_speed
@@ -28,12 +28,7 @@ _AVOIDING = ("rvo", "sfm", "orca", "follow")
 
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
-    seen: set[tuple[str, Path]] = set()
-    for finding in _check_objects(context):
-        key = (finding.diagnostic.code, finding.diagnostic.path)
-        if key not in seen:
-            seen.add(key)
-            yield finding
+    yield from distinct(_check_objects(context))
 
 
 def _check_objects(context: Context) -> Iterator[Finding]:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from irsim.common.angles import FULL_TURN
 from irsim.diagnostics.diagnostic import Path
-from irsim.options.angles import FULL_TURN, is_span
+from irsim.options.angles import is_span
 from irsim.scenario.checks._context import Context
 from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, error, hint, warning

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from irsim.diagnostics.diagnostic import Path
-from irsim.scenario.checks._context import Context
+from irsim.scenario.checks._context import Context, distinct
 from irsim.scenario.checks.overlap import reach_of
 from irsim.scenario.messages.findings import Finding, hint, warning
 from irsim.scenario.resolve.body_size import has_fixed_shape, inner_disc, parts_of, top_speed
@@ -43,13 +43,7 @@ _MIN_REACH = 0.1
 def check(context: Context) -> Iterator[Finding]:
     """Check all objects; one finding per path and code."""
     yield from _times(context)
-    seen: set[tuple[str, Path]] = set()
-    for record in context.entry_objects:
-        for finding in _of_object(context, record):
-            key = (finding.diagnostic.code, finding.diagnostic.path)
-            if key not in seen:
-                seen.add(key)
-                yield finding
+    yield from distinct(finding for record in context.entry_objects for finding in _of_object(context, record))
     for path, entry, _ in context.entries():
         yield from _ranges((*path, "distribution"), entry.distribution)
 

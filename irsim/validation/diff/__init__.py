@@ -1,1 +1,1 @@
-"""What differs between two scenarios: their data, their worlds, their texts."""
+"""Comparison of two scenarios: their data by key, their worlds by object, their texts by line and comment."""

@@ -1,29 +1,31 @@
-"""What differs between two scenarios: in the files, by key, and in the worlds they become, by object."""
+"""Comparison of two scenarios: by key in the files, and by object in the worlds built from them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from irsim.common.text import listed
 from irsim.diagnostics.errors import PlacementError
-from irsim.results.results import KeyChange, ScenarioDiff, WorldChange
+from irsim.results.diff import KeyChange, ScenarioDiff, WorldChange
 from irsim.scenario.read import Reading
 from irsim.scenario.yaml.comments import comments
 from irsim.validation.diff.keys import changed_keys, data_of, entry_pairs, place
-from irsim.validation.diff.text import changed_comments, changed_lines, comments_told
+from irsim.validation.diff.text import changed_comments, changed_lines, comments_message
 from irsim.validation.diff.worlds import changed_worlds
 
 __all__ = ["compare"]
 
-_NAMED = 6
+_MAX_NAMED = 6
+"""Number of keys or objects that the summary names."""
 
 
 def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
     """Compare two scenarios that have been read.
 
     Args:
-        a: The one before.
-        b: The one after.
-        seed: Both worlds are built with it; default: the scenario's own, else 0.
+        a: The first scenario.
+        b: The second scenario.
+        seed: Seed with which both worlds are built; default: the scenario's own, else 0.
     """
     keys = list(changed_keys(data_of(a.document), data_of(b.document), ()))
     pairs = entry_pairs(a.document, b.document)
@@ -40,7 +42,7 @@ def compare(a: Reading, b: Reading, *, seed: int | None = None) -> ScenarioDiff:
         before=a.document.name or "(text)",
         after=b.document.name or "(text)",
         same=not keys and not worlds,
-        summary=_summary(keys, worlds, why, comments_told(there, lost, edited)),
+        summary=_summary(keys, worlds, why, comments_message(there, lost, edited)),
         keys=keys,
         world=worlds,
         comments_lost=lost,
@@ -56,13 +58,11 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
     if not written:
         text = "no key differs but for the order" if moved else "no key differs"
     else:
-        named = ", ".join(place(change.change, change.path) for change in written[:_NAMED])
-        more = f" and {len(written) - _NAMED} more" if len(written) > _NAMED else ""
-        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}{more}"
+        named = listed([place(change.change, change.path) for change in written], _MAX_NAMED)
+        text = f"{len(written)} key{'s' * (len(written) != 1)} differ{'s' * (len(written) == 1)}: {named}"
     if moved:
-        told = ", ".join(f"{change.before} is now {change.after}" for change in moved[:_NAMED])
-        text += f"{'; the order differs' * bool(written)}: {told}"
-        text += f" and {len(moved) - _NAMED} more" if len(moved) > _NAMED else ""
+        places = listed([f"{change.before} is now {change.after}" for change in moved], _MAX_NAMED)
+        text += f"{'; the order differs' * bool(written)}: {places}"
         if any(change.path.startswith(("robot[", "obstacle[")) and change.path.count("[") == 1 for change in moved):
             text += ", which changes ids and labels"
         if any(change.path.startswith("robot[") and change.path.count("[") == 1 for change in moved):
@@ -71,7 +71,7 @@ def _summary(keys: Sequence[KeyChange], world: Sequence[WorldChange] | None, why
         text += f"; the worlds are not compared: {why}"
     else:
         further = list(dict.fromkeys(change.object or "the world" for change in world if not change.direct))
-        named = ", ".join(further[:_NAMED]) + (f" and {len(further) - _NAMED} more" if len(further) > _NAMED else "")
+        named = listed(further, _MAX_NAMED)
         if further:
             text += f"; which also changes {named}" if keys else f"; in the world: {named}"
         elif not world:

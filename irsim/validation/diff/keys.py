@@ -1,4 +1,4 @@
-"""What differs between the data of two files, by key."""
+"""Differences between the data of two scenario files, by key."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from irsim.diagnostics.diagnostic import Path, format_path
-from irsim.results.results import KeyChange
+from irsim.results.diff import KeyChange
 
 if TYPE_CHECKING:
     from irsim.scenario.yaml.document import Document
@@ -16,15 +16,18 @@ if TYPE_CHECKING:
 __all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "place", "same"]
 
 _LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
-"""Keys whose lists hold things that are recognised again when others come or go before them."""
-_ALIKE, _MANY = 0.34, 10_000
-"""Share of leaves of items that belong together; pairs that are looked at: of more, only those in order."""
+"""Keys whose list items are matched by content, so that an inserted item does not change all after it."""
+_MIN_LIKENESS = 0.34
+"""Least share of common leaves of two items that match."""
+_MAX_CANDIDATES = 10_000
+"""Number of pairs of items that are compared; of longer lists, only items in the same order are."""
 
 Pairs = list[tuple[int | None, int | None]]
+"""Indices of matching items of two lists; None where an item has no match."""
 
 
 def data_of(document: Document) -> Any:
-    """The data, with a single robot or obstacle as a list of one, which means the same."""
+    """The data of a document, in which a single robot or obstacle is a list of one item."""
     data = document.data
     if not isinstance(data, Mapping):
         return data
@@ -35,7 +38,7 @@ def data_of(document: Document) -> Any:
 
 
 def changed_keys(a: Any, b: Any, path: Path) -> Iterator[KeyChange]:
-    """Changes of the data, where it was (removed) or where it is now."""
+    """Changes from ``a`` to ``b``; the path of a removed item is that in ``a``, all other paths are those in ``b``."""
     if isinstance(a, Mapping) and isinstance(b, Mapping):
         for key in dict.fromkeys([*a, *b]):
             if key not in b:
@@ -46,7 +49,7 @@ def changed_keys(a: Any, b: Any, path: Path) -> Iterator[KeyChange]:
                 yield from changed_keys(a[key], b[key], (*path, str(key)))
         return
     if isinstance(a, list) and isinstance(b, list) and path[-1:] and path[-1] in _LISTS:
-        pairs = _aligned(a, b)
+        pairs = _match_items(a, b)
         for old, new in moved(pairs):
             was, now = (format_path((*path, place)) for place in (old, new))
             yield KeyChange(change="moved", path=now, before=was, after=now)
@@ -63,7 +66,7 @@ def changed_keys(a: Any, b: Any, path: Path) -> Iterator[KeyChange]:
 
 
 def place(change: str, path: str) -> str:
-    """The path of a change, in words that say so where its number is that of the file before."""
+    """The path of a change as the summary names it; the index of a removed list item is one of the former file."""
     return f"former {path}" if change == "removed" and path.endswith("]") else path
 
 
@@ -91,9 +94,9 @@ def same(a: Any, b: Any) -> bool:
 
 
 def entry_pairs(a: Document, b: Document) -> dict[str, Pairs]:
-    """Which entries of the two belong together, by section."""
+    """Matching entries of two documents, by section."""
     old, new = data_of(a), data_of(b)
-    return {role: _aligned(_entries(old, role), _entries(new, role)) for role in ("robot", "obstacle")}
+    return {role: _match_items(_entries(old, role), _entries(new, role)) for role in ("robot", "obstacle")}
 
 
 def _entries(data: Any, role: str) -> list[Any]:
@@ -101,8 +104,8 @@ def _entries(data: Any, role: str) -> list[Any]:
     return entries if isinstance(entries, list) else []
 
 
-def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
-    """Pairs of indices: equal items, items of one name, then the most alike; those left over stand alone."""
+def _match_items(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
+    """Match equal items first, then items with the same name, then the most similar ones."""
     left, right = list(range(len(a))), list(range(len(b)))
     pairs: Pairs = []
 
@@ -112,7 +115,7 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
         right.remove(j)
 
     for block in difflib.SequenceMatcher(
-        None, [_told(x) for x in a], [_told(x) for x in b], False
+        None, [_canonical_text(x) for x in a], [_canonical_text(x) for x in b], False
     ).get_matching_blocks():
         for k in range(block.size):
             take(block.a + k, block.b + k)
@@ -121,12 +124,12 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
         twin = next((j for j in right if name is not None and _name_of(b[j]) == name), None)
         if twin is not None:
             take(i, twin)
-    few = len(left) * len(right) <= _MANY
+    few = len(left) * len(right) <= _MAX_CANDIDATES
     candidates = [(i, j) for i in left for j in right] if few else list(zip(left, right, strict=False))
     of_a, of_b = ({k: set(_leaves(items[k])) for k in rest} for items, rest in ((a, left), (b, right)))
     alike = [(-_likeness(of_a[i], of_b[j]), abs(i - j), i, j) for i, j in candidates]
     for score, _, i, j in sorted(alike):
-        if -score >= _ALIKE and i in left and j in right:
+        if -score >= _MIN_LIKENESS and i in left and j in right:
             take(i, j)
     if len(left) == len(right) == 1:
         take(left[0], right[0])
@@ -135,9 +138,13 @@ def _aligned(a: Sequence[Any], b: Sequence[Any]) -> Pairs:
 
 
 def moved(pairs: Sequence[tuple[int | None, int | None]]) -> list[tuple[int, int]]:
-    """Of pairs of places, sorted by the second, as few as possible without which the first are in order, too."""
+    """Fewest pairs of indices that must be left out so that the other pairs are in order on both sides.
+
+    Args:
+        pairs: Pairs of indices, sorted by the second.
+    """
     both = [(i, j) for i, j in pairs if i is not None and j is not None]
-    ends: list[int] = []  # the least end of a run of each length
+    ends: list[int] = []  # the least last value of an increasing subsequence of each length
     length = []
     for i, _ in both:
         at = bisect.bisect_left(ends, i)
@@ -158,7 +165,7 @@ def _name_of(item: Any) -> str | None:
 
 
 def _likeness(a: set[tuple[str, str]], b: set[tuple[str, str]]) -> float:
-    """Share of leaves that two items have in common, 0 to 1."""
+    """Share of the leaves of two items that both have, 0 to 1."""
     return len(a & b) / max(1, len(a | b))
 
 
@@ -167,13 +174,13 @@ def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
         for key, item in value.items():
             yield from _leaves(item, f"{path}.{key}")
     else:
-        yield path, _told(value)
+        yield path, _canonical_text(value)
 
 
-def _told(value: Any) -> str:
-    """One text for all that is the same: in whatever order keys are, 1 or 1.0."""
+def _canonical_text(value: Any) -> str:
+    """A text that is the same for equal values, in whatever order their keys are, and for 1 and 1.0."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(sorted(f"{key!r}: {_told(item)}" for key, item in value.items())) + "}"
+        return "{" + ", ".join(sorted(f"{key!r}: {_canonical_text(item)}" for key, item in value.items())) + "}"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(map(_told, value)) + "]"
+        return "[" + ", ".join(map(_canonical_text, value)) + "]"
     return repr(int(value)) if isinstance(value, float) and value.is_integer() else repr(value)

@@ -1,4 +1,4 @@
-"""Which objects of two worlds are the same one, and in which facts two objects differ."""
+"""Match the objects of two worlds, and list the properties in which two objects differ."""
 
 from __future__ import annotations
 
@@ -10,35 +10,40 @@ from typing import Any
 
 from irsim.validation.diff.keys import Pairs, same
 
-__all__ = ["differing", "listed", "object_facts", "twins_of"]
+__all__ = ["differing", "listed", "match_objects", "object_facts"]
 
 _SHIFTING = ("name", "entry", "index", "group", "group_members")
-"""Of an object's description: numbers and names that shift when others come or go."""
-_ALIKE, _MANY = 2, 2_500
-"""Objects that belong together although neither name nor place says so: differing facts, pairs that are looked at."""
+"""Keys of an object's description whose values shift when other objects come or go."""
+_MAX_DIFFERENCES = 2
+"""Number of properties in which two objects may differ that match although neither name nor entry says so."""
+_MAX_CANDIDATES = 2_500
+"""Number of pairs of objects that are compared for that."""
 _NUMBERED = re.compile(r"(robot|obstacle)_\d+\Z")
+"""Names that objects get by default."""
 
 
-def twins_of(a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[str, Pairs]) -> list[tuple[int, int]]:
-    """Objects that are the same one in both worlds, whatever entries they are written in.
+def match_objects(
+    a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[str, Pairs]
+) -> list[tuple[int, int]]:
+    """Match the objects of two worlds, whatever entries they are written in.
 
-    These are, one after the other: those of one name, equal ones, those with one number in entries that belong
-    together, and those of which only a fact or two differ.
+    Objects match, in this order, if they have the same name of their own, if they are equal, if they have the same
+    number in matching entries, or if they differ in few properties.
 
     Args:
-        a: Objects of one world, as described.
-        b: Of the other.
-        pairs: Entries of the files that belong together, by section.
+        a: Descriptions of the objects of one world.
+        b: Descriptions of the objects of the other.
+        pairs: Matching entries of the files, by section.
 
     Returns:
-        Places in ``a`` and ``b``, by those in ``a``.
+        Pairs of indices in ``a`` and ``b``, sorted by the first.
     """
     places = {f"{role}[{i}]": f"{role}[{j}]" for role, found in pairs.items() for i, j in found if None not in (i, j)}
     left, right = dict.fromkeys(range(len(a))), dict.fromkeys(range(len(b)))
     twins = []
 
     def take(of_a: Callable[[Any], Hashable], of_b: Callable[[Any], Hashable]) -> None:
-        """Pair those of one key, in order; None is no key."""
+        """Match objects with the same key, in order; objects whose key is None stay unmatched."""
         there = defaultdict[Hashable, deque[int]](deque)
         for j in right:
             there[of_b(b[j])].append(j)
@@ -63,12 +68,12 @@ def twins_of(a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[st
     take(lambda item: (item["name"], facts[id(item)]), lambda item: (item["name"], facts[id(item)]))
     take(lambda item: facts[id(item)], lambda item: facts[id(item)])
     take(place_in_b, place)
-    if len(left) * len(right) <= _MANY:
+    if len(left) * len(right) <= _MAX_CANDIDATES:
         alike = sorted(
             (different, a[i]["name"] != b[j]["name"], i, j)
             for i in left
             for j in right
-            if (different := _difference(a[i], b[j])) <= _ALIKE
+            if (different := _count_differences(a[i], b[j])) <= _MAX_DIFFERENCES
         )
         for _, _, i, j in alike:
             if i in left and j in right:
@@ -78,19 +83,19 @@ def twins_of(a: list[dict[str, Any]], b: list[dict[str, Any]], pairs: Mapping[st
 
 
 def _written_name(item: Mapping[str, Any]) -> Hashable:
-    """The name of an object that has one of its own; the map and the walls have their place."""
+    """The name that the scenario gives an object, None for a default name; map and walls go by their entry."""
     if item["entry"].startswith("world"):
         return str(item["entry"])
     return None if _NUMBERED.match(item["name"]) else (item["role"], item["name"])
 
 
 def _facts(item: Mapping[str, Any]) -> str:
-    """What an object is, whatever its number."""
+    """All properties of an object that do not depend on its number, as text."""
     shown = {key: value for key, value in item.items() if key not in _SHIFTING}
     return json.dumps([_written_name(item), shown], sort_keys=True)
 
 
-def _difference(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
+def _count_differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
     """How many of their keys differ; objects of two roles are two, as are those that have two names."""
     names = _written_name(a), _written_name(b)
     if a["role"] != b["role"] or (None not in names and names[0] != names[1]):
@@ -99,7 +104,7 @@ def _difference(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
 
 
 def object_facts(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[str, Any, Any]]:
-    """Facts that differ between two objects; a footprint only if no other fact explains it."""
+    """Properties that differ between two objects; the footprint only if no other difference explains it."""
     before, after = ({key: value for key, value in item.items() if key not in _SHIFTING} for item in (a, b))
     found = list(differing(before, after))
     if a["name"] != b["name"] and not (_NUMBERED.match(a["name"]) and _NUMBERED.match(b["name"])):
@@ -109,7 +114,7 @@ def object_facts(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[s
 
 
 def differing(a: Any, b: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Facts that differ; lists of numbers are one fact."""
+    """Key and both values of each property that differs; a list of numbers is one property."""
     if isinstance(a, Mapping) and isinstance(b, Mapping) and a.get("name") == b.get("name"):
         for name in dict.fromkeys([*a, *b]):
             yield from differing(a.get(name), b.get(name), f"{key}.{name}" if key else str(name))
@@ -128,5 +133,5 @@ def differing(a: Any, b: Any, key: str = "") -> Iterator[tuple[str, Any, Any]]:
 
 
 def listed(entry: str) -> str:
-    """Where an entry stands; a single one is the first of a list."""
+    """The path of an entry in a list; a single robot or obstacle counts as a list of one."""
     return f"{entry}[0]" if entry in ("robot", "obstacle") else entry

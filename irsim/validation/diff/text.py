@@ -1,4 +1,4 @@
-"""What differs between two texts: lines and comments."""
+"""Differences between the texts of two scenario files: lines and comments."""
 
 from __future__ import annotations
 
@@ -7,24 +7,26 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 from irsim.diagnostics.diagnostic import Path
-from irsim.results.results import CommentChange
+from irsim.results.diff import CommentChange
 from irsim.scenario.yaml.comments import places_of_comments
 from irsim.scenario.yaml.document import Document
 from irsim.validation.diff.keys import Pairs
 
-__all__ = ["changed_comments", "changed_lines", "comments_told"]
+__all__ = ["changed_comments", "changed_lines", "comments_message"]
 
-_EDITED = 0.5
-"""Comments that are more alike than that are one that was edited, whatever they are about."""
-_MANY, _NEAR = 1_000, 100
-"""Pairs, and equal comments, that are looked at."""
+_MIN_LIKENESS = 0.5
+"""Similarity above which two comments count as one that was edited, wherever they stand."""
+_MAX_CANDIDATES = 1_000
+"""Number of pairs of comments that are compared."""
+_MAX_EQUAL = 100
+"""Number of equal comments among which the one about the same key is sought."""
 
 Comment = tuple[str, set[Path]]
-"""Its text, and the paths that it may be about."""
+"""Text of a comment, and the paths of the keys that it may be about."""
 
 
 def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
-    """How many lines were taken out and put in."""
+    """Number of lines that were removed and added."""
     if a is None or b is None:
         return 0, 0
     found = list(difflib.unified_diff(a.splitlines(), b.splitlines(), lineterm="", n=0))[2:]
@@ -32,12 +34,17 @@ def changed_lines(a: str | None, b: str | None) -> tuple[int, int]:
 
 
 def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tuple[list[str], list[CommentChange]]:
-    """Comments that are gone, and those that say something else now: about the same thing, or in much the same words.
+    """Find comments that were lost or edited.
+
+    A comment counts as edited if the other file has one about the same key, or one in similar words.
 
     Args:
-        a: The file before.
-        b: The file after.
-        pairs: Entries of the files that belong together, by section.
+        a: The first file.
+        b: The second file.
+        pairs: Matching entries of the files, by section.
+
+    Returns:
+        Texts of the lost comments, and both texts of each edited one.
     """
     if a.text is None or b.text is None:
         return [], []
@@ -49,12 +56,12 @@ def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tu
         for text, about in places_of_comments(a)
     ]
     new = [(text, set(about)) for text, about in places_of_comments(b)]
-    gone, left = _unequal(old, new)
+    gone, left = _without_equal(old, new)
     twins: dict[int, int] = {}
-    if len(gone) * len(left) <= _MANY:
+    if len(gone) * len(left) <= _MAX_CANDIDATES:
         alike = {(i, j): difflib.SequenceMatcher(None, old[i][0], new[j][0], False).ratio() for i in gone for j in left}
         about_one = [(-score, *pair) for pair, score in alike.items() if old[pair[0]][1] & new[pair[1]][1]]
-        in_one_way = [(-score, *pair) for pair, score in alike.items() if score > _EDITED]
+        in_one_way = [(-score, *pair) for pair, score in alike.items() if score > _MIN_LIKENESS]
         for _, i, j in [*sorted(about_one), *sorted(in_one_way)]:
             if i not in twins and j not in twins.values():
                 twins[i] = j
@@ -62,14 +69,14 @@ def changed_comments(a: Document, b: Document, pairs: Mapping[str, Pairs]) -> tu
     return lost, [CommentChange(before=old[i][0], after=new[j][0]) for i, j in sorted(twins.items())]
 
 
-def _unequal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list[int], list[int]]:
-    """Places of the comments that have no equal one on the other side, if possible one about the same thing."""
+def _without_equal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list[int], list[int]]:
+    """Indices of the comments without an equal one in the other file; equal comments about the same key pair first."""
     there = defaultdict[str, list[int]](list)
     for j, (text, _) in enumerate(new):
         there[text].append(j)
     gone = []
     for i, (text, about) in enumerate(old):
-        twin = next((j for j in there[text][:_NEAR] if new[j][1] & about), None)
+        twin = next((j for j in there[text][:_MAX_EQUAL] if new[j][1] & about), None)
         if twin is not None:
             there[text].remove(twin)
         else:
@@ -83,13 +90,19 @@ def _unequal(old: Sequence[Comment], new: Sequence[Comment]) -> tuple[list[int],
     return rest, sorted(j for found in there.values() for j in found)
 
 
-def comments_told(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:
-    """What became of the comments, in words; empty if there were none."""
-    told = [
+def comments_message(there: bool, lost: Sequence[str], edited: Sequence[CommentChange]) -> str:
+    """How many comments were lost and edited, in words.
+
+    Args:
+        there: Whether the first file has comments; without any the message is empty.
+        lost: Texts of the lost comments.
+        edited: The edited comments.
+    """
+    parts = [
         f"{len(found)} comment{'s' * (len(found) != 1)} {what}"
         for what, found in (("lost", lost), ("changed", edited))
         if found
     ]
     if there and not lost:
-        told.insert(0, "no comment lost")
-    return ", ".join(told)
+        parts.insert(0, "no comment lost")
+    return ", ".join(parts)

@@ -1,4 +1,4 @@
-"""A scenario's world as plain data: what is in it once it is built, whatever way the file says it."""
+"""The world built from a scenario as plain data, which is the same however the file expresses it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["describe_world"]
 
-_DIGITS = 9
+_DECIMALS = 9
+"""Decimals of the numbers in a description."""
 _WORLD = (
     "width", "height", "offset", "step_time", "sample_time", "time_limit", "control_mode", "collision_mode",
     "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map", "fog_map_resolution",
@@ -35,29 +36,28 @@ _CONTACT = ("mass", "friction", "inertia", "restitution", "drive_tau")
 
 
 def describe_world(env: Env) -> dict[str, Any]:
-    """What an environment holds now: world frame, lengths in m, angles in rad, numbers to 1e-9.
+    """Describe the present state of an environment: world frame, lengths in m, angles in rad, numbers to 1e-9.
 
     Returns:
-        ``world``: extent, times and modes; ``objects``: one mapping per object (the map and the walls round the world
-        included) with ``name``, ``entry`` (where it is written), ``role``, ``kinematics``, its own ``behavior`` and the
-        ``group_behavior`` that it follows (that of its group, wherever it is written), with all their options,
-        ``group_members`` (of a group with such a behavior: places in ``objects``), ``shape``, ``footprint``
-        (``{circle: [x, y, radius]}``, ``{polygons: [[[x, y], …], …]}`` or ``{lines: …}``; None for maps), ``pose``,
-        ``extra_state`` (what a drive needs beyond that), ``goals``, effective limits ``vel_min``, ``vel_max``,
-        ``acce``, and ``sensors`` as they measure.
+        ``world``: extent, times and modes; ``objects``: one mapping per object (including the map and the walls around
+        the world) with ``name``, ``entry`` (path in the file), ``role``, ``kinematics``, its own ``behavior`` and the
+        ``group_behavior`` that it follows, both with all options, ``group_members`` (indices in ``objects`` of the
+        group with that behavior), ``shape``, ``footprint`` (``{circle: [x, y, radius]}``,
+        ``{polygons: [[[x, y], …], …]}`` or ``{lines: …}``; None for maps), ``pose``, ``extra_state`` (further state of
+        the drive), ``goals``, effective limits ``vel_min``, ``vel_max``, ``acce``, and ``sensors`` with all options.
     """
     world = env.scenario.world
     contact = world.collision_mode == "contact"
     views = sorted([*env.robot_list, *env.obstacle_list], key=lambda view: view.index)
-    led = _led(env)
+    led = _group_behaviors(env)
     return {
         "world": {key: _plain(getattr(world, key)) for key in (*_WORLD, *(_CONTACT_WORLD if contact else ()))},
         "objects": [_object(view, led, contact) for view in views],
     }
 
 
-def _led(env: Env) -> dict[int, tuple[Any, list[int]]]:
-    """Objects that follow the behavior of their group: place → its options, places of the group's members."""
+def _group_behaviors(env: Env) -> dict[int, tuple[Any, list[int]]]:
+    """Index of each object that follows a group behavior → options of the behavior, indices of the group's members."""
     records = env.simulation.scenario.objects
     members: dict[int, list[int]] = defaultdict(list)
     for place, record in enumerate(records):
@@ -106,7 +106,7 @@ def _object(view: ObjectView, led: Mapping[int, tuple[Any, list[int]]], contact:
         found["group_members"] = members
         if record.wander:
             found |= {"range_low": _plain(record.range_low), "range_high": _plain(record.range_high)}
-    found["sensors"] = [_options(sensor, "type") for sensor in record.sensors]  # which is another word for name
+    found["sensors"] = [_options(sensor, "type") for sensor in record.sensors]  # `type` repeats the name
     return found
 
 
@@ -134,7 +134,7 @@ def _footprint(view: ObjectView) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """As JSON has it: lists, numbers without noise in their last digits."""
+    """A value as JSON types, with numbers rounded to :data:`_DECIMALS`."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, dict):
@@ -144,7 +144,7 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "model_dump"):
         return _plain(value.model_dump(mode="json"))
     if isinstance(value, (float, np.floating)):
-        short = round(float(value), _DIGITS)
+        short = round(float(value), _DECIMALS)
         return short + 0.0 if np.isfinite(short) else str(value)
     if value is None or isinstance(value, (bool, int, str)):
         return value

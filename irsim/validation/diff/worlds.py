@@ -1,4 +1,4 @@
-"""What differs between two worlds that were built, by object."""
+"""Differences between the worlds built from two scenarios, by object."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from irsim.env import Env
-from irsim.results.results import KeyChange, WorldChange
+from irsim.results.diff import KeyChange, WorldChange
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.validation.diff.keys import Pairs, moved
-from irsim.validation.diff.matching import differing, listed, object_facts, twins_of
+from irsim.validation.diff.matching import differing, listed, match_objects, object_facts
 from irsim.validation.diff.world_facts import describe_world
 
 __all__ = ["changed_worlds"]
@@ -26,7 +26,7 @@ _WRITTEN = {
         for key in ("wander", "loop", "range_low", "range_high", "target_roles")
     },
 }
-"""Keys that a fact is written with, where they are called otherwise."""
+"""Scenario keys that determine a property with another name."""
 
 
 def changed_worlds(
@@ -36,35 +36,35 @@ def changed_worlds(
     seed: int | None,
     keys: Sequence[KeyChange],
 ) -> list[WorldChange]:
-    """Changes of the worlds that two scenarios become.
+    """Compare the worlds built from two scenarios.
 
     Args:
-        a: The one before.
-        b: The one after.
-        pairs: Entries of the files that belong together, by section.
-        seed: Both are built with it; None: the scenario's own, else 0.
-        keys: What differs between the files: facts that only repeat it are marked.
+        a: The first scenario.
+        b: The second scenario.
+        pairs: Matching entries of the files, by section.
+        seed: Seed with which both worlds are built; None: the scenario's own, else 0.
+        keys: Differences between the files; changes that only repeat one of them are marked ``direct``.
 
     Raises:
-        PlacementError: Something finds no place.
+        PlacementError: There is no free place for a random object.
     """
     old, new = _described(a, seed), _described(b, seed)
     changes = [
         WorldChange(object=None, change="changed", key=k, before=was, after=now, direct=_direct("world", k, now, keys))
         for k, was, now in differing(old["world"], new["world"])
     ]
-    twins = twins_of(old["objects"], new["objects"], pairs)
-    gone = set(range(len(old["objects"]))) - {i for i, _ in twins}
-    come = set(range(len(new["objects"]))) - {j for _, j in twins}
-    alone = _alone(old["objects"], "removed", keys)
-    for i in sorted(gone):
+    twins = match_objects(old["objects"], new["objects"], pairs)
+    removed = set(range(len(old["objects"]))) - {i for i, _ in twins}
+    added = set(range(len(new["objects"]))) - {j for _, j in twins}
+    single = _single_object_entries(old["objects"], "removed", keys)
+    for i in sorted(removed):
         item = old["objects"][i]
-        direct = listed(item["entry"]) in alone
+        direct = listed(item["entry"]) in single
         changes.append(WorldChange(object=item["name"], change="removed", before=_brief(item), direct=direct))
-    alone = _alone(new["objects"], "added", keys)
-    for j in sorted(come):
+    single = _single_object_entries(new["objects"], "added", keys)
+    for j in sorted(added):
         item = new["objects"][j]
-        direct = listed(item["entry"]) in alone
+        direct = listed(item["entry"]) in single
         changes.append(WorldChange(object=item["name"], change="added", after=_brief(item), direct=direct))
     twins.sort(key=lambda pair: pair[1])
     changes += [
@@ -87,7 +87,7 @@ def changed_worlds(
         written = [*about[entry], *about[entry.partition("[")[0]]]
         found = list(object_facts(old["objects"][i], new["objects"][j]))
         if not any(key == "group_behavior" for key, _, _ in found):
-            found += _company(old["objects"], new["objects"], i, j, same)
+            found += _changed_group(old["objects"], new["objects"], i, j, same)
         changes += [
             WorldChange(
                 object=name, change="changed", key=k, before=was, after=now, direct=_direct(entry, k, now, written)
@@ -98,14 +98,14 @@ def changed_worlds(
 
 
 def _entry_of(path: str) -> str:
-    """The entry that a path is in, or its section where it is the path of a whole one."""
+    """The entry that contains a path, or the path itself if it is a section."""
     return path.partition(".")[0]
 
 
-def _company(
+def _changed_group(
     old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]], i: int, j: int, twins: Mapping[int, int]
 ) -> Iterator[tuple[str, Any, Any]]:
-    """That an object is led by a group behavior with others than before: most of those in both worlds."""
+    """The members of an object's group behavior, if most of those in both worlds have changed."""
     before = old[i].get("group_members") or []
     after = new[j].get("group_members") or []
     if not before and not after:
@@ -117,26 +117,26 @@ def _company(
 
 
 def _direct(entry: str, fact: str, now: Any, keys: Sequence[KeyChange]) -> bool:
-    """Whether a fact only repeats a key that was written."""
+    """Whether the change of a property only repeats the change of a key."""
     root = re.split(r"[.\[]", fact, maxsplit=1)[0]
     for written in _WRITTEN.get(root, (root,)):
         place = f"{entry}.{written}{fact[len(root) :]}"
         for key in keys:
             if key.change not in ("removed", "moved") and key.path == place:
-                return _says(key.after, now)
-            if key.path.startswith((f"{place}.", f"{place}[")):  # a part of what is told as a whole
+                return _agrees(key.after, now)
+            if key.path.startswith((f"{place}.", f"{place}[")):  # a part of the property was written
                 return True
-            if key.path == entry:  # the file has a new entry for what was there before
+            if key.path == entry:  # the file has a new entry for an object that was there before
                 continue
             if key.change not in ("removed", "moved") and place.startswith((f"{key.path}.", f"{key.path}[")):
                 return True
     return False
 
 
-def _says(written: Any, fact: Any) -> bool:
-    """Whether a fact has the numbers that were written first; other things are what was written."""
+def _agrees(written: Any, fact: Any) -> bool:
+    """Whether a property begins with the numbers that were written; values without numbers always agree."""
     if isinstance(written, list) and written and all(isinstance(item, list) for item in written):
-        return isinstance(fact, list) and len(fact) == len(written) and all(map(_says, written, fact))
+        return isinstance(fact, list) and len(fact) == len(written) and all(map(_agrees, written, fact))
     ours, theirs = list(_numbers(written)), list(_numbers(fact))
     if not ours or not theirs:
         return True
@@ -151,11 +151,11 @@ def _numbers(value: Any) -> Iterator[float]:
         yield float(value)
 
 
-def _alone(objects: Sequence[Any], change: str, keys: Sequence[KeyChange]) -> set[str]:
-    """Entries that came or went and that stand for one object."""
-    told = {key.path for key in keys if key.change == change}
+def _single_object_entries(objects: Sequence[Any], change: str, keys: Sequence[KeyChange]) -> set[str]:
+    """Entries that were added or removed and that describe a single object."""
+    changed = {key.path for key in keys if key.change == change}
     count = Counter(listed(item["entry"]) for item in objects)
-    return {entry for entry in told if count[entry] == 1}
+    return {entry for entry in changed if count[entry] == 1}
 
 
 def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:
@@ -169,7 +169,7 @@ def _described(scenario: ResolvedScenario, seed: int | None) -> dict[str, Any]:
 
 
 def _brief(item: Mapping[str, Any]) -> dict[str, Any]:
-    """What one would say of an object that came or went."""
+    """The main properties of an object that was added or removed."""
     brief = {"role": item["role"], "shape": item["shape"]["name"], "pose": item["pose"]}
     if item["goals"]:
         brief["goals"] = item["goals"]

@@ -1,4 +1,4 @@
-"""Room between the things of a scene: distances on a lattice, and the width of the narrowest gap on a way."""
+"""Distances to the obstacles of a scene on a grid, and the width of the narrowest gap on a path."""
 
 from __future__ import annotations
 
@@ -13,30 +13,47 @@ import irsim._core as core
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.scenes import FAR, Scene
 
-__all__ = ["Gap", "Room", "cells_over", "free_place", "gap", "plugged", "reached_place", "room_of"]
+__all__ = [
+    "ClearanceGrid",
+    "Gap",
+    "cells_over",
+    "free_place",
+    "grid_of",
+    "narrowest_gap",
+    "reachable_place",
+    "with_gaps_closed",
+]
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]
-_CELLS, _ROUGH_CELLS = 150_000, 40_000
-_PER_RADIUS = 4
-_FINER, _FINE_CELLS = 10.0, (20_000, 60_000)
-"""Cells are so much finer in each round of measuring a gap, if there are not more than so many."""
-_MOST_TIGHT = 4
-_MOST_TRIED = 400
-"""Places that are looked at, evenly, before the best of them is refined."""
+_MAX_CELLS = 150_000
+"""Greatest number of cells of a grid over the world."""
+_MAX_ROUGH_CELLS = 40_000
+"""The same where several scenes are examined."""
+_CELLS_PER_RADIUS = 4
+"""Cells along the radius of the smallest mover, unless that takes too many cells."""
+_REFINEMENT = 10.0
+"""Factor by which the cells shrink in each round of measuring a gap."""
+_MAX_FINE_CELLS = (20_000, 60_000)
+"""Greatest number of cells in each round of measuring a gap."""
+_MAX_MEASURED = 4
+"""Number of narrow places on a path that are measured."""
+_MAX_TRIED_PLACES = 400
+"""Number of free places that are tried, evenly spread, before the best of them is refined."""
 _HALF_DIAGONAL = math.sqrt(0.5)
+"""Half the diagonal of a square cell of size 1."""
 
 
 @dataclass
-class Room:
-    """Room over a rectangle.
+class ClearanceGrid:
+    """Distances to the obstacles of a scene, on the cells of a rectangle.
 
     Attributes:
-        scene: Whose.
-        box: The rectangle [m].
-        cells: Its cells.
-        clearance: Distances and ways.
-        half: Half the diagonal of a cell: no distance is farther off than this [m].
+        scene: The scene.
+        box: The rectangle: x and y of its lower left and upper right corner [m].
+        cells: Origin, size and number of the cells.
+        clearance: Distances to obstacles, and paths through the cells.
+        half: Half the diagonal of a cell [m], the largest error of a distance.
     """
 
     scene: Scene
@@ -73,50 +90,50 @@ class Room:
 
 
 def cells_over(box: Box, size: float, most: int) -> core.Cells:
-    """Cells of about a size over a rectangle, larger ones if there would be too many."""
+    """Cells of about ``size`` [m] over a rectangle, larger ones if that takes more than ``most`` cells."""
     width, height = box[2] - box[0], box[3] - box[1]
     size = max(size, math.sqrt(width * height / most), width / most, height / most)
     nx, ny = max(1, math.ceil(width / size)), max(1, math.ceil(height / size))
     return (box[0], box[1]), (width / nx, height / ny), nx, ny
 
 
-def room_of(scene: Scene, movers: list[Mover], margin: float = 0.0) -> Room:
-    """Room over the world, and so much around it; made once for scenes with the same things."""
-    kept, key = scene.owner.kept, f"room {margin}"
+def grid_of(scene: Scene, movers: list[Mover], margin: float = 0.0) -> ClearanceGrid:
+    """The grid over the world and a margin [m] around it, computed once for scenes with the same obstacles."""
+    kept, key = scene.owner.kept, f"grid {margin}"
     if key not in kept:
         kept[key] = _around(scene.owner, movers, margin)
-    room: Room = kept[key]
-    return room
+    grid: ClearanceGrid = kept[key]
+    return grid
 
 
-def _around(scene: Scene, movers: list[Mover], margin: float) -> Room:
+def _around(scene: Scene, movers: list[Mover], margin: float) -> ClearanceGrid:
     x0, y0, x1, y1 = scene.bounds
     box = (x0 - margin, y0 - margin, x1 + margin, y1 + margin)
-    finest = min(mover.radius for mover in movers) / _PER_RADIUS
-    cells = cells_over(box, finest, _ROUGH_CELLS if scene.rough else _CELLS)
-    return _room(scene, box, cells)
+    finest = min(mover.radius for mover in movers) / _CELLS_PER_RADIUS
+    cells = cells_over(box, finest, _MAX_ROUGH_CELLS if scene.rough else _MAX_CELLS)
+    return _make_grid(scene, box, cells)
 
 
-def plugged(room: Room, gaps: list[Gap]) -> Room:
-    """The same with these gaps closed."""
-    plugs = [([core.Circle(radius=max(g.width / 2, room.half), center=[0, 0])], [*g.place, 0.0]) for g in gaps]
-    terrain = core.Terrain(FAR, [*room.scene.owner.things, *plugs])
-    return Room(room.scene, room.box, room.cells, core.Clearance(terrain, room.cells), room.half)
+def with_gaps_closed(grid: ClearanceGrid, gaps: list[Gap]) -> ClearanceGrid:
+    """A copy of the grid in which some gaps are filled with obstacles."""
+    plugs = [([core.Circle(radius=max(g.width / 2, grid.half), center=[0, 0])], [*g.place, 0.0]) for g in gaps]
+    terrain = core.Terrain(FAR, [*grid.scene.owner.things, *plugs])
+    return ClearanceGrid(grid.scene, grid.box, grid.cells, core.Clearance(terrain, grid.cells), grid.half)
 
 
-def _room(scene: Scene, box: Box, cells: core.Cells) -> Room:
+def _make_grid(scene: Scene, box: Box, cells: core.Cells) -> ClearanceGrid:
     half = _HALF_DIAGONAL * max(cells[1]) * (1 + 1e-9)
-    return Room(scene, box, cells, core.Clearance(scene.terrain, cells), half)
+    return ClearanceGrid(scene, box, cells, core.Clearance(scene.terrain, cells), half)
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A place between two things.
+    """A gap between two obstacles.
 
     Attributes:
-        width: How wide, 0 if there is no opening [m].
-        place: Where [m].
-        slack: It may be wider or narrower by so much [m].
+        width: Width of the gap, 0 if it is closed [m].
+        place: Position of its middle [m].
+        slack: Largest error of the width [m].
     """
 
     width: float
@@ -124,74 +141,93 @@ class Gap:
     slack: float
 
 
-def gap(room: Room, start: Point, goal: Point) -> Gap | None:
-    """The narrowest gap on the widest way; None if there is no such way, or nothing beside it."""
-    width, x, y = room.clearance.widest(start, goal, 0.0)
+def narrowest_gap(grid: ClearanceGrid, start: Point, goal: Point) -> Gap | None:
+    """The narrowest gap on the widest path; None if there is no path, or no obstacle beside it."""
+    width, x, y = grid.clearance.widest(start, goal, 0.0)
     if not math.isfinite(width):
         return None
-    way = room.clearance.way(start, goal, width - 1e-9)
+    way = grid.clearance.way(start, goal, width - 1e-9)
     if not len(way):
-        return Gap(2 * width, (x, y), 2 * room.half)
-    along = room.at(way)
+        return Gap(2 * width, (x, y), 2 * grid.half)
+    along = grid.at(way)
     lower = np.concatenate([[True], along[1:] <= along[:-1]]) & np.concatenate([along[:-1] <= along[1:], [True]])
-    tight = np.flatnonzero(lower & (along <= width + room.half))
-    tight = tight[np.argsort(along[tight], kind="stable")][:_MOST_TIGHT]
-    return min((_measured(room, way, int(k)) for k in tight), key=lambda found: found.width)
+    tight = np.flatnonzero(lower & (along <= width + grid.half))
+    tight = tight[np.argsort(along[tight], kind="stable")][:_MAX_MEASURED]
+    return min((_measure_gap(grid, way, int(k)) for k in tight), key=lambda found: found.width)
 
 
-def _measured(room: Room, way: NDArray[np.float64], k: int) -> Gap:
-    """The gap by a point of a way, on finer cells around it."""
-    width, place = float(room.at(way[k : k + 1])[0]), _point(way[k])
-    for most in _FINE_CELLS:
+def _measure_gap(grid: ClearanceGrid, way: NDArray[np.float64], k: int) -> Gap:
+    """The gap at point ``k`` of a path, measured on finer cells around it."""
+    width, place = float(grid.at(way[k : k + 1])[0]), _point(way[k])
+    for most in _MAX_FINE_CELLS:
         start, goal = _point(way[max(0, k - 4)]), _point(way[min(len(way) - 1, k + 4)])
-        side = max(math.dist(start, place), math.dist(goal, place)) + width + 2 * room.cell
+        side = max(math.dist(start, place), math.dist(goal, place)) + width + 2 * grid.cell
         box = (place[0] - side, place[1] - side, place[0] + side, place[1] + side)
-        room = _room(room.scene, box, cells_over(box, room.cell / _FINER, most))
-        start, goal = (room.clearance.climb(end, side / 2) for end in (start, goal))  # the gap counts, not its ends
-        fine, x, y = room.clearance.widest(start, goal, 0.0)
+        grid = _make_grid(grid.scene, box, cells_over(box, grid.cell / _REFINEMENT, most))
+        start, goal = (
+            grid.clearance.climb(end, side / 2) for end in (start, goal)
+        )  # away from obstacles at the ends, so that only the gap is measured
+        fine, x, y = grid.clearance.widest(start, goal, 0.0)
         if not math.isfinite(fine):
             return Gap(0.0, place, 0.0)
         width, place = fine, (x, y)
-        way = room.clearance.way(start, goal, width - 1e-9)
+        way = grid.clearance.way(start, goal, width - 1e-9)
         if not len(way):
             break
-        k = int(np.argmin(room.at(way)))
+        k = int(np.argmin(grid.at(way)))
         place = _point(way[k])
-    return Gap(2 * width + room.half, place, room.half) if width > 1.5 * room.cell else Gap(0.0, place, 0.0)
+    return Gap(2 * width + grid.half, place, grid.half) if width > 1.5 * grid.cell else Gap(0.0, place, 0.0)
 
 
 def _point(row: Any) -> Point:
     return float(row[0]), float(row[1])
 
 
-def free_place(room: Room, near: Point, radius: float, other: Point | None = None) -> Point | None:
-    """The nearest cell with room for a disc, if possible one that ``other`` can be reached from."""
-    reached = None if other is None else reached_place(room, near, radius, other, radius - room.half)
+def free_place(grid: ClearanceGrid, near: Point, radius: float, other: Point | None = None) -> Point | None:
+    """The nearest place where a disc fits, if possible one that can be reached from ``other``.
+
+    Args:
+        grid: The grid.
+        near: Where to search from [m].
+        radius: Radius of the disc [m].
+        other: The place from which the result should be reachable [m].
+    """
+    reached = None if other is None else reachable_place(grid, near, radius, other, radius - grid.half)
     if reached is not None:
         return reached
-    places = _places(room, near, radius)
+    places = _places(grid, near, radius)
     return _point(places[0]) if len(places) else None
 
 
-def reached_place(room: Room, near: Point, radius: float, other: Point, width: float) -> Point | None:
-    """The nearest cell with room for a disc and a way to ``other`` that keeps ``width`` [m] from everything."""
-    places = _places(room, near, radius)
-    stride = max(1, len(places) // _MOST_TRIED)
+def reachable_place(grid: ClearanceGrid, near: Point, radius: float, other: Point, width: float) -> Point | None:
+    """The nearest place where a disc fits and from which a path leads to ``other``; None if there is none.
+
+    Args:
+        grid: The grid.
+        near: Where to search from [m].
+        radius: Radius of the disc [m].
+        other: Where the path must lead [m].
+        width: Least distance of the path to obstacles [m].
+    """
+    places = _places(grid, near, radius)
+    stride = max(1, len(places) // _MAX_TRIED_PLACES)
     for k in range(0, len(places), stride):
-        if _leads(room, other, places[k], width):
+        if _is_connected(grid, other, places[k], width):
             nearer = range(max(0, k - stride + 1), k)
-            return next((_point(places[n]) for n in nearer if _leads(room, other, places[n], width)), _point(places[k]))
+            return next(
+                (_point(places[n]) for n in nearer if _is_connected(grid, other, places[n], width)), _point(places[k])
+            )
     return None
 
 
-def _leads(room: Room, other: Point, place: NDArray[np.float64], width: float) -> bool:
-    return room.clearance.widest(other, _point(place), 0.0)[0] >= width
+def _is_connected(grid: ClearanceGrid, other: Point, place: NDArray[np.float64], width: float) -> bool:
+    return grid.clearance.widest(other, _point(place), 0.0)[0] >= width
 
 
-def _places(room: Room, near: Point, radius: float) -> NDArray[np.float64]:
-    """(K, 2) middles of the cells with room for a disc, the nearest first."""
-    i, j = np.nonzero(room.distance >= radius + 0.5 * room.cell)
-    (x0, y0), (dx, dy), _, _ = room.cells
+def _places(grid: ClearanceGrid, near: Point, radius: float) -> NDArray[np.float64]:
+    """(K, 2) middles [m] of the cells where a disc fits, the nearest first."""
+    i, j = np.nonzero(grid.distance >= radius + 0.5 * grid.cell)
+    (x0, y0), (dx, dy), _, _ = grid.cells
     places = np.stack([x0 + (i + 0.5) * dx, y0 + (j + 0.5) * dy], axis=1)
     nearest: NDArray[np.float64] = places[np.argsort(np.hypot(*(places - np.array(near)).T), kind="stable")]
     return nearest

@@ -1,9 +1,10 @@
-"""Gaps between straight things and discs, exactly and at any scale, for worlds too large to lay fine cells over.
+"""Finds the narrow gaps between segments and discs, exactly and at any scale, for worlds too large for fine cells.
 
-A disc gets from one place to another unless a ring of things lies between the two in which each gap is narrower than
-the disc. Rings are found as cycles: things are joined from the narrowest gap on (Kruskal), and each cycle that closes
-is told by how many times it crosses the straight line from place to place. An odd number separates them, so the gap
-that closes the first such cycle is the narrowest gap on the widest way.
+A disc can move from one place to another unless a ring of obstacles separates the two places and each gap of the ring
+is narrower than the disc. Rings are found as cycles of a graph: obstacles are joined in the order of the gaps between
+them, the narrowest first (Kruskal). Each cycle that closes is described by the number of times it crosses the straight
+line between the two places. An odd number means that it separates them, so the gap that closes the first such cycle is
+the narrowest gap of the widest path.
 """
 
 from __future__ import annotations
@@ -18,24 +19,31 @@ from numpy.typing import NDArray
 import irsim._core as core
 from irsim.validation.feasibility.scenes import Scene
 
-__all__ = ["Barriers", "Opening", "barriers_of"]
+__all__ = ["Gaps", "Opening", "find_gaps"]
 
 Point = tuple[float, float]
 Floats = NDArray[np.float64]
-_MOST_FEATURES, _MOST_PAIRS, _MOST_CANDIDATES = 40_000, 60_000, 5_000_000
-_MOST_CELLS = 500_000
-"""Occupied ones of a map."""
-_MOST_CROSSINGS = 1_000_000
-"""Pairs times ways that are looked at at once."""
+Shapes = NDArray[np.object_]
+"""Shapely geometries."""
+_MAX_FEATURES = 40_000
+"""Number of segments and discs of a scene."""
+_MAX_GAPS = 60_000
+"""Number of gaps of a scene."""
+_MAX_CANDIDATES = 5_000_000
+"""Number of pairs of features whose extents along x overlap, which bounds the work."""
+_MAX_CELLS = 500_000
+"""Number of occupied cells of a map."""
+_MAX_CROSSINGS = 1_000_000
+"""Product of gaps and paths that are examined together, which bounds the memory."""
 
 
 @dataclass(frozen=True)
 class Opening:
-    """The narrowest gap on the widest way.
+    """The narrowest gap on the widest path.
 
     Attributes:
-        width: How wide, 0 if there is no opening; infinity if it is wider than was asked for [m].
-        place: Where [m].
+        width: Width of the gap [m]; 0 if there is no opening, infinity if it is wider than the widest gap examined.
+        place: Middle of the gap [m].
     """
 
     width: float
@@ -43,15 +51,16 @@ class Opening:
 
 
 @dataclass(frozen=True)
-class Barriers:
-    """What stands in the way, and which gaps are narrow.
+class Gaps:
+    """The obstacles of a scene as features, segments and discs, and the narrow gaps between them.
 
     Attributes:
-        a, b: (F, 2) ends of segments, twice the middle of a disc [m].
-        radius: (F,) of a disc, 0 of a segment [m].
-        first, second: (P,) features beside a gap, the narrowest gap first.
-        at_first, at_second: (P, 2) nearest points of the segments and middles [m].
-        width: (P,) of gaps; twice the distance to an edge of the world that is open, where only a middle must pass [m].
+        a, b: (F, 2) ends of segments; both are the centre of a disc [m].
+        radius: (F,) radius of discs, 0 for segments [m].
+        first, second: (P,) features beside each gap, the narrowest gap first.
+        at_first, at_second: (P, 2) nearest points of the two segments or centres [m].
+        width: (P,) width of each gap [m]; between an obstacle and an open edge of the world twice the distance, because
+            only the centre of a body must stay inside.
     """
 
     a: Floats
@@ -64,12 +73,16 @@ class Barriers:
     width: Floats
 
     @property
-    def most_ways(self) -> int:
-        """How many can be asked for at once."""
-        return _MOST_CROSSINGS // max(1, len(self.first))
+    def max_paths(self) -> int:
+        """Maximum number of paths that :meth:`openings` takes."""
+        return _MAX_CROSSINGS // max(1, len(self.first))
 
     def openings(self, ways: list[tuple[Point, Point]]) -> list[Opening]:
-        """The narrowest gaps on the widest ways from place to place, neither of them in or at an obstacle."""
+        """Find the narrowest gap on the widest path of each pair of places.
+
+        Args:
+            ways: Start and end of each path [m]; neither may be in or at an obstacle.
+        """
         found = [Opening(math.inf, goal) for _, goal in ways]
         if not ways or not len(self.first):
             return found
@@ -103,7 +116,10 @@ class Barriers:
         return found
 
     def _crossings(self, ways: Floats) -> NDArray[np.bool_]:
-        """(P, K) whether the way from feature to feature, from end to end, crosses straight lines oddly often."""
+        """(P, K) whether the connection through each gap crosses each straight line an odd number of times.
+
+        The connection leads from the first end of one feature through the gap to the first end of the other.
+        """
         start, along = ways[:, 0], ways[:, 1] - ways[:, 0]
         corners = (self.a[self.first], self.at_first, self.at_second, self.a[self.second])
         length = np.maximum((along**2).sum(axis=1), 1e-300)
@@ -121,7 +137,7 @@ class Barriers:
         return odd
 
     def _middle(self, k: int) -> Point:
-        """Of a gap."""
+        """Return the middle of a gap."""
         p, q = self.at_first[k], self.at_second[k]
         apart = math.dist(p, q)
         share = 0.5 + (self.radius[self.first[k]] - self.radius[self.second[k]]) / (2 * apart) if apart > 0 else 0.5
@@ -129,24 +145,29 @@ class Barriers:
         return float(x), float(y)
 
 
-def barriers_of(scene: Scene, *, most: float, open_edge: bool) -> Barriers | None:
-    """The barriers of a scene; None if they are too many.
+def find_gaps(scene: Scene, *, most: float, open_edge: bool) -> Gaps | None:
+    """Find the narrow gaps of a scene.
 
     Args:
-        scene: Whose.
-        most: Wider gaps are none [m].
-        open_edge: The edge of the world is no wall, but nobody shall go over it.
+        scene: The scene.
+        most: Gaps of this width or more are ignored [m].
+        open_edge: The edge of the world is not a wall, but no path may leave the world.
+
+    Returns:
+        The gaps; None if the scene has too many features or gaps.
     """
+    import shapely
+
     lines: list[tuple[Floats, float]] = []
     count = 0
     for parts, pose in scene.things:
         for part in parts:
-            if isinstance(part, core.GridCells) and part.grid.count > _MOST_CELLS:
+            if isinstance(part, core.GridCells) and part.grid.count > _MAX_CELLS:
                 return None
             new = list(_lines(part, pose))
             lines += new
             count += sum(len(points) - 1 for points, _ in new)
-            if count > _MOST_FEATURES:
+            if count > _MAX_FEATURES:
                 return None
     solid = count
     if open_edge:
@@ -155,22 +176,24 @@ def barriers_of(scene: Scene, *, most: float, open_edge: bool) -> Barriers | Non
     a = np.concatenate([points[:-1] for points, _ in lines])
     b = np.concatenate([points[1:] for points, _ in lines])
     radius = np.concatenate([np.full(len(points) - 1, r) for points, r in lines])
-    pairs = _candidates(a, b, radius, most)
+    shapes = _shapes(a, b)
+    pairs = _near_pairs(a, b, radius, most, shapes)
     if pairs is None:
         return None
     i, j = pairs
-    p, q = _nearest(a[i], b[i], a[j], b[j])
+    # of parallel walls any points are nearest; in this order GEOS prefers the ends of the first wall
+    q, p = shapely.get_coordinates(shapely.shortest_line(shapes[j], shapes[i])).reshape(-1, 2, 2).swapaxes(0, 1)
     width = np.maximum(np.hypot(*(p - q).T) - radius[i] - radius[j], 0.0)
     width = np.where((i >= solid) != (j >= solid), 2 * width, width)
     near = np.flatnonzero(width < most)
     near = near[np.argsort(width[near], kind="stable")]
-    if len(near) > _MOST_PAIRS:
+    if len(near) > _MAX_GAPS:
         return None
-    return Barriers(a, b, radius, i[near], j[near], p[near], q[near], width[near])
+    return Gaps(a, b, radius, i[near], j[near], p[near], q[near], width[near])
 
 
 def _lines(part: core.Part, pose: list[float]) -> Iterator[tuple[Floats, float]]:
-    """Polylines of a part, world frame, and how thick they are: a disc is a short one."""
+    """Return the polylines of a part in the world frame, each with its radius; a disc has one segment of length 0."""
     if isinstance(part, core.GridCells):
         for ring in part.grid.outline():
             yield np.concatenate([ring, ring[:1]]), 0.0
@@ -187,55 +210,30 @@ def _lines(part: core.Part, pose: list[float]) -> Iterator[tuple[Floats, float]]
     yield points @ np.array([[cos, sin], [-sin, cos]]) + (x, y), radius
 
 
-def _candidates(
-    a: Floats, b: Floats, radius: Floats, most: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
-    """Pairs whose boxes are near enough; None if there are too many to look at."""
-    low, high = np.minimum(a, b) - radius[:, None], np.maximum(a, b) + radius[:, None] + most
-    order = np.argsort(low[:, 0], kind="stable")
-    last = np.searchsorted(low[order, 0], high[order, 0], side="right")
-    counts = last - np.arange(len(order)) - 1
-    total = int(counts.sum())
-    if total > _MOST_CANDIDATES:
+def _near_pairs(a: Floats, b: Floats, radius: Floats, most: float, shapes: Shapes) -> NDArray[np.int64] | None:
+    """Find the pairs of features whose gaps may be narrower than ``most`` [m].
+
+    Returns:
+        (2, P) features beside a gap, the smaller index first, from left to right; None if too many pairs would have
+        to be examined.
+    """
+    import shapely
+
+    low = np.minimum(a[:, 0], b[:, 0]) - radius
+    high = np.maximum(a[:, 0], b[:, 0]) + radius + most
+    order = np.argsort(low, kind="stable")
+    overlaps = np.searchsorted(low[order], high[order], side="right") - np.arange(len(order)) - 1
+    if overlaps.sum() > _MAX_CANDIDATES:
         return None
-    left = np.repeat(np.arange(len(order)), counts)
-    right = left + 1 + np.arange(total) - np.repeat(np.cumsum(counts) - counts, counts)
-    i, j = order[left], order[right]
-    meet = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
-    return np.minimum(i[meet], j[meet]), np.maximum(i[meet], j[meet])
+    reach = most + radius + radius.max()
+    pairs = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=reach)
+    pairs = pairs[:, pairs[0] < pairs[1]]
+    rank = np.argsort(order)[pairs]
+    return pairs[:, np.lexsort((rank.max(axis=0), rank.min(axis=0)))]
 
 
-def _nearest(a: Floats, b: Floats, c: Floats, d: Floats) -> tuple[Floats, Floats]:
-    """(M, 2) nearest points of segments a to b and of segments c to d."""
-    best = np.full(len(a), math.inf)
-    p, q = a.copy(), c.copy()
+def _shapes(a: Floats, b: Floats) -> Shapes:
+    """Make a shapely segment of each feature, and a point of each disc."""
+    import shapely
 
-    def offer(first: Floats, second: Floats, where: NDArray[np.bool_] | None = None) -> None:
-        apart = ((first - second) ** 2).sum(axis=1)
-        better = apart < best if where is None else where
-        best[better] = 0.0 if where is not None else apart[better]
-        p[better], q[better] = first[better], second[better]
-
-    offer(a, _on(a, c, d))
-    offer(b, _on(b, c, d))
-    offer(_on(c, a, b), c)
-    offer(_on(d, a, b), d)
-    u, v, w = b - a, d - c, c - a
-    across = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-    some = across != 0
-    safe = np.where(some, across, 1.0)
-    t = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / safe
-    s = (w[:, 0] * u[:, 1] - w[:, 1] * u[:, 0]) / safe
-    cut = some & (t >= 0) & (t <= 1) & (s >= 0) & (s <= 1)
-    at = a + t[:, None] * u
-    offer(at, at, cut)
-    return p, q
-
-
-def _on(p: Floats, a: Floats, b: Floats) -> Floats:
-    """(M, 2) points of segments nearest to points."""
-    along = b - a
-    length = (along**2).sum(axis=1)
-    t = np.clip(((p - a) * along).sum(axis=1) / np.where(length > 0, length, 1.0), 0.0, 1.0)
-    nearest: Floats = a + t[:, None] * along
-    return nearest
+    return np.where((a == b).all(axis=1), shapely.points(a), shapely.linestrings(np.stack([a, b], axis=1)))

@@ -1,4 +1,4 @@
-"""Goals where the body has no room."""
+"""Goals that lie in an obstacle, too near to one for the body, or outside the boundary walls."""
 
 from __future__ import annotations
 
@@ -6,19 +6,26 @@ import math
 
 import irsim._core as core
 from irsim.scenario.checks import Context
-from irsim.validation.feasibility.clearance_grid import Point, free_place, room_of
+from irsim.validation.feasibility.clearance_grid import Point, free_place, grid_of
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.scenes import Scene
 from irsim.validation.feasibility.tally import Tally
 
-__all__ = ["check", "has_room"]
+__all__ = ["check", "fits_at"]
 
-_RINGS, _PER_RING = (0.5, 0.98), 16
+_RINGS = (0.5, 0.98)
+"""Radii of the rings on which places around a goal are tried, as shares of the arrival distance."""
+_PLACES_PER_RING = 16
 _SLACK = 1e-3
+"""Share by which the disc is smaller than the body, which may touch an obstacle."""
 
 
 def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> set[tuple[int, int]]:
-    """Goals and waypoints in obstacles, in the map, or too near to them: ids and indices."""
+    """Report goals and waypoints that cannot be reached because of what stands there.
+
+    Returns:
+        Their (object id, index of the goal) pairs.
+    """
     found: set[tuple[int, int]] = set()
     if not scene.things:
         return found
@@ -35,8 +42,8 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                     "goal-unreachable",
                     mover.goal_path(index),
                     mover.record,
-                    f"'{mover.record.name}' cannot get to {_what(goals, index)} ({goal[0]:g}, {goal[1]:g}): it lies "
-                    "outside of the walls round the world",
+                    f"'{mover.record.name}' cannot get to {_goal_term(goals, index)} ({goal[0]:g}, {goal[1]:g}): it "
+                    "lies outside the walls around the world",
                     f"x from {x0:g} to {x1:g} and y from {y0:g} to {y1:g}, a larger world, or no 'boundary: walls'",
                     scene.seed,
                     serious=mover.record.role == "robot",
@@ -44,25 +51,25 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
                 break
             key = (goal[0], goal[1], mover.radius, mover.reach)
             if key not in known:
-                known[key] = has_room(scene, mover, (goal[0], goal[1]))
+                known[key] = fits_at(scene, mover, (goal[0], goal[1]))
             if known[key]:
                 continue
             found.add((mover.record.id, index))
-            what = _what(goals, index)
-            place = free_place(room_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
+            what = _goal_term(goals, index)
+            place = free_place(grid_of(scene, movers), (goal[0], goal[1]), mover.around, _start(scene, mover))
             instead = "" if place is None else f": ({place[0]:.2f}, {place[1]:.2f}) is free"
             fix = f"a goal with {mover.around:.3g} m of free space around it{instead}"
-            if scene.rough:  # what is free under one seed is not under the next
+            if scene.rough:  # a place that is free with one seed is not free with the next
                 fix = (
-                    f"'range_low' and 'range_high' of what is placed at random that keep {mover.around:.3g} m off the "
-                    "goal, or a goal outside of them"
+                    f"'range_low' and 'range_high' that keep randomly placed objects {mover.around:.3g} m away from "
+                    "the goal, or a goal outside that range"
                 )
             tally.add(
                 "goal-blocked",
                 mover.goal_path(index),
                 mover.record,
-                f"'{mover.record.name}' has no room at {what} ({goal[0]:g}, {goal[1]:g}): "
-                + _why(context, scene, mover, goal),
+                f"'{mover.record.name}' does not fit at {what} ({goal[0]:g}, {goal[1]:g}): "
+                + _reason(context, scene, mover, goal),
                 fix,
                 scene.seed,
                 serious=mover.record.role == "robot",
@@ -71,12 +78,12 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
     return found
 
 
-def _what(goals: list[list[float]], index: int) -> str:
+def _goal_term(goals: list[list[float]], index: int) -> str:
     return f"waypoint {index + 1}" if len(goals) > 1 else "the goal"
 
 
 def _behind_walls(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> bool:
-    """Whether a goal is outside of walls that the robot is inside of, farther than it has to get near."""
+    """Whether a goal lies outside walls that enclose the robot, too far for it to count as arrived at the wall."""
     if context.scenario.world.boundary != "walls":
         return False
     x0, y0, x1, y1 = scene.bounds
@@ -87,14 +94,14 @@ def _behind_walls(context: Context, scene: Scene, mover: Mover, goal: list[float
     return outside and x0 <= x <= x1 and y0 <= y <= y1 and off >= mover.reach
 
 
-def has_room(scene: Scene, mover: Mover, goal: Point) -> bool:
-    """Whether the disc inside of the body can be where it counts as arrived."""
+def fits_at(scene: Scene, mover: Mover, goal: Point) -> bool:
+    """Whether the disc inside the body fits at a place that counts as arrived."""
     disc = [core.Circle(radius=mover.radius * (1 - _SLACK), center=[0, 0])]
     if not scene.terrain.collides(disc, (*goal, 0.0)):
         return True
     for share in _RINGS:
-        for k in range(_PER_RING):
-            angle = 2 * math.pi * k / _PER_RING
+        for k in range(_PLACES_PER_RING):
+            angle = 2 * math.pi * k / _PLACES_PER_RING
             x, y = (goal[i] + share * mover.reach * part for i, part in enumerate((math.cos(angle), math.sin(angle))))
             if not scene.terrain.collides(disc, (x, y, 0.0)):
                 return True
@@ -105,21 +112,21 @@ def _start(scene: Scene, mover: Mover) -> Point:
     return mover.centre(scene.pose[mover.record.id])
 
 
-def _why(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> str:
+def _reason(context: Context, scene: Scene, mover: Mover, goal: list[float]) -> str:
     point = [core.Circle(radius=0.0, center=[0, 0])]
     inside = scene.terrain.collides(point, (goal[0], goal[1], 0.0))
     name = _blocker(context, scene, mover, goal, 0.0 if inside else mover.radius)
     if inside:
-        return f"it lies inside of {name}"
-    return f"{name} is nearer than the {mover.radius:.3g} m that the body needs"
+        return f"it lies inside {name}"
+    return f"{name} is closer than the {mover.radius:.3g} m that the body needs"
 
 
 def _blocker(context: Context, scene: Scene, mover: Mover, goal: list[float], radius: float) -> str:
-    """Name of the thing that is there."""
+    """Name of the obstacle within a radius of a goal."""
     disc = [core.Circle(radius=radius, center=[0, 0])]
     still = [r for r in context.resolved.objects if r.static and not r.unobstructed]
     for record, (parts, pose) in zip(still, scene.things, strict=False):
         if core.intersects(parts, pose, disc, (goal[0], goal[1], 0.0)):
-            kinds = {"map": "the map", "walls": "the wall round the world"}
+            kinds = {"map": "the map", "walls": "the wall around the world"}
             return kinds.get(record.shape.name, f"'{record.name}'")
     return "an obstacle"

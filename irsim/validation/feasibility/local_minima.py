@@ -1,4 +1,4 @@
-"""Flat walls before which a behavior that plans no way stops: where it is nearest to the goal, there it stays."""
+"""Flat walls on which a behavior without path planning gets stuck, at the point of the wall nearest to the goal."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from irsim.validation.feasibility.scenes import Scene, Thing
 
 __all__ = ["Trap", "trap_of"]
 
-_MOST_CORNERS = 200
-"""Things with more corners are left alone."""
+_MAX_CORNERS = 200
+"""Obstacles with more corners are skipped."""
 
 
 @dataclass(frozen=True)
 class Trap:
-    """A side of something, across the way to the goal.
+    """A side of an obstacle, across the straight line to the goal.
 
     Attributes:
-        place: The point of it that is nearest to the goal [m].
-        length: How long it is [m].
-        line: It has no inside.
+        place: The point of the side that is nearest to the goal [m].
+        length: Length of the side [m].
+        line: Whether the side belongs to a line, which has no inside.
     """
 
     place: Point
@@ -37,8 +37,8 @@ class Trap:
 def trap_of(scene: Scene, leg: Leg) -> Trap | None:
     """The side that the straight line meets first, if its point nearest to the goal is not near one of its ends.
 
-    Whoever slides along a side towards the goal comes to that point: beyond it, every step leads away from the goal.
-    From a point near an end, the corner is got round.
+    A robot that slides along the side towards the goal stops at that point, as every further step leads away from the
+    goal. From a point near an end it gets around the corner.
     """
     best: tuple[float, Trap | None] = (math.inf, None)
     path = [core.Linestring(vertices=[list(leg.start), list(leg.goal)])]
@@ -49,7 +49,7 @@ def trap_of(scene: Scene, leg: Leg) -> Trap | None:
             met = _meets(leg.start, leg.goal, a, b)
             if met is not None and met < best[0]:
                 best = met, _trap(a, b, leg, line)
-        if not any(True for _ in _sides(thing)):  # round, or a map
+        if not any(True for _ in _sides(thing)):  # a circle or a map has no sides
             return None
     return best[1]
 
@@ -64,11 +64,11 @@ def _trap(a: Point, b: Point, leg: Leg, line: bool) -> Trap | None:
 
 
 def _sides(thing: Thing) -> Iterator[tuple[Point, Point, bool]]:
-    """Sides of polygons and lines, world frame, and whether it is a line."""
+    """Both ends of each side of polygons and lines, world frame, and whether it belongs to a line."""
     parts, (x, y, theta) = thing
     cos, sin = math.cos(theta), math.sin(theta)
     for part in parts:
-        if not isinstance(part, (core.Polygon, core.Linestring)) or len(part.vertices) > _MOST_CORNERS:
+        if not isinstance(part, (core.Polygon, core.Linestring)) or len(part.vertices) > _MAX_CORNERS:
             continue
         corners: list[Any] = [(x + cos * u - sin * v, y + sin * u + cos * v) for u, v in part.vertices]
         line = isinstance(part, core.Linestring)
@@ -78,7 +78,7 @@ def _sides(thing: Thing) -> Iterator[tuple[Point, Point, bool]]:
 
 
 def _meets(p: Point, q: Point, a: Point, b: Point) -> float | None:
-    """Where on the way from p to q, from 0 to 1, the segment from a to b is crossed."""
+    """Share of the way from p to q, 0 to 1, at which it crosses the segment from a to b; None if it does not."""
     dx, dy, ex, ey = q[0] - p[0], q[1] - p[1], b[0] - a[0], b[1] - a[1]
     across = dx * ey - dy * ex
     if across == 0:

@@ -1,4 +1,4 @@
-"""Robots that have somewhere to go."""
+"""Robots and moving obstacles that have goals."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["Mover", "movers_of"]
 
-_MOST = 2000
+_MAX_MOVERS = 2000
+"""Number of movers that are checked."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +24,13 @@ class Mover:
     """A robot, or an obstacle with a behavior of its own.
 
     Attributes:
-        record: It.
-        parts: Its body.
-        radius: Of the disc inside of its body; where that cannot be, it cannot be either [m].
+        record: The object.
+        parts: Parts of its body.
+        radius: Radius of the largest disc inside its body [m]; where the disc does not fit, the body does not either.
         offset: Middle of that disc, body frame [m].
-        around: Radius of the circle about that middle that holds its body [m].
-        speed: Highest [m/s].
-        path: Where its goals are written.
+        around: Radius of the circle about that middle that contains the body [m].
+        speed: Top speed [m/s].
+        path: Where its goals are written in the scenario.
         several: Whether a list of goals is written there.
     """
 
@@ -48,29 +49,29 @@ class Mover:
 
     @property
     def is_disc(self) -> bool:
-        """Whether the disc is all there is."""
+        """Whether the body is the disc."""
         return self.around <= self.radius * (1 + 1e-9)
 
     @property
     def reach(self) -> float:
-        """How far from a goal the middle of the disc may be on arrival [m]."""
+        """Greatest distance of the middle of the disc from a goal on arrival [m]."""
         return self.record.goal_threshold + math.hypot(*self.offset)
 
     def centre(self, pose: Sequence[float]) -> tuple[float, float]:
-        """Middle of the disc at a pose of the body."""
+        """Middle of the disc at a pose of the body [m]."""
         cos, sin = math.cos(pose[2]), math.sin(pose[2])
         x, y = self.offset
         return pose[0] + cos * x - sin * y, pose[1] + sin * x + cos * y
 
     @property
     def behavior(self) -> str:
-        """Name of what drives it, "" for none."""
+        """Name of its own behavior or that of its group, "" without any."""
         record = self.record
         return str(getattr(record.behavior if record.group_behavior is None else record.group_behavior, "name", ""))
 
 
 def movers_of(context: Context) -> list[Mover]:
-    """Those with a body of which a part is filled, the same in every scene."""
+    """Movers whose body has a filled part and is the same in every scene."""
     found: list[Mover] = []
     known: dict[int, tuple[list[Any], tuple[float, float, float]]] = {}
     for record in context.entry_objects:
@@ -79,13 +80,13 @@ def movers_of(context: Context) -> list[Mover]:
         if record.role != "robot" and record.behavior is None:
             continue
         if record.behavior is None and record.group_behavior is None and not _has_goal(context, record):
-            continue  # a program drives it, and nobody said where
+            continue  # a program drives it to a goal that the scenario does not name
         key = id(record.shape)
         if key not in known:
             parts = parts_of(record.shape)
             known[key] = parts, inner_disc(parts)
         parts, (x, y, radius) = known[key]
-        if radius <= 0 or len(found) >= _MOST:
+        if radius <= 0 or len(found) >= _MAX_MOVERS:
             continue
         around = radius if record.shape.name == "circle" else reach_of(record.shape) + math.hypot(x, y)
         path = _goal_path(context, record)

@@ -1,4 +1,4 @@
-"""Whether a robot that plans finds the way that there is: it goes there alone, until it arrives or stands."""
+"""Whether the planner of a robot finds an existing path, tried by simulating the robot alone."""
 
 from __future__ import annotations
 
@@ -14,29 +14,39 @@ from irsim.validation.feasibility.scenes import Scene
 
 __all__ = ["Missed", "missed_way"]
 
-_CELL = 0.1
-"""Of grid planners without a resolution and without a map [m]."""
-_FINER = (0.05, 0.03, 0.02)
-_MOST_CELLS, _MOST_FINE, _MOST_ROUGH = 1_000_000, 350_000, 20_000
-"""Of the world at the size that the robot plans with, at those that are tried, and where several scenes are."""
-_MOST_OBJECTS = 1000
-_MOST = 2
-"""Ways that are tried in one scene."""
-_MOST_STEPS, _MOST_WORK = 2000, 200_000
-"""Of one try; and steps times objects."""
-_PAUSE, _STILL = 5.0, 0.2
-"""Who gets no farther and does not turn in so many seconds stands [s], [m], [rad]; less where slower than 1 m/s."""
+_DEFAULT_CELL_M = 0.1
+"""Cell size [m] of grid planners without a resolution and without a map."""
+_FINER_CELLS_M = (0.05, 0.03, 0.02)
+"""Cell sizes [m] that are tried if the planner finds no path."""
+_MAX_CELLS = 1_000_000
+"""Number of cells of the world up to which the planner is tried with its own cell size."""
+_MAX_FINE_CELLS = 350_000
+"""Number of cells of the world up to which a finer cell size is tried."""
+_MAX_ROUGH_CELLS = 20_000
+"""Number of cells for both where several scenes are examined."""
+_MAX_OBJECTS = 1000
+"""Scenarios with more objects are not tried."""
+_MAX_TRIES = 2
+"""Number of goals that are tried in one scene."""
+_MAX_STEPS = 2000
+"""Number of steps of one try."""
+_MAX_WORK = 200_000
+"""Number of steps times objects of one try."""
+_WINDOW_S = 5.0
+"""Time [s] in which a robot that has not stopped moves or turns by at least ``_MIN_MOTION``."""
+_MIN_MOTION = 0.2
+"""Least motion [m or rad] in the window; for robots slower than 1 m/s in proportion to their speed."""
 
 
 @dataclass(frozen=True)
 class Missed:
-    """A way on which a robot gets stuck.
+    """A path that a robot misses, or on which it gets stuck.
 
     Attributes:
         planner: Name of the planner.
-        found: It finds a path, on which the robot stands still all the same.
-        cell: Size of its cells, None if it has none [m].
-        finer: Cells with which `astar` leads it there; None if none were found or tried [m].
+        found: Whether the planner finds a path, on which the robot nevertheless gets stuck.
+        cell: Cell size of the planner, None if it has no cells [m].
+        finer: Cell size with which `astar` leads the robot to its goal; None if none was found or tried [m].
     """
 
     planner: str
@@ -46,13 +56,16 @@ class Missed:
 
 
 def missed_way(context: Context, scene: Scene, mover: Mover, index: int) -> Missed | None:
-    """What a robot under `follow` misses; None if it gets there, if it plans nothing, or if to see that is too much.
+    """Find out whether a robot with behavior `follow` misses an existing path.
 
     Args:
         context: The scenario.
-        scene: Where everything stands.
+        scene: The initial poses and goals.
         mover: The robot, a disc.
-        index: Of the goal; those before it are on the way.
+        index: Index of the goal; the robot visits the goals before it first.
+
+    Returns:
+        The missed path; None if the robot arrives, if it plans no path, or if a try takes too much work.
     """
     behavior: Any = mover.record.behavior
     kept = scene.owner.kept
@@ -60,43 +73,43 @@ def missed_way(context: Context, scene: Scene, mover: Mover, index: int) -> Miss
         mover.behavior != "follow"
         or behavior is None
         or not mover.is_disc
-        or kept.get("planned", 0) >= (1 if scene.rough else _MOST)
+        or kept.get("planned", 0) >= (1 if scene.rough else _MAX_TRIES)
     ):
         return None
     kept["planned"] = kept.get("planned", 0) + 1
     planner = behavior.planner
-    cell = _cell(context, planner)
+    cell = _cell_size(context, planner)
     world = context.resolved.world
     area = world.width * world.height
-    most = _MOST_ROUGH if scene.rough else _MOST_CELLS
-    if (cell is not None and area > most * cell**2) or len(context.resolved.objects) > _MOST_OBJECTS:
+    most = _MAX_ROUGH_CELLS if scene.rough else _MAX_CELLS
+    if (cell is not None and area > most * cell**2) or len(context.resolved.objects) > _MAX_OBJECTS:
         return None
-    ended = _tried(context, scene, mover, index, behavior)
-    if ended == "fine":
+    ended = _try_alone(context, scene, mover, index, behavior)
+    if ended == "arrives":
         return None
-    for finer in () if "finer" in kept else _FINER:  # once in a scene
-        if area > (_MOST_ROUGH if scene.rough else _MOST_FINE) * finer**2:
+    for finer in () if "finer" in kept else _FINER_CELLS_M:  # only once in a scene
+        if area > (_MAX_ROUGH_CELLS if scene.rough else _MAX_FINE_CELLS) * finer**2:
             break
         fine = AStar(resolution=finer)
         if (cell is None or finer < cell) and (
-            _tried(context, scene, mover, index, behavior.model_copy(update={"planner": fine})) == "fine"
+            _try_alone(context, scene, mover, index, behavior.model_copy(update={"planner": fine})) == "arrives"
         ):
-            return Missed(planner.name, ended == "stands", cell, finer)
+            return Missed(planner.name, ended == "stuck", cell, finer)
     kept["finer"] = True
-    return Missed(planner.name, ended == "stands", cell, None)
+    return Missed(planner.name, ended == "stuck", cell, None)
 
 
-def _cell(context: Context, planner: Any) -> float | None:
+def _cell_size(context: Context, planner: Any) -> float | None:
     if not hasattr(planner, "resolution"):
         return None
     grid = context.resolved.grid
-    return float(planner.resolution or (max(grid.cell) if grid is not None else _CELL))
+    return float(planner.resolution or (max(grid.cell) if grid is not None else _DEFAULT_CELL_M))
 
 
-def _tried(
+def _try_alone(
     context: Context, scene: Scene, mover: Mover, index: int, behavior: Any
-) -> Literal["fine", "stands", "no path"]:
-    """What becomes of it alone; others are in nobody's way."""
+) -> Literal["arrives", "stuck", "no path"]:
+    """Simulate the robot with all other moving objects out of its way; it also "arrives" if the steps run out."""
     records = []
     for row, record in enumerate(context.resolved.objects):
         if record.id == mover.record.id:
@@ -116,18 +129,18 @@ def _tried(
     )
     try:
         state_of = env.simulation.state
-        chunk = max(1, math.ceil(_PAUSE / env.step_time))
-        for _ in range(0, min(_MOST_STEPS, _MOST_WORK // len(records)), chunk):
+        chunk = max(1, math.ceil(_WINDOW_S / env.step_time))
+        for _ in range(0, min(_MAX_STEPS, _MAX_WORK // len(records)), chunk):
             before = state_of.pose[mine].copy()
             env.advance(chunk, until_done=True)
             if any(event.kind == "no_path" and event.object == mover.record.name for event in env.events):
                 return "no path"
             if state_of.arrived[mine]:
-                return "fine"
+                return "arrives"
             moved = state_of.pose[mine] - before
             turned = abs(math.remainder(moved[2], math.tau))
-            if state_of.stopped[mine] or max(math.hypot(*moved[:2]), turned) < _STILL * min(1.0, mover.speed):
-                return "stands"
-        return "fine"
+            if state_of.stopped[mine] or max(math.hypot(*moved[:2]), turned) < _MIN_MOTION * min(1.0, mover.speed):
+                return "stuck"
+        return "arrives"
     finally:
         env.end(ending_time=0.0)

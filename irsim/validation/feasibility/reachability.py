@@ -1,4 +1,4 @@
-"""Whether robots can get from goal to goal, through gaps as wide as they are."""
+"""Whether robots can get from goal to goal through the gaps between obstacles."""
 
 from __future__ import annotations
 
@@ -9,8 +9,16 @@ import numpy as np
 
 import irsim._core as core
 from irsim.scenario.checks import Context
-from irsim.validation.feasibility.clearance_grid import Gap, Point, Room, gap, plugged, reached_place, room_of
-from irsim.validation.feasibility.gaps import barriers_of
+from irsim.validation.feasibility.clearance_grid import (
+    ClearanceGrid,
+    Gap,
+    Point,
+    grid_of,
+    narrowest_gap,
+    reachable_place,
+    with_gaps_closed,
+)
+from irsim.validation.feasibility.gaps import find_gaps
 from irsim.validation.feasibility.movers import Mover
 from irsim.validation.feasibility.passages import Passages, passages_of
 from irsim.validation.feasibility.planner_check import missed_way
@@ -19,30 +27,34 @@ from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["Leg", "check"]
 
-_TIGHT = 1.25
-"""A gap less than this many times as wide as the robot is narrow."""
-_MOST_GAPS = 4
-"""Gaps that are measured among the same things."""
-_MOST_PLUGS = 2
-"""Gaps that are closed, one after the other, to see whether there is another way."""
-_MOST_QUERIES = 20_000
-_COARSE, _BLIND = 0.5, 0.8
-"""Cells larger than this share of a radius are not what gaps are looked for with, if there is another way; those larger
-than that let everybody pass through thin walls."""
-_SAMPLES, _FEW = 14, 0.05
-"""Random goals that are tried along each axis; a share that does not matter."""
+_EASE = 1.25
+"""A gap narrower than this many times the width of the robot is reported as narrow."""
+_MAX_GAPS = 4
+"""Number of gaps that are measured between the same obstacles."""
+_MAX_CLOSED_GAPS = 2
+"""Number of gaps that are closed, one after the other, to see whether there is another path."""
+_MAX_LEGS = 20_000
+"""Number of legs that are examined in one scene."""
+_COARSE_CELL = 0.5
+"""Cells larger than this share of a radius are too coarse to measure gaps, so the gaps are found without cells."""
+_BLIND_CELL = 0.8
+"""Cells larger than this share of a radius miss thin walls, so they are never used."""
+_SAMPLES_PER_AXIS = 14
+"""Number of random goals that are tried along each axis of the range."""
+_MAX_BLOCKED_SHARE = 0.05
+"""Share of blocked random goals up to which nothing is reported."""
 
 
 @dataclass(frozen=True)
 class Leg:
-    """The way of a robot from one goal to the next.
+    """The part of a route from one goal to the next.
 
     Attributes:
-        mover: Who.
+        mover: The robot or moving obstacle.
         start: Middle of its inner disc at the start [m].
-        goal: Goal [m].
-        blocked: Something stands on the straight line.
-        index: Of the goal.
+        goal: Position of the goal [m].
+        blocked: Whether an obstacle stands on the straight line.
+        index: Index of the goal.
     """
 
     mover: Mover
@@ -59,167 +71,175 @@ def check(
     tally: Tally,
     *,
     blocking: bool,
-    roomless: set[tuple[int, int]],
+    blocked_goals: set[tuple[int, int]],
 ) -> dict[int, list[Leg]]:
-    """The legs of each robot by its id; those that have no way are told of, and left out with all that follow.
+    """Find the legs of each mover; legs without a path are reported, and the legs after them are skipped.
 
     Args:
         context: The scenario.
-        scene: Where everything stands.
-        movers: Who moves.
-        tally: Takes the findings.
-        blocking: Whether things stop robots.
-        roomless: (robot, goal) pairs that were told of already: ids and indices.
+        scene: The initial poses and goals.
+        movers: The robots and moving obstacles.
+        tally: Collects the findings.
+        blocking: Whether obstacles stop robots.
+        blocked_goals: (object id, index of the goal) pairs that have been reported already.
+
+    Returns:
+        Object id -> its legs.
     """
-    room = room_of(scene, movers) if scene.things and blocking else None
+    grid = grid_of(scene, movers) if scene.things and blocking else None
     legs: dict[int, list[Leg]] = {}
     kept, queries = scene.owner.kept, 0
     wanderers: set[object] = set()
-    coarse = [] if room is None else [m for m in movers if room.cell > _COARSE * m.radius]
-    passages = passages_of(context, scene, coarse, roomless, ease=_TIGHT) if coarse else None
-    blind = {m.record.id for m in coarse if room is not None and room.cell > _BLIND * m.radius}
-    far = {m.record.id for m in coarse} if passages is not None else set()
-    for mover in sorted(movers, key=lambda m: m.record.role != "robot"):  # robots first: not all is looked at
+    coarse = [] if grid is None else [m for m in movers if grid.cell > _COARSE_CELL * m.radius]
+    passages = passages_of(context, scene, coarse, blocked_goals, ease=_EASE) if coarse else None
+    blind = {m.record.id for m in coarse if grid is not None and grid.cell > _BLIND_CELL * m.radius}
+    by_passages = {m.record.id for m in coarse} if passages is not None else set()
+    for mover in sorted(
+        movers, key=lambda m: m.record.role != "robot"
+    ):  # robots first, as the number of measured gaps is bounded
         pose = scene.pose[mover.record.id]
         start = mover.centre(pose)
         if mover.record.wander:
             if (
-                room is not None
+                grid is not None
                 and mover.record.path not in wanderers
                 and mover.record.id not in blind
-                and room.holds(start)
+                and grid.holds(start)
             ):
                 wanderers.add(mover.record.path)
-                _wander(room, scene, mover, start, tally)
+                _check_wandering(grid, scene, mover, start, tally)
             continue
         made = legs.setdefault(mover.record.id, [])
         for index, goal in enumerate(scene.goals[mover.record.id]):
             to = (goal[0], goal[1])
-            if room is None or not (room.holds(start) and room.holds(to)):
+            if grid is None or not (grid.holds(start) and grid.holds(to)):
                 made.append(Leg(mover, start, to, False, index))
                 start = to
                 continue
             queries += 1
             if (
-                queries > _MOST_QUERIES
-                or (mover.record.id, index) in roomless
-                or _in_something(scene, mover, start, index)
+                queries > _MAX_LEGS
+                or (mover.record.id, index) in blocked_goals
+                or (index == 0 and _starts_in_obstacle(scene, mover))
             ):
                 break
-            if mover.record.id in far or mover.record.id in blind:
-                if not _passes(context, scene, room, passages, mover, index, start, tally):
+            if mover.record.id in by_passages or mover.record.id in blind:
+                if not _check_passages(context, scene, grid, passages, mover, index, start, tally):
                     break
-                made.append(Leg(mover, start, to, _crosses(scene, mover, start, to), index))
+                made.append(Leg(mover, start, to, _is_swept_line_blocked(scene, mover, start, to), index))
                 start = to
                 continue
-            arrival = _arrival(room, mover, to)
+            arrival = _arrival_place(grid, mover, to)
             if arrival is None:
                 break
-            least = mover.radius - room.half
+            least = mover.radius - grid.half
             found = None
-            if room.clearance.widest(start, to, mover.reach)[0] >= least and kept.get("gaps", 0) < _MOST_GAPS:
-                measured, found = _tightest(room, scene, mover, start, arrival)
+            if grid.clearance.widest(start, to, mover.reach)[0] >= least and kept.get("gaps", 0) < _MAX_GAPS:
+                measured, found = _narrowest_on_path(grid, scene, mover, start, arrival)
                 kept["gaps"] = kept.get("gaps", 0) + measured
             if found is not None and found.width + found.slack < 2 * mover.radius:
-                _lost(context, room, scene, movers, mover, start, index, found, tally)
+                _report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
                 break
-            if room.clearance.widest(start, to, mover.reach)[0] < least:
-                ends = _apart(room, mover, start, arrival)
+            if grid.clearance.widest(start, to, mover.reach)[0] < least:
+                ends = _open_ends(grid, mover, start, arrival)
                 key = f"gap {ends}"
                 if key not in kept:
-                    kept[key] = gap(room, *ends)
+                    kept[key] = narrowest_gap(grid, *ends)
                 found = kept[key]
-                _lost(context, room, scene, movers, mover, start, index, found, tally)
+                _report_no_path(context, grid, scene, movers, mover, start, index, found, tally)
                 break
             if found is not None and mover.record.role == "robot":
-                _narrow(context, mover, index, found, scene, tally)
-            made.append(Leg(mover, start, to, _line(room, mover, start, to), index))
-            start = room.clearance.climb(arrival, mover.radius)
+                _report_narrow(context, mover, index, found, scene, tally)
+            made.append(Leg(mover, start, to, _is_line_blocked(grid, mover, start, to), index))
+            start = grid.clearance.climb(arrival, mover.radius)
     return legs
 
 
-def _in_something(scene: Scene, mover: Mover, start: Point, index: int) -> bool:
-    """Whether it starts in an obstacle, which other checks tell."""
-    if index:
-        return False
-    pose = scene.pose[mover.record.id]
-    return scene.terrain.collides(mover.parts, pose)
+def _starts_in_obstacle(scene: Scene, mover: Mover) -> bool:
+    """Whether a mover starts in an obstacle, which other checks report."""
+    return scene.terrain.collides(mover.parts, scene.pose[mover.record.id])
 
 
-def _arrival(room: Room, mover: Mover, goal: Point) -> Point | None:
-    """The roomiest cell where it counts as arrived, None if there is hardly any room."""
-    (x0, y0), (dx, dy), nx, ny = room.cells
-    reach = mover.reach + room.half
+def _arrival_place(grid: ClearanceGrid, mover: Mover, goal: Point) -> Point | None:
+    """The cell farthest from obstacles at which a mover counts as arrived; None if the body does not fit there."""
+    (x0, y0), (dx, dy), nx, ny = grid.cells
+    reach = mover.reach + grid.half
     i0, i1 = (min(max(int((goal[0] + s * reach - x0) / dx), 0), nx - 1) for s in (-1, 1))
     j0, j1 = (min(max(int((goal[1] + s * reach - y0) / dy), 0), ny - 1) for s in (-1, 1))
-    near = room.distance[i0 : i1 + 1, j0 : j1 + 1]
+    near = grid.distance[i0 : i1 + 1, j0 : j1 + 1]
     i, j = np.unravel_index(int(near.argmax()), near.shape)
-    if near[i, j] < mover.radius - room.half:
+    if near[i, j] < mover.radius - grid.half:
         return None
     return x0 + (i0 + int(i) + 0.5) * dx, y0 + (j0 + int(j) + 0.5) * dy
 
 
-def _apart(room: Room, mover: Mover, start: Point, arrival: Point) -> tuple[Point, Point]:
-    """Both ends, away from what they stand beside."""
+def _open_ends(grid: ClearanceGrid, mover: Mover, start: Point, arrival: Point) -> tuple[Point, Point]:
+    """Both ends of a leg, moved away from obstacles beside them, so that only gaps on the path are measured."""
     reach = 2 * mover.radius
-    return room.clearance.climb(start, reach), room.clearance.climb(arrival, reach)
+    return grid.clearance.climb(start, reach), grid.clearance.climb(arrival, reach)
 
 
-def _tightest(room: Room, scene: Scene, mover: Mover, start: Point, arrival: Point) -> tuple[int, Gap | None]:
-    """How many gaps were measured, and the narrowest on the way if it is hardly as wide as the body, or not."""
-    need, start_top, goal_top = 2 * mover.radius, *_apart(room, mover, start, arrival)
+def _narrowest_on_path(
+    grid: ClearanceGrid, scene: Scene, mover: Mover, start: Point, arrival: Point
+) -> tuple[int, Gap | None]:
+    """Number of gaps that were measured, and the narrowest gap on the path; None if all gaps are wide."""
+    need, start_top, goal_top = 2 * mover.radius, *_open_ends(grid, mover, start, arrival)
     closed: list[Gap] = []
-    while len(closed) < _MOST_PLUGS:
-        width = room.clearance.widest(start_top, goal_top, 0.0)[0]
-        if closed and width < mover.radius - room.half:
+    while len(closed) < _MAX_CLOSED_GAPS:
+        width = grid.clearance.widest(start_top, goal_top, 0.0)[0]
+        if closed and width < mover.radius - grid.half:
             return len(closed), max(closed, key=lambda g: g.width)
-        if not math.isfinite(width) or 2 * width >= _TIGHT * need:
+        if not math.isfinite(width) or 2 * width >= _EASE * need:
             return len(closed), None
         key = f"gap {need} {round(width, 9)} {len(closed)}"
         if key not in scene.owner.kept:
-            scene.owner.kept[key] = gap(room, start_top, goal_top)
+            scene.owner.kept[key] = narrowest_gap(grid, start_top, goal_top)
         found: Gap | None = scene.owner.kept[key]
         if found is None or found.width + found.slack >= need:
-            narrow = found is not None and found.width < _TIGHT * need
+            narrow = found is not None and found.width < _EASE * need
             return len(closed) + 1, found if narrow else None
         closed.append(found)
-        room = plugged(room, closed)
+        grid = with_gaps_closed(grid, closed)
     return len(closed), None
 
 
-def _passes(
+def _check_passages(
     context: Context,
     scene: Scene,
-    room: Room,
+    grid: ClearanceGrid,
     passages: Passages | None,
     mover: Mover,
     index: int,
     start: Point,
     tally: Tally,
 ) -> bool:
-    """Tell what is to be told of a way in a large world; False if there is none."""
+    """Report a narrow or missing path of a mover for which cells are too coarse.
+
+    Returns:
+        False if there is certainly no path.
+    """
     goal = scene.goals[mover.record.id][index]
     to = (goal[0], goal[1])
     pair = (mover.record.id, index)
     if passages is None or pair not in passages.found:
-        if mover.record.role == "robot" and _crosses(scene, mover, start, to):
-            _unchecked(mover, index, room, scene, tally)
+        if mover.record.role == "robot" and _is_swept_line_blocked(scene, mover, start, to):
+            _report_unchecked(mover, index, grid, scene, tally)
         return True
     found, closed = passages.found[pair]
     if closed:
         outside = False
         if context.scenario.world.boundary == "none":
-            inner = barriers_of(scene.owner, most=2 * mover.radius, open_edge=False)
+            inner = find_gaps(scene.owner, most=2 * mover.radius, open_edge=False)
             outside = inner is not None and inner.openings([(start, to)])[0].width >= 2 * mover.radius
-        _no_way(context, scene, mover, index, found, None, outside, tally)
+        _add_unreachable(context, scene, mover, index, found, None, outside, tally)
         return False
     if found is not None and mover.record.role == "robot":
-        _narrow(context, mover, index, found, scene, tally)
+        _report_narrow(context, mover, index, found, scene, tally)
     return True
 
 
-def _crosses(scene: Scene, mover: Mover, start: Point, goal: Point) -> bool:
-    """The same, exactly."""
+def _is_swept_line_blocked(scene: Scene, mover: Mover, start: Point, goal: Point) -> bool:
+    """Whether the disc hits an obstacle on the straight line before it counts as arrived; exact, without cells."""
     length = math.dist(start, goal)
     left = length - mover.reach
     if left <= 0:
@@ -233,23 +253,24 @@ def _crosses(scene: Scene, mover: Mover, start: Point, goal: Point) -> bool:
     return scene.terrain.collides([core.Polygon(vertices=corners)], (0.0, 0.0, 0.0))
 
 
-def _unchecked(mover: Mover, index: int, room: Room, scene: Scene, tally: Tally) -> None:
-    width, height = (room.box[2] - room.box[0], room.box[3] - room.box[1])
+def _report_unchecked(mover: Mover, index: int, grid: ClearanceGrid, scene: Scene, tally: Tally) -> None:
+    width, height = (grid.box[2] - grid.box[0], grid.box[3] - grid.box[1])
     tally.add(
         "way-unchecked",
         mover.goal_path(index),
         mover.record,
-        f"something stands between '{mover.record.name}' and its goal, and whether there is a way is not known: "
-        f"{width:g} m × {height:g} m with so many corners are too much to look for ways of {_metres(2 * mover.radius)}",
-        "behavior: {name: follow}, and --simulate or a run: an event 'no_path' says that there is none",
+        f"an obstacle stands between '{mover.record.name}' and its goal, and it is not known whether there is a path: "
+        f"a world of {width:g} m × {height:g} m with this many corners is too large to search for paths "
+        f"{_metres(2 * mover.radius)} wide",
+        "behavior: {name: follow}, and --simulate or a run: an event 'no_path' means that there is no path",
         scene.seed,
         serious=False,
     )
 
 
-def _lost(
+def _report_no_path(
     context: Context,
-    room: Room,
+    grid: ClearanceGrid,
     scene: Scene,
     movers: list[Mover],
     mover: Mover,
@@ -258,18 +279,18 @@ def _lost(
     found: Gap | None,
     tally: Tally,
 ) -> None:
-    """There is no way over cells that are fine enough."""
+    """Report a goal to which no path leads over cells that are fine enough."""
     x, y, *_ = scene.goals[mover.record.id][index]
     need, outside, place = 2 * mover.radius, False, None
     if not scene.rough:
-        place = reached_place(room, (x, y), mover.radius, start, max(need / 2, _TIGHT * need / 2 - room.half))
+        place = reachable_place(grid, (x, y), mover.radius, start, max(need / 2, _EASE * need / 2 - grid.half))
     if context.scenario.world.boundary == "none":
-        wider = room_of(scene, movers, 4 * max(m.around for m in movers) + 2 * room.cell)
+        wider = grid_of(scene, movers, 4 * max(m.around for m in movers) + 2 * grid.cell)
         outside = wider.clearance.widest(start, (x, y), mover.reach)[0] >= mover.radius - wider.half
-    _no_way(context, scene, mover, index, found, place, outside, tally)
+    _add_unreachable(context, scene, mover, index, found, place, outside, tally)
 
 
-def _no_way(
+def _add_unreachable(
     context: Context,
     scene: Scene,
     mover: Mover,
@@ -279,23 +300,35 @@ def _no_way(
     outside: bool,
     tally: Tally,
 ) -> None:
+    """Add the finding ``goal-unreachable``.
+
+    Args:
+        context: The scenario.
+        scene: The initial poses and goals.
+        mover: The mover.
+        index: Index of the goal.
+        found: The narrowest gap on the widest path, None if there is no opening at all.
+        place: Another goal that can be reached, if one is known [m].
+        outside: Whether a path leads outside the world, over its open edge.
+        tally: Collects the finding.
+    """
     name, goals = mover.record.name, scene.goals[mover.record.id]
     goal, need = goals[index], 2 * mover.radius
     what = f"waypoint {index + 1} at" if len(goals) > 1 else "its goal"
     if found is None or found.width <= 0:
-        why = "nothing is open between them, not even for a thinner one"
-        fix = "an opening in what stands between"
+        why = "obstacles separate them completely, without a gap even for a thinner robot"
+        fix = "an opening in the obstacles between them"
     else:
         x, y = found.place
         wide = f"a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f})" if found.width < need else "too narrow a gap"
-        why = f"the widest way has {wide}, and it needs {'' if mover.is_disc else 'at least '}{_metres(need)}"
-        fix = f"a gap of more than {_metres(need)} ({_metres(_TIGHT * need)} to pass with ease), or a narrower robot"
+        why = f"the widest path has {wide}, and the robot needs {'' if mover.is_disc else 'at least '}{_metres(need)}"
+        fix = f"a gap of more than {_metres(need)} ({_metres(_EASE * need)} to pass with ease), or a narrower robot"
     if hasattr(context.scenario.world.obstacle_map, "fill"):
         fix += ", or a map with another 'seed' or a lower 'fill'"
     if place is not None:
         fix += f", or another goal: it can get to ({place[0]:.2f}, {place[1]:.2f})"
     if outside:
-        why += ". Only outside of the world, whose edge is open, it could get round"
+        why += ". A path around the obstacles exists only outside the world, whose edge is open"
     tally.add(
         "goal-unreachable",
         mover.goal_path(index),
@@ -307,24 +340,24 @@ def _no_way(
     )
 
 
-def _narrow(context: Context, mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
+def _report_narrow(context: Context, mover: Mover, index: int, found: Gap, scene: Scene, tally: Tally) -> None:
     need, name = 2 * mover.radius, mover.record.name
     x, y = found.place
     what = (
-        f"the way of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}): "
-        f"{_metres(max(0.0, found.width - need) / 2)} to each side of its {_metres(need)}"
+        f"the path of '{name}' leads through a gap of {_metres(found.width)} at ({x:.2f}, {y:.2f}), which leaves "
+        f"{_metres(max(0.0, found.width - need) / 2)} on each side of its {_metres(need)}"
     )
-    fix = f"{_metres(_TIGHT * need)} or more are easier to get through"
+    fix = f"a gap of {_metres(_EASE * need)} or more is easier to pass"
     missed = missed_way(context, scene, mover, index)
     if missed is not None:
         cells = "" if missed.cell is None else f" with cells of {_metres(missed.cell)}"
         planner = f"its planner '{missed.planner}'{cells}"
         what += (
-            f". Alone it gets stuck on the path of {planner}"
+            f". Even alone it gets stuck on the path of {planner}"
             if missed.found
-            else f". It stands still: {planner} does not find that way"
+            else f". It does not move, because {planner} does not find that path"
         )
-        fix = f"a gap of {_metres(_TIGHT * need)} or more"
+        fix = f"a gap of {_metres(_EASE * need)} or more"
         if missed.finer is not None:
             fix = f"planner: {{name: astar, resolution: {missed.finer:g}}} in its behavior, or {fix}"
     tally.add("narrow-passage", mover.goal_path(index), mover.record, what, fix, scene.seed, serious=missed is not None)
@@ -334,33 +367,33 @@ def _metres(value: float) -> str:
     return f"{value:.3g} m" if value >= 0.1 else f"{value:.2g} m"
 
 
-def _line(room: Room, mover: Mover, start: Point, goal: Point) -> bool:
-    """Whether something stands on the straight line, short of where it has arrived."""
+def _is_line_blocked(grid: ClearanceGrid, mover: Mover, start: Point, goal: Point) -> bool:
+    """Whether an obstacle stands on the straight line before the mover counts as arrived."""
     length = math.dist(start, goal)
     share = max(0.0, 1.0 - mover.reach / length) if length > 0 else 0.0
-    t = np.linspace(0.0, share, 2 + int(length / room.cell))[:, None]
+    t = np.linspace(0.0, share, 2 + int(length / grid.cell))[:, None]
     points = np.array(start) + t * (np.array(goal) - np.array(start))
-    return bool(room.at(points).min() < mover.radius - room.half)
+    return bool(grid.at(points).min() < mover.radius - grid.half)
 
 
-def _wander(room: Room, scene: Scene, mover: Mover, start: Point, tally: Tally) -> None:
-    """Random goals are drawn without a look at what stands there."""
-    if _in_something(scene, mover, start, 0):
+def _check_wandering(grid: ClearanceGrid, scene: Scene, mover: Mover, start: Point, tally: Tally) -> None:
+    """Report a wandering mover that cannot reach many of its random goals, which are drawn regardless of obstacles."""
+    if _starts_in_obstacle(scene, mover):
         return
     low, high = mover.record.range_low, mover.record.range_high
-    x = low[0] + (high[0] - low[0]) * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    y = low[1] + (high[1] - low[1]) * (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    points = [(float(a), float(b)) for a in x for b in y if room.holds((float(a), float(b)))]
-    lost = [p for p in points if room.clearance.widest(start, p, mover.reach)[0] < mover.radius - room.half]
-    if len(lost) <= _FEW * len(points):
+    x = low[0] + (high[0] - low[0]) * (np.arange(_SAMPLES_PER_AXIS) + 0.5) / _SAMPLES_PER_AXIS
+    y = low[1] + (high[1] - low[1]) * (np.arange(_SAMPLES_PER_AXIS) + 0.5) / _SAMPLES_PER_AXIS
+    points = [(float(a), float(b)) for a in x for b in y if grid.holds((float(a), float(b)))]
+    blocked = [p for p in points if grid.clearance.widest(start, p, mover.reach)[0] < mover.radius - grid.half]
+    if len(blocked) <= _MAX_BLOCKED_SHARE * len(points):
         return
     tally.add(
         "wander-blocked",
         mover.path,
         mover.record,
-        f"about {len(lost) / len(points):.0%} of the random goals of '{mover.record.name}' lie in obstacles or behind "
-        f"them, ({lost[0][0]:.2f}, {lost[0][1]:.2f}) for one: it would never get there",
+        f"about {len(blocked) / len(points):.0%} of the random goals of '{mover.record.name}' lie in obstacles or "
+        f"behind them, for example ({blocked[0][0]:.2f}, {blocked[0][1]:.2f}), and can never be reached",
         "range_low and range_high that span open space",
         scene.seed,
-        serious=len(lost) > 0.5 * len(points),
+        serious=len(blocked) > 0.5 * len(points),
     )

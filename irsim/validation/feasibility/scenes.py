@@ -1,4 +1,4 @@
-"""Where everything stands at the start: of the one scene there is, or of several that are drawn."""
+"""Initial poses, goals and obstacles of a scenario: one scene, or several with different seeds if some are random."""
 
 from __future__ import annotations
 
@@ -20,31 +20,34 @@ __all__ = ["FAR", "Drawn", "Scene", "scenes_of"]
 
 FAR = (-1e8, -1e8, 1e8, 1e8)
 """Bounds of a terrain that nothing leaves."""
-_SEEDS = 20
-_MOST_PLACED = 6_000
-"""Objects in all scenes together, unless that is less than two scenes."""
-_MOST_TERRAINS = 5
-_MAP_CELLS = 1_000_000
-"""Scenes over maps with more cells are not drawn."""
-_MOST_EDGES = 300_000
-"""Maps whose outline has about so many more edges are left alone."""
-_EVERY = 16
+_MAX_SEEDS = 20
+"""Number of seeds that are tried."""
+_MAX_PLACED_OBJECTS = 6_000
+"""Number of objects in all scenes together, though at least two scenes are drawn."""
+_MAX_TERRAINS = 5
+"""Number of scenes that are examined if their obstacles differ."""
+_MAX_MAP_CELLS = 1_000_000
+"""Random scenes over maps with more cells are not examined."""
+_MAX_MAP_EDGES = 300_000
+"""Maps whose outline has more edges are not examined."""
+_COLUMN_STRIDE = 16
+"""Every how many columns a large map is sampled to estimate the length of its outline."""
 
 Thing = tuple[list[Any], list[float]]
 
 
 @dataclass
 class Scene:
-    """One scene.
+    """The initial state of a world.
 
     Attributes:
-        seed: Of what is drawn.
-        pose: x, y, heading of each object, by id.
+        seed: Seed of the random poses, goals and shapes.
+        pose: x, y, heading of each object, by id [m, m, rad].
         goals: Goals of each object, by id.
-        things: Parts and pose of what stands still and is in the way.
-        bounds: The world's extent [m].
-        rough: Fewer cells than usual are looked at.
-        kept: What was found out about it.
+        things: Parts and pose of each static obstacle.
+        bounds: Extent of the world: left, bottom, right, top [m].
+        rough: Whether coarser grids are used, because several scenes are examined.
+        kept: Results computed for the scene, by key.
     """
 
     seed: int
@@ -58,16 +61,16 @@ class Scene:
 
     @cached_property
     def terrain(self) -> core.Terrain:
-        """What is in the way."""
+        """The static obstacles, ready for collision queries."""
         return self._same.terrain if self._same is not None else core.Terrain(FAR, self.things)
 
     def shares_with(self, other: Scene) -> None:
-        """The same things stand there."""
+        """Declare that another scene has the same static obstacles, so that both use its results."""
         self._same = other
 
     @property
     def owner(self) -> Scene:
-        """The first of the scenes with the same things: what was found out about them is kept with it."""
+        """The scene that keeps the results for all scenes with the same static obstacles."""
         return self if self._same is None else self._same
 
 
@@ -76,10 +79,10 @@ class Drawn:
     """Scenes of a scenario.
 
     Attributes:
-        scenes: Those in which everything found its place.
-        random: Whether anything about them is drawn.
-        tried: How many were drawn.
-        failed: Seed → the object that found no room.
+        scenes: Scenes in which every object found a free place.
+        random: Whether the scenes are random.
+        tried: Number of seeds that were tried.
+        failed: Seed → index of the object that found no free place.
         own: The seed of the scenario itself, if it has one.
     """
 
@@ -91,52 +94,54 @@ class Drawn:
 
 
 def scenes_of(context: Context) -> Drawn:
-    """The scene of a scenario without chance; else those of its own seed and of the seeds from 0 on."""
+    """The one scene of a scenario in which nothing is random; else those of its own seed and of the seeds from 0 on."""
     resolved, own = context.resolved, context.scenario.world.seed
     placed = bool(resolved.placements)
     free = [record for record in resolved.objects if not has_fixed_shape(record.shape)]
     if _is_intricate(resolved.grid):
         return Drawn([], random=False, tried=0, failed={}, own=own)
     if not placed and not free:
-        return Drawn([_written(context)], random=False, tried=1, failed={}, own=own)
-    if resolved.grid is not None and resolved.grid.size[0] * resolved.grid.size[1] > _MAP_CELLS:
+        return Drawn([_fixed_scene(context)], random=False, tried=1, failed={}, own=own)
+    if resolved.grid is not None and resolved.grid.size[0] * resolved.grid.size[1] > _MAX_MAP_CELLS:
         return Drawn([], random=True, tried=0, failed={}, own=own)
     randomly = {index for placement in resolved.placements for index in placement.objects}
-    still_random = any(_in_the_way(r) and (r.id in randomly or not has_fixed_shape(r.shape)) for r in resolved.objects)
-    count = max(2, min(_SEEDS, _MOST_PLACED // max(1, len(resolved.objects))))
+    random_things = any(
+        _is_obstacle(r) and (r.id in randomly or not has_fixed_shape(r.shape)) for r in resolved.objects
+    )
+    count = max(2, min(_MAX_SEEDS, _MAX_PLACED_OBJECTS // max(1, len(resolved.objects))))
     seeds = list(dict.fromkeys([*([own] if own is not None else []), *range(count)]))[:count]
-    world, state = _built(context, seeds)
+    world, state = _build_worlds(context, seeds)
     failed = {seed: int(state.failed_placement[w]) for w, seed in enumerate(seeds) if state.failed_placement[w] >= 0}
     good = [w for w, seed in enumerate(seeds) if seed not in failed]
     scenes: list[Scene] = []
-    for w in good[:_MOST_TERRAINS] if still_random else good:
-        things = scenes[0].things if scenes and not still_random else _things(context, world, state, w)
-        scenes.append(_drawn(context, world, state, w, seeds[w], things))
-        scenes[-1].rough = still_random
-        if len(scenes) > 1 and not still_random:
+    for w in good[:_MAX_TERRAINS] if random_things else good:
+        things = scenes[0].things if scenes and not random_things else _things(context, world, state, w)
+        scenes.append(_scene_of_world(context, world, state, w, seeds[w], things))
+        scenes[-1].rough = random_things
+        if len(scenes) > 1 and not random_things:
             scenes[-1].shares_with(scenes[0])
     return Drawn(scenes, random=True, tried=len(seeds), failed=failed, own=own)
 
 
 def _is_intricate(grid: MapGrid | None) -> bool:
-    """Whether the outline of a map is very long, judged by some of its columns."""
-    if grid is None or grid.raster is None or grid.size[0] * grid.size[1] <= _MAP_CELLS:
+    """Whether the outline of a map is very long, estimated from some of its columns."""
+    if grid is None or grid.raster is None or grid.size[0] * grid.size[1] <= _MAX_MAP_CELLS:
         return False
-    some = Raster(grid.raster.levels[::_EVERY], grid.raster.table).occupied()
-    return _EVERY * int(np.count_nonzero(some[:, 1:] != some[:, :-1])) > _MOST_EDGES
+    some = Raster(grid.raster.levels[::_COLUMN_STRIDE], grid.raster.table).occupied()
+    return _COLUMN_STRIDE * int(np.count_nonzero(some[:, 1:] != some[:, :-1])) > _MAX_MAP_EDGES
 
 
-def _in_the_way(record: ObjectRecord) -> bool:
+def _is_obstacle(record: ObjectRecord) -> bool:
     return record.static and not record.unobstructed
 
 
-def _written(context: Context) -> Scene:
-    """The scene as it is written."""
+def _fixed_scene(context: Context) -> Scene:
+    """The scene of a scenario in which nothing is random."""
     records = context.resolved.objects
     known: dict[int, list[Any]] = {}
     things: list[Thing] = []
     for record in records:
-        if _in_the_way(record):
+        if _is_obstacle(record):
             key = id(record.shape)
             if key not in known:
                 known[key] = parts_of(record.shape)
@@ -150,8 +155,8 @@ def _written(context: Context) -> Scene:
     )
 
 
-def _built(context: Context, seeds: list[int]) -> tuple[core.World, core.State]:
-    """The core's own placement, for objects that neither think nor look."""
+def _build_worlds(context: Context, seeds: list[int]) -> tuple[core.World, core.State]:
+    """One world per seed, placed by the core, whose objects have no behavior and no sensors."""
     bare = [
         replace(record, sensors=[], behavior=None, group_behavior=None)
         if record.sensors or record.kinematics
@@ -163,7 +168,9 @@ def _built(context: Context, seeds: list[int]) -> tuple[core.World, core.State]:
     return built, core.State(built, np.array(seeds, dtype=np.uint64), False)
 
 
-def _drawn(context: Context, world: core.World, state: core.State, w: int, seed: int, things: list[Thing]) -> Scene:
+def _scene_of_world(
+    context: Context, world: core.World, state: core.State, w: int, seed: int, things: list[Thing]
+) -> Scene:
     first = w * world.objects
     records = context.resolved.objects
     return Scene(
@@ -176,11 +183,11 @@ def _drawn(context: Context, world: core.World, state: core.State, w: int, seed:
 
 
 def _things(context: Context, world: core.World, state: core.State, w: int) -> list[Thing]:
-    """What stands in the way in world ``w``, drawn shapes as they were drawn."""
+    """The static obstacles in world ``w``, with random shapes as drawn."""
     things: list[Thing] = []
     for k, record in enumerate(context.resolved.objects):
         row = w * world.objects + k
-        if not _in_the_way(record):
+        if not _is_obstacle(record):
             continue
         if has_fixed_shape(record.shape):
             things.append((parts_of(record.shape), state.pose[row].tolist()))
@@ -193,7 +200,7 @@ def _things(context: Context, world: core.World, state: core.State, w: int) -> l
 
 
 def _drawn_parts(state: core.State, row: int) -> list[Any]:
-    """The body of a row, world frame."""
+    """Parts of the body of the object in a row, world frame."""
     parts: list[Any] = []
     for part, kind in enumerate(state.parts(row)):
         if kind == "circle":

@@ -1,4 +1,4 @@
-"""Robots that want to stand in the same place at the end."""
+"""Robots whose last goals overlap, so that only one of them can arrive."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from irsim.validation.feasibility.tally import Tally
 
 __all__ = ["check"]
 
-_MOST = 1000
+_MAX_ROBOTS = 1000
+"""Scenes with more robots are not checked."""
 
 
 def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> None:
-    """Last goals so near to each other that only one robot can arrive."""
+    """Report robots whose last goals are so close that the first to arrive blocks the other."""
     last = [
         (mover, goals[-1])
         for mover in movers
@@ -23,7 +24,7 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
         and mover.record.role == "robot"
         and not (mover.record.wander or mover.record.loop or mover.record.unobstructed)
     ]
-    if len(last) < 2 or len(last) > _MOST:
+    if len(last) < 2 or len(last) > _MAX_ROBOTS:
         return
     place = np.array([goal[:2] for _, goal in last])
     size = np.array([mover.radius - mover.record.goal_threshold for mover, _ in last])
@@ -42,9 +43,9 @@ def check(context: Context, scene: Scene, movers: list[Mover], tally: Tally) -> 
             "goals-overlap",
             second.path,
             second.record,
-            f"the last goals of {count} robots are nearer to each other than they are wide, those of "
-            f"'{first.record.name}' and '{second.record.name}' at ({x:g}, {y:g}) for two: whoever comes first is in "
-            "the way of the other",
+            f"the last goals of {count} robots are closer together than the robots are wide, for example those of "
+            f"'{first.record.name}' and '{second.record.name}' at ({x:g}, {y:g}): the robot that arrives first blocks "
+            "the other",
             "goals as far apart as the robots are wide, one per object: goal: [[x, y], [x, y], ...]",
             scene.seed,
             serious=False,

@@ -1,4 +1,4 @@
-"""What was found in how many of the scenes that were drawn."""
+"""Findings collected over several scenes, with the number of scenes in which each occurs."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from irsim.scenario.resolve.resolved import ObjectRecord
 
 __all__ = ["Tally"]
 
-_OFTEN = 0.25
-"""Share of the scenes from which it is a warning, not a hint."""
+_MIN_WARNING_SHARE = 0.25
+"""Share of the scenes from which on a finding is a warning, not a hint."""
 
 
 @dataclass
@@ -31,8 +31,9 @@ class Tally:
     """Findings by code and entry of the scenario.
 
     Attributes:
-        scenes: How many are looked at.
-        random: Whether they differ.
+        scenes: Number of scenes that are examined.
+        random: Whether the scenes differ.
+        entries: The findings so far.
     """
 
     scenes: int
@@ -42,7 +43,17 @@ class Tally:
     def add(
         self, code: str, path: Path, record: ObjectRecord, message: str, fix: str, seed: int, *, serious: bool = True
     ) -> None:
-        """Something about an object in the scene of a seed; the first one of an entry is told, others are counted."""
+        """Add a finding about an object; the first one of an entry of the scenario is kept, further ones are counted.
+
+        Args:
+            code: Code of the finding.
+            path: Where it is written in the scenario.
+            record: The object.
+            message: What is wrong.
+            fix: What to write instead.
+            seed: Seed of the scene.
+            serious: Whether it is a warning, not a hint; a serious finding replaces one that is not.
+        """
         entry = self.entries.setdefault((code, record.path), _Entry(path, message, fix, serious, seed))
         if serious and not entry.serious:
             entry.path, entry.message, entry.fix, entry.serious, entry.seed = path, message, fix, True, seed
@@ -50,13 +61,13 @@ class Tally:
         entry.others.add(record.id)
 
     def findings(self) -> Iterator[Finding]:
-        """One for each code and entry."""
+        """One finding for each code and entry of the scenario."""
         for (code, _), entry in self.entries.items():
             message, serious = entry.message, entry.serious
             if self.random:
                 count = len(entry.scenes)
-                message = f"in {count} of {self.scenes} seeds, seed {entry.seed} for one: {message}"
-                serious = serious and count >= _OFTEN * self.scenes
+                message = f"in {count} of {self.scenes} seeds, for example seed {entry.seed}: {message}"
+                serious = serious and count >= _MIN_WARNING_SHARE * self.scenes
             elif len(entry.others) > 1:
                 message += f"; likewise {len(entry.others) - 1} more of this entry"
             yield (warning if serious else hint)(code, entry.path, message, fix=entry.fix)

@@ -1,1 +1,1 @@
-"""The tools, one module each: a function ``tool(services)`` that makes it."""
+"""The tools, one module each with a function ``tool(services)`` that makes it."""

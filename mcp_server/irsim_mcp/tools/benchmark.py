@@ -13,10 +13,18 @@ from pydantic import BaseModel, ConfigDict, Field
 from irsim.common.text import clean
 from irsim.results.labels import labels_of, seeds_of
 from irsim.runs.store import RESULT
-from irsim_mcp.episodes import again
+from irsim_mcp.episodes import call_to_repeat
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import PARTIAL
-from irsim_mcp.limits import BEHAVIORS, EPISODES, SCENARIOS, SEED, SEEDS, STEPS, WAIT_SECONDS
+from irsim_mcp.limits import (
+    MAX_BEHAVIORS,
+    MAX_EPISODES,
+    MAX_SCENARIOS,
+    MAX_SEED,
+    MAX_SEEDS,
+    MAX_STEPS,
+    MAX_WAIT_SECONDS,
+)
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services, line_of
 from irsim_mcp.tool import StrictTool, strict
@@ -26,19 +34,26 @@ __all__ = ["Benchmark", "answer", "tool"]
 _DESCRIPTION = """
     Compare behaviors fairly: every scenario under every behavior with the same seeds. Rows have shares of
     success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff is
-    to the first behavior, seed by seed. What takes longer than wait_s becomes a job. Next: get_job, inspect_run with
+    to the first behavior, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job, inspect_run with
     the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
+"""Outcomes whose shares a row has."""
 _METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl", "min_clearance")
+"""Metrics of a row."""
 _DIFFERENCES = (*_SHARES, "time_to_goal")
-_ROWS, _NOTES, _DECIMALS = 50, 10, 3
-_FAILED, _FAILURES = 10, 3
-"""Seeds told of each way to fail, and robots with what became of them."""
+"""Values of which a row has differences to the first behavior."""
+_MAX_ROWS = 50
+_MAX_NOTES = 10
+_DECIMALS = 3
+_MAX_FAILED_SEEDS = 10
+"""Number of seeds that a row lists of each kind of failure."""
+_MAX_FAILURES = 3
+"""Number of robots whose failures a row lists."""
 
 
 class Benchmark(BaseModel):
-    """The table."""
+    """The table of a benchmark, or the state of its job."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -60,19 +75,19 @@ def tool(services: Services) -> StrictTool:
     async def benchmark(
         ctx: Context[Any, Any],
         scenarios: Annotated[
-            list[str], Field(description=f"1-{SCENARIOS} scenario files of the workspace, or YAML texts.")
+            list[str], Field(description=f"1-{MAX_SCENARIOS} scenario files of the workspace, or YAML texts.")
         ],
         behaviors: Annotated[
             list[str] | None,
             Field(
-                description=f"1-{BEHAVIORS} for all robots, such as rvo or '{{name: orca, timeHorizon: 5}}'. "
+                description=f"1-{MAX_BEHAVIORS} for all robots, such as rvo or '{{name: orca, timeHorizon: 5}}'. "
                 "Default: as-written, the scenario's own."
             ),
         ] = None,
-        seeds: Annotated[int, Field(description=f"How many, 1-{SEEDS}.")] = 10,
+        seeds: Annotated[int, Field(description=f"How many, 1-{MAX_SEEDS}.")] = 10,
         first_seed: Annotated[int, Field(ge=0, description="Tune on others than you report.")] = 0,
-        max_steps: Annotated[int | None, Field(ge=1, le=STEPS, description="Default: the time limit.")] = None,
-        wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
+        max_steps: Annotated[int | None, Field(ge=1, le=MAX_STEPS, description="Default: the time limit.")] = None,
+        wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
         chosen = behaviors or ["as-written"]
         _check(scenarios, chosen, seeds, first_seed)
@@ -101,27 +116,27 @@ def tool(services: Services) -> StrictTool:
 
 def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int, first: int) -> None:
     if not scenarios or seeds < 1:
-        what = "there are no scenarios" if not scenarios else f"{seeds} seeds are none"
+        what = "there must be at least one scenario" if not scenarios else f"there must be seeds, got {seeds}"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
     total = len(scenarios) * len(behaviors) * seeds
-    within = len(scenarios) <= SCENARIOS and len(behaviors) <= BEHAVIORS and seeds <= SEEDS
-    if not within or total > EPISODES:
+    within = len(scenarios) <= MAX_SCENARIOS and len(behaviors) <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
+    if not within or total > MAX_EPISODES:
         raise failure(
             "over-limit",
             f"{len(scenarios)} scenarios x {len(behaviors)} behaviors x {seeds} seeds = {total:,} episodes; at most "
-            f"{SCENARIOS} x {BEHAVIORS} x {SEEDS}, and {EPISODES:,} in all",
-            fix="ask for fewer seeds, or in several calls",
+            f"{MAX_SCENARIOS} x {MAX_BEHAVIORS} x {MAX_SEEDS}, and {MAX_EPISODES:,} in all",
+            fix="ask for fewer seeds, or split them over several calls",
         )
-    if first + seeds - 1 > SEED:
-        what = f"the seeds {first} to {first + seeds - 1} go beyond {SEED}, the largest that run_episode takes"
-        raise failure("bad-argument", what, where="first_seed", fix=f"give at most {SEED - seeds + 1}")
+    if first + seeds - 1 > MAX_SEED:
+        what = f"the seeds {first} to {first + seeds - 1} exceed {MAX_SEED}, the largest that run_episode takes"
+        raise failure("bad-argument", what, where="first_seed", fix=f"give at most {MAX_SEED - seeds + 1}")
 
 
 def answer(state: dict[str, Any]) -> CallToolResult:
-    """What to say of a job.
+    """The result of the tools about the state of a job.
 
     Raises:
-        ToolError: It failed.
+        ToolError: The job failed.
     """
     if "error" in state:
         raise _as_failure(state["error"])
@@ -136,7 +151,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
     if state["status"] == "running":
         found.next = f"get_job job_id={state['id']}"
     elif "result" not in state:
-        found.next = "Nothing of it is kept; call benchmark again."
+        found.next = "No episode was completed; call benchmark again."
     else:
         _fill(found, state["result"], RESULT if state["status"] == "finished" else PARTIAL)
         found.done, found.total = state["done"], state["total"]
@@ -144,7 +159,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
             why, more = "", "call benchmark again for all"
             if "why" in state:
                 why, more = f"{clean(state['why'], 300)}. ", clean(state["fix"], 300)
-            found.next = f"{why}This is of the {found.done} episodes that were done; {more}."
+            found.next = f"{why}This is the result of the {found.done} completed episodes; {more}."
     text = TextContent(type="text", text=_text(found))
     return CallToolResult(content=[text], structured_content=found.model_dump(exclude_none=True))
 
@@ -152,25 +167,25 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
     extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
     labels = labels_of(result["behaviors"])
-    found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_ROWS]]
+    found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_MAX_ROWS]]
     found.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])
-    if len(result["rows"]) > _ROWS:
-        notes.append(f"{len(result['rows']) - _ROWS} more rows are in the artifact")
+    if len(result["rows"]) > _MAX_ROWS:
+        notes.append(f"{len(result['rows']) - _MAX_ROWS} more rows are in the artifact")
     for name, warnings in result["warnings"].items():
         notes += [f"{name}: {w['code']} at {w['path']}: {w['message']}" for w in warnings if w["severity"] == "warning"]
-    found.notes = [clean(note, 300) for note in notes[:_NOTES]]
+    found.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
     found.artifact = f".irsim/jobs/{found.job_id}/{file}"
     found.reproduce = clean(result["reproduce"], 1000)
     lost = [e for e in result["episodes"] if e["outcome"] != "success"]
     if not lost:
         found.next = "Every episode succeeded; compare times and paths."
         return
-    found.next = f"To see why: {again(result, lost[0])} ({lost[0]['outcome']})."
+    found.next = f"To see why: {call_to_repeat(result, lost[0])} ({lost[0]['outcome']})."
 
 
 def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
-    """Who succeeded how often, over all scenarios."""
+    """Number of successes of each behavior over all scenarios, in words."""
     shares = []
     for behavior in result["behaviors"]:
         ends = [episode["outcome"] for episode in result["episodes"] if episode["behavior"] == behavior]
@@ -180,9 +195,9 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) -> dict[str, Any]:
-    """One scenario under one behavior; numbers as [value, low, high], or the value alone.
+    """One scenario under one behavior; numbers as [value, low, high], or only the value if there is no interval.
 
-    ``n`` has the episodes of the metrics that are undefined in some, ``diff.n`` those of differences.
+    ``n`` has the number of episodes in which a metric is defined, if not in all; ``diff.n`` that of differences.
     """
     shown: dict[str, Any] = {
         "scenario": clean(row["scenario"], 100),
@@ -190,24 +205,26 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
         "episodes": row["episodes"],
     }
     shown |= {key: _numbers(row[key], "rate") for key in _SHARES}
-    shown |= _told(row["metrics"], metrics, row["episodes"])
-    diff = _told(row["paired"], _DIFFERENCES, row["episodes"])
+    shown |= _defined(row["metrics"], metrics, row["episodes"])
+    diff = _defined(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
-    if failed := seeds_of(row["failed"], _FAILED):
-        robots = [f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_FAILURES]]
+    if failed := seeds_of(row["failed"], _MAX_FAILED_SEEDS):
+        robots = [
+            f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_MAX_FAILURES]
+        ]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
     return shown
 
 
-def _told(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
-    """Those of some metrics that are defined, and how many episodes they are of if not of all."""
+def _defined(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
+    """The metrics that are defined, and the number of episodes in which they are, if not in all."""
     known = [key for key in keys if key in found and found[key]["n"]]
     fewer = {key: found[key]["n"] for key in known if found[key]["n"] < episodes}
     return {key: _numbers(found[key]) for key in known} | ({"n": fewer} if fewer else {})
 
 
 def _numbers(estimate: dict[str, Any], value: str = "mean") -> list[float]:
-    """Value and interval; only the value where there is no interval."""
+    """Value and interval; only the value if there is no interval."""
     values = [estimate[value], estimate["low"], estimate["high"]]
     return [_rounded(value) for value in values if value is not None]
 
@@ -217,13 +234,13 @@ def _rounded(value: float) -> float:
 
 
 def _text(found: Benchmark) -> str:
-    """The result in words; it says all that the structure says."""
+    """The result in words, with everything that the structured content has."""
     lines = [f"{found.status}: {found.summary}" if found.rows else found.summary]
     lines[0] += f" (job {found.job_id}, {found.done} of {found.total})"
     for row in found.rows:
-        told = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
-        told += [f"failed: {row['failed']}"] if "failed" in row else []
-        lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(told)}")
+        values = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
+        values += [f"failed: {row['failed']}"] if "failed" in row else []
+        lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
         lines.append(f"Episodes: inspect_run run_id={found.job_id}; with all metrics: {found.artifact}")
@@ -233,7 +250,7 @@ def _text(found: Benchmark) -> str:
 
 
 def _lines(row: dict[str, Any]) -> list[str]:
-    """Each number with its interval, and with the episodes it is of if not of all."""
+    """Each number with its interval, and with the number of episodes in which it is defined, if not in all."""
     fewer = row.get("n", {})
     return [
         f"{key} {_shown(value)}" + (f" n={fewer[key]}" if key in fewer else "")

@@ -1,4 +1,4 @@
-"""``get_job``: how far a job is, its result, its end."""
+"""``get_job``: wait for a job, return its progress or result, or cancel it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mcp.server.mcpserver import Context
 from mcp.types import CallToolResult
 from pydantic import Field
 
-from irsim_mcp.limits import WAIT_SECONDS
+from irsim_mcp.limits import MAX_WAIT_SECONDS
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services
 from irsim_mcp.tool import StrictTool, strict
@@ -16,9 +16,10 @@ from irsim_mcp.tools.benchmark import Benchmark, answer
 
 __all__ = ["tool"]
 
-_CANCELLING = 5.0
+_CANCEL_SECONDS = 5.0
+"""Time for which the call waits for a cancelled job to end [s]."""
 _DESCRIPTION = """
-    Wait for a job of benchmark and return its result, or how far it is. cancel=true stops it. Jobs end with the server
+    Wait for a job of benchmark and return its result, or its progress. cancel=true stops it. Jobs end with the server
     and are kept for 24 hours. Next: while it is running, call again.
 """
 
@@ -29,11 +30,13 @@ def tool(services: Services) -> StrictTool:
     async def get_job(
         ctx: Context[Any, Any],
         job_id: Annotated[str, Field(description="From benchmark.")],
-        wait_s: Annotated[int, Field(ge=0, le=WAIT_SECONDS)] = 45,
+        wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
         cancel: bool = False,
     ) -> Annotated[CallToolResult, Benchmark]:
         if cancel:
             services.jobs.cancel(job_id)
-        return answer(await services.jobs.wait(job_id, _CANCELLING if cancel else wait_s, reporter(ctx, "episodes")))
+        return answer(
+            await services.jobs.wait(job_id, _CANCEL_SECONDS if cancel else wait_s, reporter(ctx, "episodes"))
+        )
 
     return strict(get_job, title="Wait for a job", description=_DESCRIPTION, read_only=False, idempotent=True)

@@ -1,4 +1,4 @@
-"""``inspect_run``: look into a recorded run without reading all of it."""
+"""``inspect_run``: tables of a recorded run, so that a model need not read all of it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
-    Look into a run: why did it fail? view=collisions: who touched whom, where, how fast; closest: whom each robot
-    came near, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest stand; rows:
-    `fields` step by step, spread over the run unless `every` is given. Of a benchmark: its episodes. Returns a table,
-    in pages (next_cursor). Next: draw the moment with render_snapshot run_id step.
+    Look into a run: why did it fail? view=collisions: which objects touched, where, how fast; closest: closest
+    approaches of each robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest
+    stop; rows: `fields` step by step, spread over the run unless `every` is given. Of a benchmark: its episodes.
+    Returns a table, in pages (next_cursor). Next: draw the moment with render_snapshot run_id step.
 """
-_LONGEST_CELL, _LONGEST_TEXT = 60, 300
-_OTHER_TEXT = 2000
-"""Characters of a result besides its rows."""
+_MAX_CELL_LENGTH = 60
+"""Number of characters of a cell."""
+_MAX_EPISODE_CELL_LENGTH = 300
+"""Number of characters of a cell in a table of episodes."""
+_RESERVED_LENGTH = 2000
+"""Number of characters that are reserved for a result besides its rows."""
 
 
 Cell = Annotated[float | int | str | bool | None, WithJsonSchema({"type": ["number", "string", "boolean", "null"]})]
@@ -39,7 +42,7 @@ Column = Literal[
 class Table(BaseModel):
     """m, s, rad."""
 
-    model_config = ConfigDict(extra="allow")  # what else `irsim inspect --json` has
+    model_config = ConfigDict(extra="allow")  # the further keys of `irsim inspect --json`
 
     summary: str
     columns: list[str]
@@ -79,7 +82,7 @@ def tool(services: Services) -> StrictTool:
                 cursor=cursor,
                 **asked,
             )
-        found = _fitting(found, cursor, services.limits.text)
+        found = _first_rows(found, cursor, services.limits.text)
         table = _table(found, found["view"])
         text = TextContent(type="text", text=_text(table, found))
         return CallToolResult(content=[text], structured_content=table.model_dump())
@@ -91,13 +94,13 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
     """The episodes of a benchmark.
 
     Args:
-        job: What is known of it.
-        other: Arguments given that are about runs.
-        limit: Rows at most.
-        cursor: Where to go on.
+        job: State of its job.
+        other: Names of given arguments that apply only to runs.
+        limit: Greatest number of rows.
+        cursor: ``next_cursor`` of the previous page.
 
     Raises:
-        ToolError: It has no result, or something is asked that only a run can tell.
+        ToolError: The job has no result, or an argument applies only to runs.
     """
     if other:
         what = f"{job['id']} is a benchmark, whose rows are episodes"
@@ -107,17 +110,17 @@ def _episodes(job: dict[str, Any], other: list[str], limit: int, cursor: str | N
     return episodes_table(job, limit, cursor)
 
 
-def _fitting(found: dict[str, Any], cursor: str | None, room: int) -> dict[str, Any]:
-    """With the first of the rows, as many as fit into so many characters; the others are another page."""
+def _first_rows(found: dict[str, Any], cursor: str | None, most_characters: int) -> dict[str, Any]:
+    """The table with its first rows, as many as fit into a number of characters; the others are another page."""
     sizes = itertools.accumulate(len(json.dumps(row)) + 2 for row in found["rows"])
-    kept = sum(size <= room - _OTHER_TEXT for size in sizes)
+    kept = sum(size <= most_characters - _RESERVED_LENGTH for size in sizes)
     if kept == len(found["rows"]):
         return found
     return {**found, "rows": found["rows"][:kept], "next_cursor": str(int(cursor or 0) + kept)}
 
 
 def _table(found: dict[str, Any], view: str) -> Table:
-    longest = _LONGEST_CELL if view != "episodes" else _LONGEST_TEXT
+    longest = _MAX_CELL_LENGTH if view != "episodes" else _MAX_EPISODE_CELL_LENGTH
     rows = [[clean(cell, longest) if isinstance(cell, str) else cell for cell in row] for row in found["rows"]]
     changed = {"summary": clean(found["summary"], 300), "rows": rows, "next": _advice(found, view, rows)}
     return Table(**{key: value for key, value in {**found, **changed}.items() if key != "again"})
@@ -126,7 +129,7 @@ def _table(found: dict[str, Any], view: str) -> Table:
 def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
     more = "" if found["next_cursor"] is None else f"More rows: the same call with cursor={found['next_cursor']}."
     if view == "episodes":
-        return f"Look into one: {found['again']}, then inspect_run with the run_id it gives. {more}".rstrip()
+        return f"Look into one: {found['again']}, then inspect_run with the returned run_id. {more}".rstrip()
     if more:
         return more
     if "step" in found["columns"] and rows and view != "rows":
@@ -138,7 +141,7 @@ def _advice(found: dict[str, Any], view: str, rows: list[list[Any]]) -> str:
 
 
 def _text(table: Table, found: dict[str, Any]) -> str:
-    """The table in words; it says all that the structure says."""
+    """The table in words, with everything that the structured content has."""
     ended = found["status"] if found["outcome"] is None else found["outcome"]
     lines = [f"{ended}: {table.summary}", *(f"Note: {note}" for note in found["notes"]), ", ".join(table.columns)]
     lines += [", ".join("-" if cell is None else str(cell) for cell in row) for row in table.rows]

@@ -1,4 +1,4 @@
-"""``lookup``: what scenarios may contain, and templates to start from."""
+"""``lookup``: explain what scenarios may contain, and return templates to start from."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ __all__ = ["tool"]
 _DESCRIPTION = """
     Explain what scenario files may contain, and give templates to start from. Call it first, without a topic: an index
     of sections, components (behaviors, drives, sensors, shapes), templates and error codes. Then with a topic: a
-    template name gives a complete scenario as YAML, with `parameters` filled in on request; a key or path
+    template name returns a complete scenario as YAML, with `parameters` filled in on request; a key or path
     ('robot.sensors.lidar2d', 'vel_max'), a component ('dash'), a code ('unknown-key'), a metric ('spl') or any word
-    ('parking') gives meaning, unit, range, default and an example. Returns text. Start from the nearest template. Next:
-    edit the YAML and call validate_scenario.
+    ('parking') returns meaning, unit, range, default and an example. Returns text. Start from the closest template.
+    Next: edit the YAML and call validate_scenario.
 """
 
 
@@ -35,7 +35,7 @@ def tool(services: Services) -> StrictTool:
     ) -> list[TextContent]:
         text = await services.reference("lookup", "topic", topic=topic, parameters=parameters)
         if len(text) > most:
-            text = text[:most] + "\n… cut here: ask for a more special topic"
+            text = text[:most] + "\n… cut here: look up a more specific topic"
         return [TextContent(type="text", text=text)]
 
     return strict(

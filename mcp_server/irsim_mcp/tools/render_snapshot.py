@@ -1,4 +1,4 @@
-"""``render_snapshot``: a picture to look at, and one line of text about it."""
+"""``render_snapshot``: draw a scenario or a run as a picture, with one line of text about it."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from mcp.server.mcpserver import Context
 from mcp.types import ImageContent, TextContent
 from pydantic import Field
 
-from irsim.api.film_strip import FEWEST, MOST
+from irsim.api.film_strip import MAX_MOMENTS, MIN_MOMENTS
 from irsim.common.text import clean
 from irsim_mcp.errors import failure
-from irsim_mcp.limits import STEPS
+from irsim_mcp.limits import MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
@@ -22,11 +22,12 @@ __all__ = ["tool"]
 _DESCRIPTION = """
     Draw a scenario at one `step`, or at several (`strip`), as a PNG: bodies, yellow arrows (heading; omni: where it
     moves), goals (pale), names, lidar beams, paths. Use it on a valid scenario and after a failed run. At step 0: do
-    things overlap, lie outside the world, are goals in obstacles? Returns a line of text (what r0, G-r0 (its
-    goal) stand for, who is where) and the image; writes no file. Next: edit and validate again, or run_episode.
+    things overlap, lie outside the world, are goals in obstacles? Returns a line of text (meaning of r0 and G-r0, its
+    goal; poses) and the image; writes no file. Next: edit and validate again, or run_episode.
 """
-_OVERLAYS = "Default: names, goals, paths. clearance: shaded where a robot's middle can't be; plan: ways to goals."
-_NAMED = 10
+_OVERLAYS = "Default: names, goals, paths. clearance: shaded where a robot's middle can't be; plan: paths to goals."
+_MAX_NAMED = 10
+"""Number of robots, plans and moving obstacles that the text lists."""
 
 
 def tool(services: Services) -> StrictTool:
@@ -37,10 +38,10 @@ def tool(services: Services) -> StrictTool:
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
         run_id: Annotated[str | None, Field(max_length=100, description="Or of run_episode, with its seed.")] = None,
-        step: Annotated[int, Field(ge=-1, le=STEPS, description="0: start; -1: end of the episode.")] = 0,
+        step: Annotated[int, Field(ge=-1, le=MAX_STEPS, description="0: start; -1: end of the episode.")] = 0,
         strip: Annotated[
             int | None,
-            Field(ge=FEWEST, le=MOST, description="Moments on one sheet, from 0 to `step` (0: the end)."),
+            Field(ge=MIN_MOMENTS, le=MAX_MOMENTS, description="Moments on one sheet, from 0 to `step` (0: the end)."),
         ] = None,
         seed: Seed = None,
         size_px: Annotated[int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")] = 600,
@@ -88,15 +89,15 @@ def _line(scene: dict[str, Any], run_id: str | None) -> str:
         f"{size}{moments}t={scene['sim_time']:g} s (step {scene['steps']}, {chance})",
         f"world x {left:g}..{right:g} m, y {low:g}..{top:g} m",
     ]
-    parts += [_robot(robot) for robot in scene["robots"][:_NAMED]]
-    parts += [_plan(plan) for plan in scene["plans"][:_NAMED]]
-    more = len(scene["robots"]) - _NAMED
+    parts += [_robot(robot) for robot in scene["robots"][:_MAX_NAMED]]
+    parts += [_plan(plan) for plan in scene["plans"][:_MAX_NAMED]]
+    more = len(scene["robots"]) - _MAX_NAMED
     if more > 0:
-        parts.append(f"{more} robots more")
+        parts.append(f"{more} more robots")
     parts.append(scene["contents"])
-    parts += [_moving(item) for item in scene["moving"][:_NAMED]]
-    if (rest := len(scene["moving"]) - _NAMED) > 0:
-        parts.append(f"{rest} moving obstacles more")
+    parts += [_moving(item) for item in scene["moving"][:_MAX_NAMED]]
+    if (rest := len(scene["moving"]) - _MAX_NAMED) > 0:
+        parts.append(f"{rest} more moving obstacles")
     warnings = sum(item["severity"] == "warning" for item in scene["warnings"])
     if warnings:
         parts.append(f"{warnings} warning{'s' * (warnings != 1)}, see validate_scenario")
@@ -113,9 +114,9 @@ def _moving(item: dict[str, Any]) -> str:
 def _plan(plan: dict[str, Any]) -> str:
     lost, margin = plan["lost"], plan["margin"]
     if lost is not None:
-        return f"no way for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
+        return f"no path for {plan['label']} to ({lost[0]:.2f}, {lost[1]:.2f})"
     tight = "" if margin is None else ", least margin {:.2g} m at ({:.2f}, {:.2f})".format(margin, *plan["tightest"])
-    return f"{'its own plan' if plan['own'] else 'a way'} for {plan['label']}: {plan['length']:.3g} m{tight}"
+    return f"{'its own plan' if plan['own'] else 'a path'} for {plan['label']}: {plan['length']:.3g} m{tight}"
 
 
 def _robot(robot: dict[str, Any]) -> str:

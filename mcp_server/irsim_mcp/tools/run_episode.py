@@ -1,4 +1,4 @@
-"""``run_episode``: simulate, and say how it ended and why."""
+"""``run_episode``: simulate one episode and report how it ended and why."""
 
 from __future__ import annotations
 
@@ -9,33 +9,38 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim_mcp.limits import RUN_SECONDS, STEPS
+from irsim_mcp.json_answer import Found, json_answer
+from irsim_mcp.limits import MAX_RUN_SECONDS, MAX_STEPS
 from irsim_mcp.progress import reporter
 from irsim_mcp.replay_page import PAGE
 from irsim_mcp.run_resources import uri
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Seed, Services
 from irsim_mcp.tool import StrictTool, strict
-from irsim_mcp.whole import Found, whole
 
 __all__ = ["Episode", "tool"]
 
 _DESCRIPTION = """
-    Simulate one episode, until every robot has arrived or stopped, or time is up, and say how it ended. Outcome is
+    Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is
     success (every robot reached its goal, no collision before), collision, or timeout; none of them is an error. The
-    reason says who hit what, where and when, and who was how far from its goal, doing what. Also returns robots
-    (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
+    reason says which robot hit what, where and when, and how far robots were from their goals. Also returns robots
+    (unsuccessful first), first events, the command that repeats the run, and a run_id, kept for 24 hours after its last
     use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment with
     render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds if
     anything is random.
 """
 _UNDRIVEN = "has no behavior"
+"""Part of the reason of a run with a robot that nothing drives."""
 _ARTIFACTS = ("events.json", "trace.csv")
-"""Named in the result; the template of the resource names them all."""
-_CONCISE, _DETAILED, _DECIMALS = 10, 50, 3
+"""Artifacts that the result names; the template of the resource names all."""
+_MAX_CONCISE = 10
+"""Number of robots and events in a concise result."""
+_MAX_DETAILED = 50
+"""Number of robots and events in a detailed result."""
+_DECIMALS = 3
 
 
 class Robot(BaseModel):
-    """How it ended for one robot; lengths in m, times in s."""
+    """Result of one robot; lengths in m, times in s."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -52,7 +57,7 @@ class Robot(BaseModel):
 
 
 class Event(BaseModel):
-    """Something that happened."""
+    """An event of the episode."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
 
@@ -66,7 +71,7 @@ class Event(BaseModel):
 
 
 class Episode(BaseModel):
-    """How it ended."""
+    """The result of an episode."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -104,14 +109,16 @@ def tool(services: Services) -> StrictTool:
         ] = None,
         max_steps: Annotated[
             int | None,
-            Field(ge=1, le=STEPS, description=f"Default: the scenario's time limit, at most {STEPS:,}."),
+            Field(ge=1, le=MAX_STEPS, description=f"Default: the scenario's time limit, at most {MAX_STEPS:,}."),
         ] = None,
-        max_wall_s: Annotated[int, Field(ge=1, le=RUN_SECONDS, description="Seconds of computing.")] = RUN_SECONDS,
+        max_wall_s: Annotated[
+            int, Field(ge=1, le=MAX_RUN_SECONDS, description="Seconds of computing.")
+        ] = MAX_RUN_SECONDS,
         response_format: Annotated[
             Literal["concise", "detailed", "json"],
             Field(
-                description=f"detailed: paths, poses, waypoints; {_DETAILED} robots and events instead of {_CONCISE}. "
-                "json: as irsim run --json."
+                description=f"detailed: paths, poses, waypoints; {_MAX_DETAILED} robots and events instead of "
+                f"{_MAX_CONCISE}. json: as irsim run --json."
             ),
         ] = "concise",
     ) -> Annotated[CallToolResult, Episode]:
@@ -128,7 +135,7 @@ def tool(services: Services) -> StrictTool:
         episode = _episode(found, response_format == "detailed")
         text = TextContent(type="text", text=_text(episode))
         if response_format == "json":
-            text = _whole(found, services.limits.text)
+            text = _json_answer(found, services.limits.text)
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
     return strict(
@@ -136,25 +143,24 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _whole(found: Found, room: int) -> TextContent:
-    """The JSON; if that is too long the error says how the run ended and where the rest is."""
-    run, about = found["run_id"], f"the run is done, outcome {found['outcome']}, but "
+def _json_answer(found: Found, most: int) -> TextContent:
+    """The complete JSON; if that is too long, the error says how the run ended and where to read the rest."""
+    run, prefix = found["run_id"], f"the run is done, outcome {found['outcome']}, but "
     if run is None:
-        return whole(found, room, "use response_format=detailed", about=about)
-    views = f"inspect_run run_id={run} view=speeds, closest or collisions tells of every robot, in pages"
-    return whole(
-        found, room, f"{views}; {uri(run, 'result.json')} has all; or use response_format=detailed", about=about
-    )
+        return json_answer(found, most, "use response_format=detailed", prefix=prefix)
+    views = f"inspect_run run_id={run} view=speeds, closest or collisions lists every robot, in pages"
+    alternative = f"{views}; {uri(run, 'result.json')} has all; or use response_format=detailed"
+    return json_answer(found, most, alternative, prefix=prefix)
 
 
 def _episode(found: dict[str, Any], detailed: bool) -> Episode:
-    most = _DETAILED if detailed else _CONCISE
+    most = _MAX_DETAILED if detailed else _MAX_CONCISE
     robots = sorted(found["robots"], key=lambda robot: robot["outcome"] == "success")
     warnings = [item for item in found["warnings"] if item["severity"] == "warning"]
-    told = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:_CONCISE]]
-    if len(warnings) > _CONCISE:
-        told.append(f"{len(warnings) - _CONCISE} more: validate_scenario lists them")
-    told += [f"the record lacks something: {note}" for note in found["notes"]]
+    lines = [f"{item['code']} at {item['path']}: {item['message']}" for item in warnings[:_MAX_CONCISE]]
+    if len(warnings) > _MAX_CONCISE:
+        lines.append(f"{len(warnings) - _MAX_CONCISE} more: validate_scenario lists them")
+    lines += [f"the recording is incomplete: {note}" for note in found["notes"]]
     run_id = found["run_id"]
     return Episode(
         run_id=run_id,
@@ -172,7 +178,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         robot_count=len(robots),
         events=[_event(event) for event in _chosen(found, detailed, most)],
         event_count=found["event_count"],
-        warnings=[clean(line, 300) for line in told],
+        warnings=[clean(line, 300) for line in lines],
         artifacts=None if run_id is None else {name: uri(run_id, name) for name in _ARTIFACTS},
         reproduce=clean(found["reproduce"], 300),
         next=_advice(found),
@@ -180,18 +186,18 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
 
 
 def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:
-    """The first events in order; in short rather those of robots: people who walk to and fro would crowd them out."""
+    """The first events in order; a concise result prefers those of robots, which wandering people would crowd out."""
     events: list[dict[str, Any]] = found["events"]
     if detailed:
         return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
-    told = [event for event in events if event["kind"] != "waypoint"]
-    kept = sorted(told, key=lambda event: not robots & {event["object"], event["partner"]})[:most]
-    return sorted(kept, key=lambda event: int(event["step"]))  # stable: within a step as they were
+    important = [event for event in events if event["kind"] != "waypoint"]
+    kept = sorted(important, key=lambda event: not robots & {event["object"], event["partner"]})[:most]
+    return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
 
 def _rounded(value: Any) -> Any:
-    """To a millimetre or a millisecond."""
+    """A number rounded to a millimetre or a millisecond."""
     return round(value, _DECIMALS) if isinstance(value, float) else value
 
 
@@ -224,10 +230,10 @@ def _advice(found: dict[str, Any]) -> str:
         more = "; try other seeds" if found["random"] else ""
         return f"See the paths with render_snapshot{run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
-        return "As it should be if it is meant to stand or a program drives it; to try the layout: behavior=dash."
+        return "Nothing to change if it is meant to stay or a program drives it; to try the layout: behavior=dash."
     late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
     if late and set(late) <= set(found["parked"]) and not held:
-        return f"Nothing to change if it is meant to stand; see it with render_snapshot{run} step=-1."
+        return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} step=-1."
     touches = [event for event in found["events"] if event["kind"] == "collision"]
     hits = [
         event["step"]
@@ -240,12 +246,12 @@ def _advice(found: dict[str, Any]) -> str:
         look, view = "step=-1", "speeds"
     more = "" if found["run_id"] is None else f" and inspect_run view={view}"
     if found["outcome"] == "success":
-        return f"Moving obstacles stand since a collision; not meant? Look with render_snapshot{run} {look}{more}."
+        return f"A collision stopped moving obstacles: intended? Look with render_snapshot{run} {look}{more}."
     return f"Look with render_snapshot{run} {look}{more}, change the scenario, validate and run again."
 
 
 def _text(episode: Episode) -> str:
-    """The result in words; it says all that the structure says."""
+    """The result in words, with everything that the structured content has."""
     limit = f"{episode.time_limit:g} s ({episode.time_limit_from})"
     lines = [f"{episode.outcome}: {episode.summary}"]
     if episode.run_id is not None:
@@ -259,9 +265,9 @@ def _text(episode: Episode) -> str:
     if episode.events:
         lines.append(f"Events ({len(episode.events)} of {episode.event_count}):")
     for event in episode.events:
-        whom = f" with {event.partner!r}" if event.partner is not None else ""
+        partner = f" with {event.partner!r}" if event.partner is not None else ""
         place = f"({event.x:g}, {event.y:g})"
-        lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{whom} at {place}")
+        lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{partner} at {place}")
     lines += [f"Warning: {warning}" for warning in episode.warnings]
     lines.append(
         "Record: " + ", ".join((episode.artifacts or {"": "none, the workspace cannot be written to"}).values())
@@ -279,7 +285,7 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"came as near as {robot.min_clearance + 0.0:g} m to {robot.nearest!r}, edge to edge")
     facts.append(f"{robot.collision_count} collision{'s' * (robot.collision_count != 1)}")
     if robot.infeasible_steps is not None:
-        facts.append(f"{robot.infeasible_steps} steps in which its behavior saw no way to avoid everybody")
+        facts.append(f"{robot.infeasible_steps} steps in which its behavior found no collision-free velocity")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
     if robot.pose is not None:

@@ -1,4 +1,4 @@
-"""``validate_scenario``: every problem of a scenario, as data."""
+"""``validate_scenario``: report every problem of a scenario as data."""
 
 from __future__ import annotations
 
@@ -11,33 +11,35 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean, names_if_different, seconds, shorten_pair
 from irsim.validation.diff.keys import place
+from irsim_mcp.json_answer import json_answer
 from irsim_mcp.services import ScenarioPath, ScenarioYaml, Services
 from irsim_mcp.tool import StrictTool, strict
-from irsim_mcp.whole import whole
 
 __all__ = ["Report", "tool"]
 
 _DESCRIPTION = """
     Check a scenario and try it. Use it after every edit. Returns all problems at once; an
     invalid scenario is a normal result with valid=false. Each issue has a code, path, line, cause and fix. Errors must
-    be fixed; warnings run, but likely not as meant; hints are worth knowing. not-yet-simulated: this version cannot do
-    it, tell the user. dry_run says who arrived, collided, got stuck or left the world in the first steps. With base
-    (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix and validate again;
-    once valid, look with render_snapshot.
+    be fixed; warnings run, but probably not as intended; hints are worth knowing. not-yet-simulated: this version
+    cannot do it, tell the user. dry_run lists robots that arrived, collided, got stuck or left the world in the first
+    steps. With base (the scenario before an edit) changes lists what differs, by key and in the world. Next: fix and
+    validate again; once valid, look with render_snapshot.
 """
 
 
 _GAPS = "Tell the user that this version cannot simulate this; to show the rest, run a labelled copy without it."
-_HINTS = 6
-_FEW_HINTS = 3
-"""So many are told even if they were not asked for, in one line each."""
-_MOST_CHANGES = 80
-_ALLOWED = 800
-"""Characters of the values that would be accepted."""
+_MAX_HINT_CODES = 6
+"""Number of codes of hidden hints that the summary names."""
+_MAX_SHOWN_HINTS = 3
+"""Number of hints up to which a concise report shows them, too."""
+_MAX_CHANGES = 80
+"""Number of changes in a detailed report."""
+_MAX_ALLOWED_LENGTH = 800
+"""Number of characters of the allowed values in a detailed report."""
 
 
 class Issue(BaseModel):
-    """One problem."""
+    """One problem of a scenario."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -52,7 +54,7 @@ class Issue(BaseModel):
 
 
 class Report(BaseModel):
-    """What was found."""
+    """The result of the validation."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -93,7 +95,7 @@ def tool(services: Services) -> StrictTool:
         report = _report(found, max_issues, response_format == "detailed", services.limits.text)
         text = TextContent(type="text", text=_text(report))
         if response_format == "json":
-            text = whole(found, services.limits.text, "mend what is found so far, or ask for detailed")
+            text = json_answer(found, services.limits.text, "fix the first problems, or use response_format=detailed")
         return CallToolResult(content=[text], structured_content=report.model_dump(exclude_none=True))
 
     return strict(
@@ -101,28 +103,28 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Report:
-    few = found["valid"] and found["hints"] <= _FEW_HINTS
+def _report(found: dict[str, Any], most: int, detailed: bool, most_characters: int) -> Report:
+    few = found["valid"] and found["hints"] <= _MAX_SHOWN_HINTS
     findings = [item for item in found["findings"] if detailed or few or item["severity"] != "hint"]
     summary = found["summary"] if found["valid"] else f"invalid: {found['summary']}"
     if found["hints"] and not detailed:
-        names_if_different = dict.fromkeys(item["code"] for item in found["findings"] if item["severity"] == "hint")
-        named = ", ".join(list(names_if_different)[:_HINTS])
+        codes = dict.fromkeys(item["code"] for item in found["findings"] if item["severity"] == "hint")
+        named = ", ".join(list(codes)[:_MAX_HINT_CODES])
         summary += f"; {found['hints']} hint{'s' * (found['hints'] != 1)}"
         summary += "" if few else f" ({named}) with response_format=detailed"
-    issues = _fitting([_issue(item, detailed) for item in findings[:most]], room)
+    issues = _first_issues([_issue(item, detailed) for item in findings[:most]], most_characters)
     cut = len(findings) - len(issues)
     if cut > 0:
         advice = f"{cut} more issues are not shown: fix these first, or raise max_issues."
     elif not found["valid"]:
-        codes = {item["code"] for item in found["findings"] if item["severity"] == "error"}
+        errors = {item["code"] for item in found["findings"] if item["severity"] == "error"}
         fixable = "Apply the fixes and validate again; lookup explains a code or a key."
-        advice = _GAPS if codes == {"not-yet-simulated"} else fixable
+        advice = _GAPS if errors == {"not-yet-simulated"} else fixable
     elif found["warnings"]:
-        advice = "See whether the warnings{} are meant, look at it with render_snapshot, then run_episode."
-        advice = advice.format(" and what dry_run tells" if _went_wrong(found) else "")
-    elif _went_wrong(found):
-        advice = "It is valid, but see whether all that dry_run tells is meant; look at it with render_snapshot."
+        advice = "Check whether the warnings{} are intended, look at it with render_snapshot, then run_episode."
+        advice = advice.format(" and what dry_run reports" if _dry_run_has_problems(found) else "")
+    elif _dry_run_has_problems(found):
+        advice = "It is valid, but check whether all that dry_run reports is intended; look with render_snapshot."
     else:
         advice = "Look at it with render_snapshot, then run_episode."
     return Report(
@@ -133,14 +135,14 @@ def _report(found: dict[str, Any], most: int, detailed: bool, room: int) -> Repo
         counts=found["counts"],
         issues=issues,
         truncated=cut > 0,
-        dry_run=_tried(found["dry_run"], detailed),
+        dry_run=_dry_run_text(found["dry_run"], detailed),
         changes=_changes(found["changes"], detailed),
         next=advice,
     )
 
 
-def _went_wrong(found: dict[str, Any]) -> bool:
-    """Whether the dry run saw what is hardly meant; that it ended too early says nothing."""
+def _dry_run_has_problems(found: dict[str, Any]) -> bool:
+    """Whether something happened in the dry run that is hardly intended; an early end of it does not count."""
     tried = found["dry_run"]
     if tried is None:
         return False
@@ -148,8 +150,8 @@ def _went_wrong(found: dict[str, Any]) -> bool:
     return late or any(tried[key] for key in ("collisions", "stuck", "jammed", "left"))
 
 
-def _tried(found: dict[str, Any] | None, detailed: bool) -> str | None:
-    """What happened, in words; in detail with everything that was noted."""
+def _dry_run_text(found: dict[str, Any] | None, detailed: bool) -> str | None:
+    """The dry run in words; a detailed text lists every collision and every stuck robot."""
     if found is None:
         return None
     more = [f"'{e['object']}' hit '{e['partner']}' at {seconds(e['time'])}" for e in found["collisions"][1:]]
@@ -162,10 +164,10 @@ def _tried(found: dict[str, Any] | None, detailed: bool) -> str | None:
 
 
 def _changes(found: dict[str, Any] | None, detailed: bool) -> list[str] | None:
-    """One line per change; the summary first."""
+    """The summary of the changes, and one line per change."""
     if found is None:
         return None
-    most = _MOST_CHANGES if detailed else _MOST_CHANGES // 4
+    most = _MAX_CHANGES if detailed else _MAX_CHANGES // 4
     lines = [f"{item['change']} {place(item['change'], item['path'])}: {_values(item)}" for item in found["keys"]]
     facts = [item for item in found["world"] or [] if not item["direct"]]
     for item in facts:
@@ -193,10 +195,10 @@ def _values(item: dict[str, Any]) -> str:
     ]
 
 
-def _fitting(issues: list[Issue], room: int) -> list[Issue]:
-    """The first of them, as many as fit into so many characters of text."""
+def _first_issues(issues: list[Issue], most_characters: int) -> list[Issue]:
+    """The first issues, as many as fit into a number of characters."""
     sizes = itertools.accumulate(len(_issue_text(0, issue)) for issue in issues)
-    return [issue for issue, size in zip(issues, sizes, strict=True) if size <= room]
+    return [issue for issue, size in zip(issues, sizes, strict=True) if size <= most_characters]
 
 
 def _issue(item: dict[str, Any], detailed: bool) -> Issue:
@@ -211,12 +213,12 @@ def _issue(item: dict[str, Any], detailed: bool) -> Issue:
         message=clean(item["message"], 300) + (" (also in base)" if item["in_base"] else ""),
         fix=None if item["fix"] is None else clean(item["fix"], 300),
         column=item["column"] if detailed else None,
-        allowed=clean(allowed, _ALLOWED if detailed else _ALLOWED // 4) if allowed else None,
+        allowed=clean(allowed, _MAX_ALLOWED_LENGTH if detailed else _MAX_ALLOWED_LENGTH // 4) if allowed else None,
     )
 
 
 def _text(report: Report) -> str:
-    """The report in words; it says all that the structure says."""
+    """The report in words, with everything that the structured content has."""
     lines = [report.summary]
     lines += [_issue_text(number, issue) for number, issue in enumerate(report.issues, 1)]
     if report.dry_run is not None:

@@ -1,4 +1,4 @@
-"""``write_scenario``: keep a scenario as a file of the workspace; only there with ``--enable-write``."""
+"""``write_scenario``: save a scenario as a file of the workspace; offered only with ``--enable-write``."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ __all__ = ["Written", "tool"]
 _DESCRIPTION = """
     Save a scenario as a file of the workspace. It is validated first: one with errors is not written. An existing file
     is kept unless overwrite=true. Only .yaml and .yml files in folders whose names start with no dot; missing folders
-    are made. Next: use the path as scenario_path.
+    are created. Next: use the path as scenario_path.
 """
 
 
 class Written(BaseModel):
-    """What was written."""
+    """The written file."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -46,7 +46,7 @@ def tool(services: Services) -> StrictTool:
         found = await services.text_job("validate_new", yaml, "yaml", path=where, seconds=services.limits.check_seconds)
         data = yaml.encode()
         replaced = await anyio.to_thread.run_sync(write_file, services.workspace.root, where, data, overwrite)
-        summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_counted(found)}"
+        summary = f"{'replaced' if replaced else 'wrote'} {clean(where)} ({len(data):,} bytes): {_contents(found)}"
         advice = f"Look at it with render_snapshot scenario_path={clean(where)}, then run_episode."
         report = Written(path=where, bytes=len(data), replaced=replaced, summary=summary, next=advice)
         text = TextContent(type="text", text=f"{summary}\nNext: {advice}")
@@ -62,6 +62,6 @@ def tool(services: Services) -> StrictTool:
     )
 
 
-def _counted(found: dict[str, Any]) -> str:
+def _contents(found: dict[str, Any]) -> str:
     warnings = found["warnings"]
     return f"{found['contents']}, {warnings or 'no'} warning{'s' * (warnings != 1)}"

@@ -3,13 +3,13 @@
 # requires-python = ">=3.10"
 # dependencies = []
 # ///
-"""Say of each difference in a benchmark whether it is one, and how many seeds would tell. Prints JSON.
+"""Judge each difference in a benchmark: is it real, and how many seeds would show it. Prints JSON.
 
-Reads what `irsim benchmark --json` wrote, or the artifact that the tool `benchmark` names: a file, or - for standard
-input. Needs nothing but Python. A difference counts if its 95 % interval leaves out zero, from at least ten episodes in
-which both have a value.
+Reads the output of `irsim benchmark --json`, or the artifact that the tool `benchmark` names: a file, or - for standard
+input. Needs only Python. A difference is real if its 95 % interval does not contain zero and at least ten pairs of
+episodes have a value.
 
-Exits with 0 if every difference is told, 1 if at least one is open, 2 if the input cannot be used.
+Exits with 0 if every difference is decided, 1 if at least one is open, 2 if the input is invalid.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ import math
 import sys
 from typing import Any
 
-FEWEST = 10
+MIN_PAIRS = 10
+"""Pairs of episodes below which no difference is judged."""
 SHARES = ("success", "goal_reached", "timeout", "group_collision_rate", "left_world", "collision")
 MORE = """
     success goal_reached spl velocity_avg clearing_distance_min clearing_distance_avg space_compliance
@@ -41,12 +42,12 @@ EITHER = """
     discomfort_min_dist human_collisions_by_robot human_collisions_by_human obstacle_force_agents
     pedestrian_velocity_avg
 """.split()  # noqa: SIM905
-# Which way is better, None if that depends; as in references/metrics.md.
+# Whether more or less is better, None if that depends; as in references/metrics.md.
 BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)
 
 
-def told(metric: str, row: dict[str, Any], first: str, detect: float) -> dict[str, Any]:
-    """One difference, in words and numbers."""
+def judge(metric: str, row: dict[str, Any], first: str, detect: float) -> dict[str, Any]:
+    """The verdict on one difference, with its numbers."""
     found = row["paired"][metric]
     n, mean, low, high = (found[key] for key in ("n", "mean", "low", "high"))
     answer = {
@@ -59,26 +60,34 @@ def told(metric: str, row: dict[str, Any], first: str, detect: float) -> dict[st
         "low": low,
         "high": high,
     }
-    if mean is None or low is None or n < FEWEST:
-        return {**answer, "verdict": "open", "why": f"{n} pairs of episodes have a value; {FEWEST} are the least"}
+    if mean is None or low is None or n < MIN_PAIRS:
+        return {
+            **answer,
+            "verdict": "open",
+            "why": f"only {n} pairs of episodes have a value, at least {MIN_PAIRS} are needed",
+        }
     aim = detect if metric in SHARES else abs(mean)
     half = (high - low) / 2
     needed = math.ceil(n * (half / aim) ** 2) if aim else None
     if low <= 0 <= high:
-        return {**answer, "verdict": "open", "why": "the interval holds zero", "pairs_needed": needed, "to_see": aim}
+        return {**answer, "verdict": "open", "why": "the interval contains zero", "pairs_needed": needed, "to_see": aim}
     better = (mean > 0) == (BETTER.get(metric) == "more")
     return {**answer, "verdict": ("better" if better else "worse") if BETTER.get(metric) else "different"}
 
 
 def main() -> int:
-    """Read the result and tell."""
+    """Read the result and print the verdicts."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("result", help="JSON file of `irsim benchmark --json`, or -")
     parser.add_argument(
         "--metric", action="append", choices=sorted(BETTER), metavar="KEY", help="repeatable; default: success"
     )
     parser.add_argument(
-        "--detect", type=float, default=0.1, metavar="SHARE", help="difference of shares worth seeing (default: 0.1)"
+        "--detect",
+        type=float,
+        default=0.1,
+        metavar="SHARE",
+        help="smallest difference of shares that matters (default: 0.1)",
     )
     given = parser.parse_args()
     try:
@@ -88,7 +97,7 @@ def main() -> int:
             with open(given.result, encoding="utf-8") as file:
                 result = json.load(file)
         answers = [
-            told(metric, row, result["behaviors"][0], given.detect)
+            judge(metric, row, result["behaviors"][0], given.detect)
             for row in result["rows"]
             if row["paired"]
             for metric in given.metric or ["success"]
@@ -97,7 +106,7 @@ def main() -> int:
         print(f"verdict.py: {given.result}: {type(error).__name__}: {error}", file=sys.stderr)
         return 2
     if not answers:
-        print(f"verdict.py: {given.result} has one behavior only: nothing to compare", file=sys.stderr)
+        print(f"verdict.py: {given.result} has one behavior only, so there is nothing to compare", file=sys.stderr)
         return 2
     print(json.dumps({"comparisons": len(answers), "differences": answers, "notes": result["notes"]}, indent=1))
     return 1 if any(answer["verdict"] == "open" for answer in answers) else 0

@@ -3,9 +3,10 @@
 # requires-python = ">=3.10"
 # dependencies = []
 # ///
-"""Say which steps the changes in a checkout of irsim call for, from what git sees as changed. Prints JSON.
+"""List the steps that the changes in a checkout of irsim require, from what git sees as changed. Prints JSON.
 
-Exits with 0 if none is missing among those it can see (tests, changelog), 1 if one is, 2 if this is no checkout.
+Exits with 0 if no step is missing (of those that git shows: tests, changelog), 1 if one is missing, 2 if the folder is
+not a checkout.
 """
 
 from __future__ import annotations
@@ -18,12 +19,13 @@ import sys
 from pathlib import Path
 
 MODELS = r"irsim/(components|scenario/model)/(.*/)?[^_].*\.py"
-MOST = 200  # files told by name
+MAX_FILES = 200
+"""Changed files that are listed by name."""
 STEPS = (
     (r"irsim/core/.*\.(cpp|hpp)|.*\.cmake", "pip install -e ."),
     (MODELS, "irsim schema"),
     (
-        rf"{MODELS}|irsim/diagnostics/codes\.py|irsim/lookup/.*|irsim/env.*|irsim/metrics/.*",
+        rf"{MODELS}|irsim/diagnostics/.*|irsim/(api|benchmarks|env|lookup|metrics|objects|results)/.*|templates/.*",
         "python -m irsim.lookup.reference",
     ),
     (r"irsim/cli/.*", "python -m irsim.cli.overview README.md"),
@@ -35,7 +37,7 @@ STEPS = (
 
 
 def changed_files(root: Path, base: str) -> list[str]:
-    """Files that differ from a commit, and new ones."""
+    """Return the files that differ from a commit, and the new ones."""
     listed = []
     for words in (["diff", "--name-only", base], ["ls-files", "--others", "--exclude-standard"]):
         done = subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, check=False)
@@ -46,14 +48,14 @@ def changed_files(root: Path, base: str) -> list[str]:
 
 
 def main() -> int:
-    """Look at the changes and print what they need."""
+    """Print the steps that the changes require."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("root", nargs="?", type=Path, default=Path(), help="the checkout (default: here)")
     parser.add_argument("--base", default="HEAD", help="commit to compare with (default: HEAD)")
     given = parser.parse_args()
     try:
         if not (given.root / "irsim" / "core" / "step.cpp").is_file():
-            raise ValueError("no checkout of irsim")
+            raise ValueError("not a checkout of irsim")
         files = changed_files(given.root, given.base)
     except (OSError, ValueError) as error:
         print(f"touched.py: {given.root}: {error}", file=sys.stderr)
@@ -65,7 +67,7 @@ def main() -> int:
         missing.append("a test")
     if code and "CHANGELOG.md" not in files:
         missing.append("a line in CHANGELOG.md")
-    changed = files[:MOST] + ([f"{len(files) - MOST} more"] if len(files) > MOST else [])
+    changed = files[:MAX_FILES] + ([f"{len(files) - MAX_FILES} more"] if len(files) > MAX_FILES else [])
     print(json.dumps({"changed": changed, "steps": steps, "missing": missing}, indent=1))
     return 1 if missing else 0
 

@@ -3,12 +3,12 @@
 # requires-python = ">=3.10"
 # dependencies = ["irsim-mcp==0.1.0"]
 # ///
-"""Run episodes of a scenario with actions from a function of yours, and print what came of each as JSON.
+"""Run episodes of a scenario with actions from a function of yours, and print the outcome of each as JSON.
 
-The function is called before each step with the environment and returns what env.step takes: one action for the first
-robot, a list of actions, a mapping {name: action}, or None to leave all robots to their behaviors.
+The function is called with the environment before each step. It returns an argument for env.step: one action for the
+first robot, a list of actions, a mapping {name: action}, or None to let behaviors drive all robots.
 
-Exits with 0 if all episodes were run, 1 if the function failed, 2 if something given cannot be used.
+Exits with 0 if all episodes ran, 1 if the function failed, 2 if an argument is invalid.
 """
 
 from __future__ import annotations
@@ -25,31 +25,35 @@ from typing import Any
 import irsim
 from irsim.episodes.episode import default_time_limit
 
-MOST = 100  # episodes told one by one, and collisions of an episode
+MAX_LISTED = 100
+"""Episodes that are listed, and collisions that are listed of each."""
 
 
 def read_arguments() -> argparse.Namespace:
-    """What stands on the command line."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path, help="the YAML file")
-    parser.add_argument("--policy", metavar="MODULE:FUNCTION", help="the function; default: behaviors drive")
-    parser.add_argument("--episodes", type=int, default=10, help="how many (default: 10)")
-    parser.add_argument("--seed", type=int, help="default: the scenario's, else a fresh one, which is printed")
-    parser.add_argument(
-        "--steps", type=int, help="horizon of an episode; default: world.time_limit, else as irsim run does"
-    )
+    parser.add_argument("--policy", metavar="MODULE:FUNCTION", help="the function; default: behaviors drive all robots")
+    parser.add_argument("--episodes", type=int, default=10, help="number of episodes (default: 10)")
+    parser.add_argument("--seed", type=int, help="default: the scenario's, else a random one, which is printed")
+    parser.add_argument("--steps", type=int, help="steps of an episode at most; default: as `irsim run`")
     parser.add_argument(
         "--same-layout", action="store_true", help="repeat the first layout instead of drawing the next"
     )
     parser.add_argument(
-        "--import", dest="imports", metavar="MODULE", action="append", default=[], help="import it first"
+        "--import",
+        dest="imports",
+        metavar="MODULE",
+        action="append",
+        default=[],
+        help="import a module first; repeatable",
     )
     parser.add_argument("--picture", type=Path, help="PNG or SVG to write at the end of the first episode")
     return parser.parse_args()
 
 
 def find_policy(name: str | None) -> Callable[[Any], Any]:
-    """The function of that name, or one that leaves all to the behaviors."""
+    """Return the function of that name; without a name, one that lets behaviors drive all robots."""
     if name is None:
         return lambda env: None
     module, _, function = name.partition(":")
@@ -58,7 +62,7 @@ def find_policy(name: str | None) -> Callable[[Any], Any]:
 
 
 def horizon_of(env: Any, steps: int | None) -> int:
-    """Steps of an episode at most."""
+    """Return the greatest number of steps of an episode."""
     if steps is not None:
         return steps
     limit = env.scenario.world.time_limit
@@ -67,7 +71,7 @@ def horizon_of(env: Any, steps: int | None) -> int:
 
 
 def run_episode(env: Any, policy: Callable[[Any], Any], horizon: int) -> dict[str, Any]:
-    """One episode from where the environment is; returns its row."""
+    """Run one episode from the current state and return its row of the result."""
     for _ in range(horizon):
         if env.done():
             break
@@ -76,7 +80,7 @@ def run_episode(env: Any, policy: Callable[[Any], Any], horizon: int) -> dict[st
         "outcome": env.outcome if env.outcome != "running" else "timeout",
         "time": env.time,
         "arrived": [robot.name for robot in env.robot_list if robot.arrive],
-        "collisions": [[e.time, e.object, e.partner] for e in env.events if e.kind == "collision"][:MOST],
+        "collisions": [[e.time, e.object, e.partner] for e in env.events if e.kind == "collision"][:MAX_LISTED],
     }
 
 
@@ -108,10 +112,10 @@ def main() -> int:
     finally:
         env.end(ending_time=0)
     counts = {name: sum(row["outcome"] == name for row in rows) for name in ("success", "collision", "timeout")}
-    told = {"seed": env.seed, "steps_at_most": horizon, **counts, "episodes": rows[:MOST]}
-    if len(rows) > MOST:
-        told["left_off"] = len(rows) - MOST
-    print(json.dumps(told, indent=1))
+    result = {"seed": env.seed, "steps_at_most": horizon, **counts, "episodes": rows[:MAX_LISTED]}
+    if len(rows) > MAX_LISTED:
+        result["left_off"] = len(rows) - MAX_LISTED
+    print(json.dumps(result, indent=1))
     return 0
 
 

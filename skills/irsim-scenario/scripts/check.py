@@ -3,13 +3,13 @@
 # requires-python = ">=3.10"
 # dependencies = ["irsim-mcp==0.1.0"]
 # ///
-"""Check a scenario in one go: findings, a first look at what happens, a picture, and what an edit changed, as one JSON.
+"""Check a scenario: findings, a short simulation, a picture, and the changes of an edit, printed as one JSON object.
 
-`look_at` of the answer lists what you should look at before you call the scenario finished; with --base only what the
-older file does not have.
+`look_at` lists what needs your attention before the scenario is finished; with --base only what the older file does not
+have.
 
-Exits with 0 if there is nothing to look at, 1 if the scenario has errors, 2 if something given cannot be used, 3 if it
-is valid, but there is something to look at: warnings, hints, collisions, robots that stand or leave, lost comments.
+Exits with 0 if nothing needs attention, 1 if the scenario has errors, 2 if an argument is invalid, 3 if the scenario is
+valid but something needs attention: warnings, hints, collisions, robots that are stuck or leave, lost comments.
 """
 
 from __future__ import annotations
@@ -23,68 +23,70 @@ from typing import Any
 import irsim
 from irsim.api import snapshot
 
-MOST = 30  # entries of a list
-KEYS = ("code", "severity", "path", "line", "message", "fix", "in_base")  # of a finding
+MAX_ENTRIES = 30
+"""Entries of a list that are printed."""
+KEYS = ("code", "severity", "path", "line", "message", "fix", "in_base")
+"""Parts of a finding that are printed."""
 
 
 def read_arguments() -> argparse.Namespace:
-    """What stands on the command line."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path, help="the YAML file")
     parser.add_argument("--base", type=Path, metavar="OLD", help="the file before the edit, to compare with")
-    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw it here")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the scenario into this file")
     parser.add_argument(
-        "--steps", type=int, default=0, help="steps before the picture, -1: a whole episode (default: 0)"
+        "--steps", type=int, default=0, help="steps before the picture is drawn; -1: a whole episode (default: 0)"
     )
     parser.add_argument("--seed", type=int, help="default: the scenario's, else 0")
     given = parser.parse_args()
     if given.picture and given.picture.suffix.lower() != ".png":
-        parser.error(f"--picture {given.picture}: only .png")
+        parser.error(f"--picture must be a .png file, got {given.picture}")
     if given.steps < -1 or (given.seed is not None and given.seed < 0):
-        parser.error("--steps is at least -1, --seed at least 0")
+        parser.error("--steps must be at least -1, --seed at least 0")
     return given
 
 
 def tidy(value: Any) -> Any:
-    """Without what is empty, numbers rounded; of a long list the beginning, and how much is left off."""
+    """Drop what is empty, round numbers, and cut long lists, whose last entry then counts the omitted ones."""
     if isinstance(value, float):
         return round(value, 4)
     if isinstance(value, dict):
         return {key: tidy(item) for key, item in value.items() if item is not None and item not in ([], {})}
     if not isinstance(value, list):
         return value
-    left_off = [f"{len(value) - MOST} more"] if len(value) > MOST else []
-    return [tidy(item) for item in value[:MOST]] + left_off
+    omitted = [f"{len(value) - MAX_ENTRIES} more"] if len(value) > MAX_ENTRIES else []
+    return [tidy(item) for item in value[:MAX_ENTRIES]] + omitted
 
 
-def remarks(report: Any) -> list[str]:
-    """What to look at, in words."""
-    told = [
+def find_remarks(report: Any) -> list[str]:
+    """List in words what needs attention."""
+    remarks = [
         f"{finding.severity} {finding.code} at {finding.path or 'the top'}: {finding.message}"
         for finding in report.findings
         if not finding.in_base
     ]
     tried, changes = report.dry_run, report.changes
     if tried is not None and (tried.collisions or tried.stuck or tried.left or tried.jammed):
-        told.append(f"tried: {tried.summary}")
+        remarks.append(f"tried: {tried.summary}")
     if changes is not None and changes.same:
-        told.append("nothing differs from the base")
+        remarks.append("nothing differs from the base")
     if changes is not None and changes.comments_lost:
-        told.append(f"comments of the base that are gone: {len(changes.comments_lost)}")
-    return told
+        remarks.append(f"comments of the base that are gone: {len(changes.comments_lost)}")
+    return remarks
 
 
-def drawn(given: argparse.Namespace, seed: int) -> dict[str, Any]:
-    """Draw the picture; returns where it is and what is in it."""
+def draw(given: argparse.Namespace, seed: int) -> dict[str, Any]:
+    """Draw the picture; return its file and what it shows."""
     sheet = snapshot(given.scenario, seed=seed, steps=None if given.steps < 0 else given.steps)
     given.picture.write_bytes(sheet.png)
     robots = [robot.model_dump(mode="json") for robot in sheet.robots]
-    told = {"step": sheet.steps, "time": sheet.sim_time, "robots": robots, "obstacles": sheet.contents}
-    return {"file": str(given.picture), **told}
+    shown = {"step": sheet.steps, "time": sheet.sim_time, "robots": robots, "obstacles": sheet.contents}
+    return {"file": str(given.picture), **shown}
 
 
 def main() -> int:
-    """Check, try, compare and draw."""
+    """Check, simulate, compare and draw."""
     given = read_arguments()
     try:
         report = irsim.validate(given.scenario, base=given.base, simulate=True, seed=given.seed)
@@ -96,16 +98,16 @@ def main() -> int:
             "file": report.file,
             "valid": report.valid,
             "summary": report.summary,
-            "look_at": remarks(report)[:MOST],
+            "look_at": find_remarks(report)[:MAX_ENTRIES],
             **{key: tidy(found[key]) for key in ("findings", "dry_run", "changes") if found[key]},
         }
         if given.picture and report.dry_run is not None:
-            answer["picture"] = tidy(drawn(given, report.dry_run.seed))
+            answer["picture"] = tidy(draw(given, report.dry_run.seed))
     except (OSError, ValueError, irsim.IrsimError) as error:
         print(f"check.py: {error}", file=sys.stderr)
         return 2
     lines = (f"{json.dumps(key)}: {json.dumps(value)}" for key, value in answer.items())
-    print("{\n " + ",\n ".join(lines) + "\n}")  # a line for each part
+    print("{\n " + ",\n ".join(lines) + "\n}")  # one line for each part
     return 1 if not report.valid else 3 if answer["look_at"] else 0
 
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import anyio
-from irsim_mcp.server import build_server
 from mcp import Client
+
+from irsim_mcp.server import build_server
 
 FILE = Path(__file__).with_name("tools_list.json")
 

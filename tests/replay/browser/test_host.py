@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import anyio
-import irsim_mcp.run_resources
 import pytest
-from irsim_mcp.replay_page import PAGE
 
+import irsim_mcp.run_resources
 from irsim.runs import open_run
+from irsim_mcp.replay_page import PAGE
 from tests.mcp.conftest import connected
 from tests.replay.browser.conftest import Watched, until
 from tests.replay.conftest import scene
@@ -26,7 +26,7 @@ BROKEN = {"content": [{"type": "text", "text": "invalid-scenario: …"}], "isErr
 @pytest.fixture
 def served(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """What the server gives: the page, a result of run_episode, and its run in several parts."""
-    monkeypatch.setattr(irsim_mcp.run_resources, "_MOST_BYTES", 1500)
+    monkeypatch.setattr(irsim_mcp.run_resources, "_MAX_BYTES", 1500)
 
     async def ask() -> dict[str, Any]:
         async with connected(workspace) as client:

@@ -270,7 +270,7 @@ def test_the_page_says_where_scans_come_from(
     run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch, computed: bool
 ) -> None:
     if computed:
-        monkeypatch.setattr(packing, "_MOST_RANGES", 0)
+        monkeypatch.setattr(packing, "_MAX_RANGES", 0)
     page = watched.open(Path(irsim.replay(run).file))
     assert ("computed in this page" in page.inner_text("#scannote")) == computed
     page.select_option("#robot", label="lorry")
@@ -280,7 +280,7 @@ def test_the_page_says_where_scans_come_from(
 
 def test_computed_scans_are_like_recorded_ones(run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
     page = watched.open(Path(irsim.replay(run, "recorded.html").file))
-    monkeypatch.setattr(packing, "_MOST_RANGES", 0)
+    monkeypatch.setattr(packing, "_MAX_RANGES", 0)
     irsim.replay(run, "computed.html")
     looks = []
     for name in ("recorded", "computed"):
@@ -439,7 +439,7 @@ def test_more_is_offered_only_where_there_is_more(shown: Any) -> None:
 
 
 def test_it_says_which_events_are_not_listed(run: Run, watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(packing, "_MOST_EVENTS", 1)
+    monkeypatch.setattr(packing, "_MAX_EVENTS", 1)
     page = watched.open(Path(irsim.replay(run).file))
     assert page.text_content("#eventshead") == f"Events (1 of {len(run.events)})"
     assert page.inner_text("#events").endswith("hits crate")

@@ -1,4 +1,4 @@
-"""The sensor ``beacons``: distance and bearing of all that is tagged ``beacon`` within reach, with noise if asked."""
+"""The sensor ``beacons``: distance and bearing of all objects tagged ``beacon`` within reach, with optional noise."""
 
 from __future__ import annotations
 
@@ -8,24 +8,22 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from irsim.components.sensors._options import SensorOptions
-from irsim.options.registry import SENSORS
-from irsim.options.units import Meters
+from irsim.plugins import SENSORS, Meters, SensorOptions
 
 
 class Beacons(SensorOptions):
-    """Measures distance and bearing of objects tagged `beacon`; sees through walls, as radio does."""
+    """Measures distance and bearing of objects tagged `beacon`, through walls, as radio does."""
 
     name: Literal["beacons"] = "beacons"
     reach: Annotated[Meters, Field(gt=0)] = 5.0
-    """Distance up to which beacons are heard."""
+    """Greatest distance at which a beacon is heard."""
     std: Annotated[Meters, Field(ge=0)] = 0.0
-    """Standard deviation of the distance."""
+    """Standard deviation of the measured distance."""
 
 
 @SENSORS.register(Beacons)
 def beacons(parent: Any, options: Beacons, rng: np.random.Generator) -> dict[str, tuple[float, float]]:
-    """Distance [m] and bearing [rad, body frame] by name."""
+    """Return distance [m] and bearing [rad, body frame] of each beacon by its name."""
     x, y, heading = parent.state[:3, 0]
     heard = {}
     for other in parent.environment_objects:

@@ -1,4 +1,4 @@
-"""The behavior ``give_way`` of differential drives: straight to the goal, but stand while somebody is close ahead."""
+"""The behavior ``give_way`` for differential drives: straight to the goal, but stop while a person is close ahead."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import irsim
 
 @irsim.register_behavior("diff", "give_way")
 def give_way(ego_object: Any, external_objects: list[Any], distance: float = 1.5, **_: Any) -> list[float]:
-    """[forward m/s, yaw rate rad/s]; ``distance`` [m] is measured between surfaces."""
+    """Return [forward m/s, yaw rate rad/s]; ``distance`` [m] is measured between surfaces."""
     x, y, heading = ego_object.state[:3, 0]
     goal_x, goal_y = ego_object.goal[:2, 0]
     turn = math.remainder(math.atan2(goal_y - y, goal_x - x) - heading, math.tau)

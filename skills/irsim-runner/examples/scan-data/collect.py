@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Collect (scan, goal, action) samples from many worlds at once; prints JSON.
 
-Of each robot under way: its ranges [m], the goal in its own frame [m], and the control its behavior chose then
-(forward m/s, yaw rate rad/s).
+For each robot that is still driving: its ranges [m], the goal in its own frame [m], and the control that its behavior
+then chose (forward m/s, yaw rate rad/s).
 """
 
 from __future__ import annotations
@@ -17,13 +17,17 @@ import irsim
 
 
 def main() -> None:
-    """Read the command line, collect, write."""
+    """Parse the command line, collect the samples, write them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenario", type=Path)
     parser.add_argument("--out", type=Path, default=Path("samples.npz"), help="default: samples.npz")
-    parser.add_argument("--worlds", type=int, default=64, help="stepped together (default: 64)")
-    parser.add_argument("--steps", type=int, default=300, help="of each world (default: 300)")
-    parser.add_argument("--seed", type=int, default=0, help="of the first world; the others follow (default: 0)")
+    parser.add_argument(
+        "--worlds", type=int, default=64, help="number of worlds that are stepped together (default: 64)"
+    )
+    parser.add_argument("--steps", type=int, default=300, help="steps of each world (default: 300)")
+    parser.add_argument(
+        "--seed", type=int, default=0, help="seed of the first world; the others count up from it (default: 0)"
+    )
     given = parser.parse_args()
 
     worlds = irsim.batch(given.scenario, given.worlds, seeds=range(given.seed, given.seed + given.worlds))
@@ -33,7 +37,7 @@ def main() -> None:
     episodes = 0
     for _ in range(given.steps):
         active = ~(worlds.arrived | worlds.stopped)[:, robots].astype(bool)
-        scan = worlds.ranges.reshape(given.worlds, len(robots), -1)[active]  # the choice by a mask is a copy
+        scan = worlds.ranges.reshape(given.worlds, len(robots), -1)[active]  # indexing with a mask copies
         goal = in_own_frame(worlds.goal[:, robots], worlds.pose[:, robots])[active]
         worlds.step()
         samples["scan"].append(scan.astype(np.float32))
@@ -42,7 +46,7 @@ def main() -> None:
         over = worlds.done | (worlds.count >= horizon)
         if over.any():
             episodes += int(over.sum())
-            worlds.reset(over)  # each world that is through, or stuck, draws its next layout
+            worlds.reset(over)  # each world that is done or out of time draws its next layout
     arrays = {name: np.concatenate(parts) for name, parts in samples.items()}
     np.savez_compressed(given.out, **arrays)
     shapes = {name: list(array.shape) for name, array in arrays.items()}
@@ -50,7 +54,7 @@ def main() -> None:
 
 
 def in_own_frame(goals: np.ndarray, poses: np.ndarray) -> np.ndarray:
-    """Goals (…, 3) seen from poses (…, 3): ahead and to the left [m], (…, 2)."""
+    """Transform goals (…, 3) into the frames of poses (…, 3): ahead and to the left [m], (…, 2)."""
     dx, dy = goals[..., 0] - poses[..., 0], goals[..., 1] - poses[..., 1]
     cos, sin = np.cos(poses[..., 2]), np.sin(poses[..., 2])
     return np.stack([cos * dx + sin * dy, -sin * dx + cos * dy], axis=-1)

@@ -1,4 +1,4 @@
-"""The law of `ease`, and what a user sees of it."""
+"""The law of `ease`, and what a user notices."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EASE = core.EaseOptions(slow_radius=2.0)
 
 
 @pytest.mark.parametrize(("distance", "speed"), [(5.0, 1.0), (2.0, 1.0), (1.0, 0.5), (0.05, 0.0)])
-def test_the_speed_falls_with_what_is_left(distance: float, speed: float) -> None:
+def test_speed_is_proportional_to_the_remaining_distance(distance: float, speed: float) -> None:
     goal = [distance * math.cos(0.3), distance * math.sin(0.3)]
     world, state = scene(robot(drive=DRIVES["omni"], goals=[goal], goal_threshold=0.1, behavior=EASE))
     core.decide(world, state)
@@ -29,6 +29,6 @@ def test_every_drive_arrives(drive: str) -> None:
     assert state.arrived[0] == 1
 
 
-def test_a_radius_below_zero_is_refused() -> None:
+def test_negative_radius_is_an_error() -> None:
     text = "robot: {kinematics: {name: diff}, goal: [5, 1], behavior: {name: ease, slow_radius: -1}}"
     assert [finding.code for finding in irsim.validate(text=text).findings if finding.severity == "error"]

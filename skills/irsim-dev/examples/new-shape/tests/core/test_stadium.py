@@ -1,4 +1,4 @@
-"""`stadium` touches with its round ends, and not with corners that it does not have."""
+"""`stadium` touches with its round ends, not with the corners of a rectangle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``ease``: straight to the goal, slower the nearer it is."""
+"""``ease``: straight to the goal, and slower the nearer the goal is."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from irsim.options.units import Meters
 
 
 class Ease(BehaviorOptions):
-    """Drive straight to the goal, and slow down within some distance of it, looking at nobody."""
+    """Drive straight to the goal and slow down near it, without avoiding anything."""
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "ease"}, {"name": "ease", "slow_radius": 2.0}]}
 
     name: Literal["ease"] = "ease"
     slow_radius: Annotated[Meters, Field(gt=0)] = 1.0
-    """Distance of the goal from which on the speed falls, in proportion to what is left."""
+    """Distance to the goal below which the speed is proportional to the remaining distance."""
 
 
 BEHAVIORS.register(Ease, kernel=core.EaseOptions)

@@ -1,4 +1,4 @@
-// ease: straight to the goal, slower the nearer it is; looks at nobody.
+// ease: straight to the goal, and slower the nearer the goal is; avoids nothing.
 #pragma once
 
 #include "decision.hpp"
@@ -7,7 +7,7 @@
 namespace irsim {
 
 struct EaseOptions {
-  double slow_radius;  // distance of the goal from which on the speed falls [m]
+  double slow_radius;  // distance to the goal below which the speed falls [m]
   static constexpr auto fields() { return std::make_tuple(field("slow_radius", &EaseOptions::slow_radius)); }
 };
 

@@ -1,4 +1,4 @@
-"""``stadium``: a rectangle with round ends, as many carts have."""
+"""``stadium``: a rectangle with round ends, the outline of many carts."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ class Stadium(ShapeOptions):
 
     name: Literal["stadium"] = "stadium"
     length: Annotated[Meters, Field(gt=0)] = 1.0
-    """Of the straight sides, along the heading; the ends come on top."""
+    """Length of the straight sides, along the heading; the round ends add to it."""
     width: Annotated[Meters, Field(gt=0)] = 0.4
-    """Across the heading; the ends have half of it as their radius."""
+    """Width across the heading; the radius of the round ends is half of it."""
 
 
 @SHAPES.register(Stadium)
 def parts(options: Stadium) -> list[core.Part]:
-    """Geometry for the core, body frame: the origin is in the middle."""
+    """Return the geometry for the core, in the body frame with the origin in the middle."""
     x, y = options.length / 2, options.width / 2
     return [
         core.Polygon(vertices=[[-x, -y], [x, -y], [x, y], [-x, y]]),

@@ -1,0 +1,28 @@
+"""Which module has each public name of ``irsim``."""
+
+from __future__ import annotations
+
+__all__ = ["PUBLIC_HOMES"]
+
+PUBLIC_HOMES = {
+    "Batch": "irsim.env.batch",
+    "Env": "irsim.env",
+    "EnvBase": "irsim.env",
+    "EnvBase3D": "irsim.env",
+    "IrsimError": "irsim.diagnostics.errors",
+    "NotSimulatedError": "irsim.diagnostics.errors",
+    "PlacementError": "irsim.diagnostics.errors",
+    "ScenarioError": "irsim.diagnostics.errors",
+    "ScenarioNotFoundError": "irsim.diagnostics.errors",
+    "batch": "irsim.env.batch",
+    "benchmark": "irsim.benchmarks",
+    "diff": "irsim.api",
+    "fix": "irsim.api",
+    "make": "irsim.env",
+    "register_behavior": "irsim.objects.handlers.registration",
+    "render": "irsim.api",
+    "replay": "irsim.runs.replay.export",
+    "run": "irsim.api",
+    "validate": "irsim.api",
+}
+"""Name -> the module that it is imported from when it is first used."""

@@ -1,0 +1,270 @@
+"""``irsim.benchmark``: compare behaviors over scenarios and seeds, on all cores, with metrics and intervals.
+
+The comparison is fair: every behavior runs the same scenarios with the same seeds and horizons, and differences are
+computed episode by episode.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import shlex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.log import Log, logged, with_episodes
+from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.seeds import seeds_from
+from irsim.common.arguments import as_given, check_whole_number
+from irsim.diagnostics.errors import ArgumentError, OverLimitError
+from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
+from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+from irsim.results.findings import Finding
+from irsim.scenario.behavior_override import (
+    AS_WRITTEN,
+    BenchmarkError,
+    behavior_text,
+    check_behavior_name,
+    parse_behavior,
+)
+from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.resolve.randomness import random_parts
+from irsim.scenario.yaml.document import Document, load_path, load_text
+
+__all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged"]
+
+DEFAULT_SEEDS = 10
+"""Number of seeds if none are given."""
+_SEEDS_PER_TURN = 5
+"""Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
+_COPIED = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
+"""Keys of the result of an episode that its row repeats."""
+
+
+def benchmark(
+    files: str | Path | Sequence[str | Path],
+    behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
+    seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
+    *,
+    steps: int | None = None,
+    strict: bool = False,
+    imports: Sequence[str] = (),
+    workers: int | None = None,
+    limits: Limits | None = None,
+    most_episodes: int | None = None,
+    progress: Progress | None = None,
+    log: str | Path | None = None,
+) -> BenchmarkResult:
+    """Run every scenario under every behavior with every seed, and compare.
+
+    Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+
+    Args:
+        files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result.
+        behaviors: Behaviors for all robots: names (``orca``), mappings with options, in Python or as YAML text
+            (``{name: orca, timeHorizon: 5}``), or ``as-written`` for those of the scenario. Differences are to the
+            first one.
+        seeds: The number of seeds (0, 1, 2, …), or the seeds: a list, or text such as ``5-9`` or ``1,4,7``.
+        steps: Horizon in steps, which overrides ``world.time_limit``.
+        strict: Refuse what IR-SIM would ignore.
+        imports: Modules to import first, for behaviors that they register.
+        workers: Greatest number of processes; default: the number of cores of this machine.
+        limits: Limits of the loader and of each run.
+        most_episodes: Greatest number of episodes; more are refused.
+        progress: Callback ``(episodes_done, episodes_total)``.
+        log: File to which every episode is written as soon as it is done; ``irsim.benchmarks.logged(log)`` reads their
+            result, also after the benchmark was interrupted.
+
+    Raises:
+        ScenarioError: A scenario has errors, perhaps only with one of the behaviors; ScenarioNotFoundError: there is no
+            such file.
+        OverLimitError: More episodes or steps are requested than the limits allow.
+        BenchmarkError: A behavior or the seeds are invalid.
+        ArgumentError: Another argument is invalid.
+        RunError: The log cannot be written.
+    """
+    given = _sources(files)
+    names = _names(given)
+    wanted = _behavior_texts(behaviors)
+    chosen = seeds_from(seeds)
+    if steps is not None:
+        steps = check_whole_number("steps", steps)
+    if workers is not None:
+        workers = check_whole_number("workers", workers, 1)
+    _check(names, wanted, chosen, most_episodes)
+    limits = limits or DEFAULT_LIMITS
+    import_modules(imports)
+    for number, behavior in enumerate(wanted):
+        with _naming_behavior(number):
+            check_behavior_name(behavior)
+    warnings: dict[str, list[Finding]] = {}
+    jobs: list[tuple[str, str, Job, Sequence[int]]] = []
+    periods, chances = dict[str, float](), dict[str, list[str]]()
+    for name, source in zip(names, given, strict=True):
+        document = _document(source, limits)
+        scenario, warnings[name] = read_scenario(
+            None if document.path is None else name,
+            text=document.text if document.path is None else None,
+            strict=strict,
+            limits=limits,
+        )
+        periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
+        for number, behavior in enumerate(wanted):
+            job = Job(
+                text=str(document.text),
+                path=document.path,
+                behavior=behavior,
+                steps=steps,
+                strict=strict,
+                imports=tuple(imports),
+                limits=tuple(asdict(limits).items()),
+            )
+            with _naming_behavior(number):
+                chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
+            jobs.append((name, behavior, job, chosen))
+    plan = [
+        (name, behavior, Task(job, seed))
+        for name, behavior, job, every in jobs
+        for seed in (every if chances[name] else every[:1])
+    ]
+
+    rank = {seed: position // _SEEDS_PER_TURN for position, seed in enumerate(chosen)}
+    turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
+    from irsim import __version__
+
+    head = BenchmarkResult(
+        scenarios=names,
+        behaviors=wanted,
+        seeds=chosen,
+        step_time=periods,
+        random=chances,
+        rows=[],
+        episodes=[],
+        notes=[],
+        warnings=warnings,
+        version=__version__,
+        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+    )
+
+    def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
+        name, behavior, task = plan[number]
+        metrics = {key: None if math.isnan(value) else value for key, value in result["metrics"].items()}
+        copied = {key: result[key] for key in _COPIED}
+        return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
+
+    with nullcontext() if log is None else Log(log, head) as book:
+
+        def keep(number: int, result: Mapping[str, Any]) -> None:
+            if book is not None:
+                book.add(turns[number], row(turns[number], result))
+
+        tasks = [plan[number][2] for number in turns]
+        found = run_tasks(tasks, workers=workers or cores(), progress=progress, kept=keep)
+    results = dict(zip(turns, found, strict=True))
+    return with_episodes(head, [row(number, results[number]) for number in range(len(plan))])
+
+
+def _sources(files: Any) -> list[str]:
+    """The scenarios, given as paths or texts, as strings."""
+    one = isinstance(files, (str, Path))
+    if not one and (isinstance(files, (Mapping, bytes, bytearray)) or not isinstance(files, Iterable)):
+        raise ArgumentError(
+            f"files must be scenarios, got {as_given(files)}", "give a path, the text of a scenario, or a list of them"
+        )
+    listed = [files] if one else list(files)
+    for number, source in enumerate(listed):
+        if not isinstance(source, (str, Path)):
+            raise ArgumentError(
+                f"files[{number}] must be a scenario, got {as_given(source)}", "give a path or the text of a scenario"
+            )
+    return [str(source) for source in listed]
+
+
+def _behavior_texts(behaviors: Any) -> list[str]:
+    """The behaviors as text, as the command line takes them."""
+    one = isinstance(behaviors, (str, Mapping)) or not isinstance(behaviors, Iterable)
+    found = []
+    for number, behavior in enumerate([behaviors] if one else behaviors):
+        with _naming_behavior(number):
+            found.append(behavior if isinstance(behavior, str) else behavior_text(behavior))
+    return found
+
+
+def _names(given: list[str]) -> list[str]:
+    """Names of the scenarios in the result."""
+    texts = [source for source in given if "\n" in source]
+    if len(texts) < 2:
+        return ["(text)" if "\n" in source else source for source in given]
+    number = itertools.count(1)
+    return [f"(text {next(number)})" if "\n" in source else source for source in given]
+
+
+def _document(source: str, limits: Limits) -> Document:
+    if "\n" in source:
+        return load_text(source, limits=limits)
+    found = source_of(source, None, limits)
+    return found if isinstance(found, Document) else load_path(found, limits)
+
+
+def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int | None) -> None:
+    for what, given in (("scenarios", names), ("behaviors", behaviors)):
+        if not given:
+            raise BenchmarkError(
+                f"there must be at least one of the {what}, got none", f"give at least one of the {what}"
+            )
+    for what, listed in (("scenario", names), ("behavior", behaviors)):
+        twice = next((name for name in listed if listed.count(name) > 1), None)
+        if twice is not None:
+            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
+    for number, behavior in enumerate(behaviors):
+        with _naming_behavior(number):
+            parse_behavior(behavior)
+    total = len(names) * len(behaviors) * len(seeds)
+    if most is not None and total > most:
+        product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
+        raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
+
+
+@contextmanager
+def _naming_behavior(number: int) -> Iterator[None]:
+    """Context in which errors name one of the behaviors as their cause."""
+    try:
+        yield
+    except BenchmarkError as error:
+        error.where = f"behaviors[{number}]"
+        raise
+
+
+def _command(
+    names: list[str],
+    behaviors: list[str],
+    seeds: list[int],
+    steps: int | None,
+    strict: bool,
+    imports: Sequence[str],
+) -> str:
+    files = [
+        f"scenario{'' if name == '(text)' else name[6:-1]}.yaml" if name.startswith("(text") else name for name in names
+    ]
+    words: list[Any] = ["irsim", "benchmark", *files]
+    if behaviors != [AS_WRITTEN]:
+        words += ["--behaviors", ",".join(behaviors)]
+    words += ["--seeds", _seeds_text(seeds)]
+    if steps is not None:
+        words += ["--steps", steps]
+    if strict:
+        words.append("--strict")
+    for name in imports:
+        words += ["--import", name]
+    return shlex.join(map(str, words))
+
+
+def _seeds_text(seeds: list[int]) -> str:
+    """The seeds as the command line takes them."""
+    if len(seeds) > 1 and seeds == list(range(seeds[0], seeds[0] + len(seeds))):
+        return str(len(seeds)) if seeds[0] == 0 else f"{seeds[0]}-{seeds[-1]}"
+    return ",".join(map(str, seeds)) if seeds != [0] else "1"

@@ -1,0 +1,12 @@
+"""Lets PyInstaller find the old module paths: it reads imports from files, and the old paths have none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+__all__ = ["hook_folders"]
+
+
+def hook_folders() -> list[str]:
+    """Folders with hooks; PyInstaller asks through the entry point ``pyinstaller40``."""
+    return [str(Path(__file__).parent)]

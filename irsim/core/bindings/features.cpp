@@ -1,0 +1,16 @@
+// Options classes of kinematics, behaviors, sensors and shapes, generated from their lists of fields.
+#include "bindings/helpers.hpp"
+#include "world/spec.hpp"
+
+namespace irsim {
+
+void bind_features(nb::module_& m) {
+#define IRSIM_BIND(Type) bind_fields<Type>(m, #Type);
+  IRSIM_KINEMATICS(IRSIM_BIND)
+  IRSIM_BEHAVIORS(IRSIM_BIND)
+  IRSIM_SENSORS(IRSIM_BIND)
+  IRSIM_SHAPES(IRSIM_BIND)
+#undef IRSIM_BIND
+}
+
+}  // namespace irsim

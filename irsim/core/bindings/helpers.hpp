@@ -1,0 +1,124 @@
+// Helpers of the bindings: arrays without copies, and classes from lists of fields.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "fields.hpp"
+
+namespace irsim {
+
+namespace nb = nanobind;
+
+/// A NumPy array that views shared memory and keeps it alive.
+template <class T, class Element>
+nb::object view(const std::shared_ptr<Element>& memory, std::initializer_list<std::size_t> shape) {
+  auto* kept = new std::shared_ptr<Element>(memory);
+  nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::shared_ptr<Element>*>(p); });
+  return nb::ndarray<nb::numpy, T>(reinterpret_cast<T*>(memory.get()), shape.size(), shape.begin(), owner).cast();
+}
+
+/// A NumPy array that owns its memory.
+template <class T>
+nb::object own(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  auto kept = std::make_shared<std::vector<T>>(std::move(values));
+  if (kept->empty()) kept->resize(1);
+  return view<T>(std::shared_ptr<T>(kept, kept->data()), shape);
+}
+
+template <class Owner, class Value>
+void read_field(Owner& owner, const Field<Owner, Value>& field, nb::handle value) {
+  owner.*(field.member) = nb::cast<Value>(value);
+}
+template <class Owner, class Enum, std::size_t N>
+void read_field(Owner& owner, const Choice<Owner, Enum, N>& field, nb::handle value) {
+  const auto word = nb::cast<std::string>(value);
+  for (std::size_t i = 0; i < N; ++i) {
+    if (word == field.words[i]) {
+      owner.*(field.member) = static_cast<Enum>(i);
+      return;
+    }
+  }
+  throw nb::value_error((std::string(field.name) + ": '" + word + "' is not one of the choices").c_str());
+}
+
+template <class Owner, class Value>
+nb::object show_field(const Owner& owner, const Field<Owner, Value>& field) {
+  return nb::cast(owner.*(field.member));
+}
+template <class Owner, class Enum, std::size_t N>
+nb::object show_field(const Owner& owner, const Choice<Owner, Enum, N>& field) {
+  return nb::cast(field.words[static_cast<std::size_t>(owner.*(field.member))]);
+}
+
+/// Fill the fields of `target` from keyword arguments, which must name all fields and nothing else.
+template <class T>
+void read_fields(T& target, const nb::kwargs& given) {
+  std::size_t used = 0;
+  std::apply(
+      [&](const auto&... field) {
+        const auto one = [&](const auto& f) {
+          if (!given.contains(f.name)) throw nb::type_error((std::string("missing argument: ") + f.name).c_str());
+          try {
+            read_field(target, f, given[f.name]);
+          } catch (const nb::cast_error&) {
+            throw nb::type_error((std::string("argument of the wrong type: ") + f.name).c_str());
+          }
+          ++used;
+        };
+        (one(field), ...);
+      },
+      T::fields());
+  if (used == given.size()) return;
+  for (const auto item : given) {
+    const auto name = nb::cast<std::string>(item.first);
+    const bool known = std::apply([&](const auto&... field) { return ((name == field.name) || ...); }, T::fields());
+    if (!known) throw nb::type_error(("unexpected argument: " + name).c_str());
+  }
+}
+
+/// Bind a struct that has `fields()`, with a keyword constructor, the tuple `fields` and read-only attributes.
+template <class T>
+void bind_fields(nb::module_& m, const char* name) {
+  nb::class_<T> bound(m, name);
+  bound.def("__init__", [](T* self, nb::kwargs given) {
+    new (self) T();
+    read_fields(*self, given);
+  });
+  nb::list names;
+  std::apply(
+      [&](const auto&... field) {
+        const auto one = [&](const auto& f) {
+          names.append(f.name);
+          bound.def_prop_ro(f.name, [f](const T& self) { return show_field(self, f); });
+        };
+        (one(field), ...);
+      },
+      T::fields());
+  bound.attr("fields") = nb::tuple(names);
+}
+
+void bind_features(nb::module_& m);
+void bind_log(nb::module_& m);
+void bind_maps(nb::module_& m);
+void bind_planning(nb::module_& m);
+void bind_world(nb::module_& m);
+void bind_state(nb::module_& m);
+void bind_steps(nb::module_& m);
+void bind_object(nb::module_& m);
+void bind_tools(nb::module_& m);
+void bind_clearance(nb::module_& m);
+
+}  // namespace irsim

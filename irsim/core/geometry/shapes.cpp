@@ -1,0 +1,129 @@
+#include "geometry/shapes.hpp"
+
+#include "geometry/enclosing_circle.hpp"
+
+namespace irsim {
+
+double twice_area(const std::vector<Vec2>& ring) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) sum += cross(ring[i], ring[(i + 1) % ring.size()]);
+  return sum;
+}
+
+namespace {
+
+/// The centroid of a single polygon; `otherwise` for compounds, lines and shapes without area.
+Vec2 centroid_of(const std::vector<Outline>& outlines, Vec2 otherwise) {
+  if (outlines.size() != 1 || outlines[0].kind != Kind::polygon) return otherwise;
+  const std::vector<Vec2>& ring = outlines[0].vertices;
+  double area = 0.0;
+  Vec2 sum;
+  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+    const Vec2 b = ring[i] - ring[0], c = ring[i + 1] - ring[0];
+    area += cross(b, c);
+    sum = sum + (b + c) * cross(b, c);
+  }
+  return area != 0.0 ? ring[0] + sum * (1.0 / (3.0 * area)) : otherwise;
+}
+
+/// Add the corners of the outermost cells of each row.
+void add_extremes(const OccupancyGrid& grid, std::vector<PlainDisc>& discs) {
+  for (int j = 0; j < grid.rows(); ++j) {
+    int first = grid.next_occupied(j, 0, grid.columns() - 1), last = first;
+    if (first < 0) continue;
+    for (last = grid.columns() - 1; !grid.occupied(last, j);) --last;
+    for (const int side : {0, 1}) {
+      discs.push_back({grid.corner(first, j + side)});
+      discs.push_back({grid.corner(last + 1, j + side)});
+    }
+  }
+}
+
+}  // namespace
+
+void Shapes::add(const std::vector<Outline>& outlines, bool fixed) {
+  std::vector<PlainDisc> discs;
+  const int base = static_cast<int>(vertices.size());
+  for (const Outline& outline : outlines) {
+    Part part{outline.kind, static_cast<int>(vertices.size()) - base, 0, outline.radius, 0.0, outline.cells.get()};
+    vertices.insert(vertices.end(), outline.vertices.begin(), outline.vertices.end());
+    if (outline.kind == Kind::polygon) {
+      const double area = twice_area(outline.vertices);
+      part.turn = area > 0.0 ? 1.0 : area < 0.0 ? -1.0 : 0.0;
+    }
+    if (is_closed(outline.kind) || (outline.kind == Kind::linestring && outline.vertices.size() == 1)) {
+      vertices.push_back(outline.vertices.front());
+    }
+    part.last = static_cast<int>(vertices.size()) - base - 1;
+    parts.push_back(part);
+    if (outline.cells) {
+      grids.push_back(outline.cells);
+      add_extremes(*outline.cells, discs);
+      continue;
+    }
+    for (const Vec2& v : outline.vertices) discs.push_back({v, outline.radius});
+  }
+  const PlainDisc around = enclosing_circle(discs);
+  centre.push_back(around.centre);
+  centroid.push_back(centroid_of(outlines, around.centre));
+  radius.push_back(around.radius);
+  close(body.back(), fixed);
+}
+
+void Shapes::copy(const Shapes& other, int object, bool fixed) {
+  const Slot &from = other.body[object], &to = other.body[object + 1];
+  for (int p = from.part; p < to.part; ++p) {
+    for (const auto& grid : other.grids) {
+      if (grid.get() == other.parts[p].cells) grids.push_back(grid);
+    }
+  }
+  parts.insert(parts.end(), other.parts.begin() + from.part, other.parts.begin() + to.part);
+  vertices.insert(vertices.end(), other.vertices.begin() + from.vertex, other.vertices.begin() + to.vertex);
+  centre.push_back(other.centre[object]);
+  centroid.push_back(other.centroid[object]);
+  radius.push_back(other.radius[object]);
+  close(body.back(), fixed);
+}
+
+/// Give the last object, which begins at `first`, its slot among the moving or the static objects.
+void Shapes::close(const Slot& first, bool fixed) {
+  const Slot end{objects(), static_cast<int>(parts.size()), static_cast<int>(vertices.size())};
+  Slot& used = size[fixed ? 1 : 0];
+  placed.push_back(used);
+  used.object += 1;
+  used.part += end.part - first.part;
+  used.vertex += end.vertex - first.vertex;
+  body.push_back(end);
+}
+
+void Outlines::resize(const Slot& size) {
+  vertices.resize(size.vertex);
+  part_boxes.resize(size.part);
+  boxes.resize(size.object);
+  centres.resize(size.object);
+}
+
+void Outlines::place(const Shapes& shapes, int object, const Pose& pose, Vec2 direction) {
+  const bool moves = !shapes.is_map(object);
+  const Vec2 origin = moves ? pose.position() : Vec2{};
+  if (!moves) direction = {1.0, 0.0};
+  const Slot& from = shapes.body[object];
+  const Slot& to = shapes.placed[object];
+  centres[to.object] = origin + rotate(shapes.centre[object], direction);
+  Box all;
+  for (int p = 0; p < shapes.part_count(object); ++p) {
+    const Part& part = shapes.parts[from.part + p];
+    Box box;
+    for (int v = part.first; v <= part.last; ++v) {
+      const Vec2 vertex = origin + rotate(shapes.vertices[from.vertex + v], direction);
+      vertices[to.vertex + v] = vertex;
+      box.include(vertex);
+    }
+    if (part.kind == Kind::circle) box = box_around(vertices[to.vertex + part.first], part.radius);
+    part_boxes[to.part + p] = box;
+    all.include(box);
+  }
+  boxes[to.object] = all;
+}
+
+}  // namespace irsim

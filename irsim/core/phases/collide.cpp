@@ -1,0 +1,89 @@
+// Which objects touch, and what the collision mode does about it.
+#include <algorithm>
+
+#include "collision/touch.hpp"
+#include "phases.hpp"
+
+namespace irsim {
+namespace {
+
+void find_pairs(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  const Shapes& shapes = *scene.shapes;
+  const Fixed& fixed = *scene.fixed;
+  std::vector<Pair>& pairs = scene.pairs;
+  pairs.assign(fixed.pairs.begin(), fixed.pairs.end());
+  if (!world.fixed_objects.empty()) {
+    for (const int i : world.moving) {
+      const Footprint body = scene.moving.footprint(shapes, i);
+      fixed.grid.query(body.box, [&](int j) {
+        if (touch(body, fixed.outlines.footprint(shapes, j))) pairs.emplace_back(std::min(i, j), std::max(i, j));
+      });
+    }
+  }
+  if (world.moving.size() > 1) {
+    scene.sweep.pairs([&](int i) { return scene.moving.boxes[shapes.placed[i].object]; },
+                      [&](int i, int j) {
+                        if (touch(scene.moving.footprint(shapes, i), scene.moving.footprint(shapes, j))) {
+                          pairs.emplace_back(std::min(i, j), std::max(i, j));
+                        }
+                      });
+  }
+  if (pairs.size() > 1) std::sort(pairs.begin(), pairs.end());
+}
+
+/// Log contacts that began since the previous evaluation.
+void log_contacts(const World& world, State& state, int w) {
+  const Scene& scene = state.scenes[w];
+  auto old = scene.previous_pairs.begin();
+  for (const Pair& pair : scene.pairs) {
+    while (old != scene.previous_pairs.end() && *old < pair) ++old;
+    if (old != scene.previous_pairs.end() && *old == pair) continue;
+    const auto [i, j] = pair;
+    // An event needs a moving object or a robot that has met something obstructing.
+    const bool first = !world.unobstructed[j] && (!world.is_static[i] || world.is_robot[i]);
+    const bool second = !world.unobstructed[i] && (!world.is_static[j] || world.is_robot[j]);
+    if (!first && !second) continue;
+    Vec2 where;
+    touch(state.footprint(world, w, i), state.footprint(world, w, j), where);
+    state.log(world, w, EventKind::collision, i, j, where);
+  }
+}
+
+}  // namespace
+
+void place_moving(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  const int first = w * world.objects;
+  for (const int i : world.moving) {
+    const int row = first + i;
+    const Pose& pose = state.pose[row];
+    if (state.direction_of[row] != pose.theta) {
+      state.direction[row] = unit(pose.theta);
+      state.direction_of[row] = pose.theta;
+    }
+    scene.moving.place(*scene.shapes, i, pose, state.direction[row]);
+  }
+}
+
+void collide(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  std::swap(scene.pairs, scene.previous_pairs);
+  place_moving(world, state, w);
+  find_pairs(world, state, w);
+  const int first = w * world.objects;
+  std::uint8_t* collided = state.collided.data + first;
+  std::fill(collided, collided + world.objects, std::uint8_t{0});
+  for (const auto& [i, j] : scene.pairs) {
+    if (!world.unobstructed[j]) collided[i] = 1;
+    if (!world.unobstructed[i]) collided[j] = 1;
+  }
+  log_contacts(world, state, w);
+  for (int i = 0; i < world.objects; ++i) {
+    const bool stops =
+        world.collision_mode == kStop || (world.collision_mode == kUnobstructedObstacles && world.is_robot[i]);
+    state.stopped[first + i] = stops ? collided[i] : 0;
+  }
+}
+
+}  // namespace irsim

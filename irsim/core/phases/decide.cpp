@@ -1,0 +1,112 @@
+// Goals of objects that have arrived are renewed, then behaviors choose commands.
+#include <algorithm>
+
+#include "phases.hpp"
+#include "routes/route.hpp"
+#include "world/features.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kRestingTurn = 1e-9;  // an object that turns by less in a step counts as resting [rad]
+
+bool is_idle(const World& world, const State& state, int first, int object) {
+  return world.is_static[object] || state.stopped[first + object];
+}
+
+/// With `arrive_mode: state` an object at its goal must also reach the heading of the goal. Where the behavior of an
+/// `omni_angular` drive rests or oscillates before that, set the turn rate with which the turn ends at that heading.
+void face_goal(const World& world, const State& state, int row, int object, Vec3& control) {
+  const Goal& goal = state.goal[row];
+  if (!world.state_arrival[object] || !std::holds_alternative<OmniAngularOptions>(world.drive[object])) return;
+  const double gap = norm(goal.position() - state.pose[row].position()), threshold = world.goal_threshold[object];
+  if (std::isnan(goal.theta) || state.arrived[row] || !(gap <= threshold)) return;
+  const double error = wrap(goal.theta - state.pose[row].theta), dt = world.step_time;
+  const double turn = std::fabs(control[2]) * dt, enough = std::sqrt(threshold * threshold - gap * gap);
+  if (turn > kRestingTurn && turn <= std::fabs(error) + enough) return;
+  const double acce = world.acce[object][2];
+  double rate = std::fabs(error) / dt;
+  if (std::isfinite(acce) && acce > 0.0) {  // the turn must be able to stop at the wanted heading
+    const double change = acce * dt;
+    rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce * std::fabs(error)));
+  }
+  control[2] = error > 0.0 ? rate : -rate;
+}
+
+/// Let the behavior of `group` decide for the objects listed in `work.objects`.
+void run_behavior(const World& world, State& state, int w, const BehaviorGroup& group, Workspace& work) {
+  const int first = w * world.objects, count = static_cast<int>(work.objects.size());
+  if (work.intents.size() < work.objects.size()) work.intents.resize(work.objects.size());
+  const Decision decision{world, state, first, work.objects.data(), count, group.members, group.grouped, work};
+  Intent* intents = work.intents.data();
+  with(group.behavior, [&](const auto& options) { run(options, decision, intents); });
+  for (int k = 0; k < count; ++k) {
+    const int object = work.objects[k];
+    const Intent& intent = intents[k];
+    state.infeasible[first + object] += intent.infeasible;
+    state.command[first + object] = intent.kind == Intent::control_body
+                                        ? intent.control
+                                        : control_for(world, state, w, object, intent.velocity, intent.turning);
+    face_goal(world, state, first + object, object, state.command[first + object]);
+  }
+}
+
+}  // namespace
+
+void renew_goals(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  if (world.wander[object]) return draw_wander_goal(world, state, w, object);
+  GoalQueue& queue = state.goals[row];
+  if (!world.loop[object] || queue.initial.empty()) return;
+  queue.set(queue.initial);
+  if (queue.initial.size() == 1) {
+    const Pose& start = state.initial_pose[row];
+    queue.goals[0].theta = world.state_arrival[object] ? queue.goals[0].theta : kNone;
+    queue.goals.push_back({start.x, start.y, world.state_arrival[object] ? start.theta : kNone});
+  }
+  state.sync_goal(row);
+}
+
+Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning) {
+  const int row = w * world.objects + object;
+  const Wish wish{velocity, state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows],
+                  state.heading(row), turning};
+  Vec3 control{
+      {velocity.x, velocity.y, 0.0}};  // for drives in Python, which turn the velocity into controls themselves
+  with(world.drive[object], [&](const auto& drive) { control = follow(drive, wish); });
+  return control;
+}
+
+void decide(const World& world, State& state, int w, Workspace& work) {
+  const int first = w * world.objects;
+  work.neighbors.known = work.orca.known = false;
+  for (const int i : world.moving) {
+    const int row = first + i;
+    if (state.stopped[row]) continue;
+    if (state.arrived[row]) renew_goals(world, state, w, i);
+    if (!state.given[row]) state.command[row] = {};
+  }
+  find_routes(world, state, w, work);
+  for (const BehaviorGroup& group : world.behaviors) {
+    work.objects.clear();
+    for (const int i : group.objects) {
+      if (!is_idle(world, state, first, i) && !state.given[first + i]) work.objects.push_back(i);
+    }
+    if (!work.objects.empty()) run_behavior(world, state, w, group, work);
+  }
+  keep_routes(world, state, w, work);
+}
+
+void decide(const World& world, State& state, int w, Workspace& work, int object) {
+  work.neighbors.known = work.orca.known = false;
+  state.command[w * world.objects + object] = {};
+  find_routes(world, state, w, work, object);
+  for (const BehaviorGroup& group : world.behaviors) {
+    if (std::find(group.objects.begin(), group.objects.end(), object) == group.objects.end()) continue;
+    work.objects.assign(1, object);
+    run_behavior(world, state, w, group, work);
+  }
+  keep_routes(world, state, w, work, object);
+}
+
+}  // namespace irsim

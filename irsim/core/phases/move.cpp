@@ -1,0 +1,79 @@
+// Limits and kinematics.
+#include "contact/respond.hpp"
+#include "phases.hpp"
+
+namespace irsim {
+
+void limit(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  Vec3& u = state.control[row];
+  if (world.is_static[object] || state.stopped[row]) {
+    u = {};
+    return;
+  }
+  if (!world.behaves[object] && !state.given[row]) {
+    u = without_command(world, state, row);
+    return;
+  }
+  const Vec3& wanted = state.command[row];
+  Vec3 next;
+  for (int c = 0; c < 3; ++c) {
+    const double change = world.acce[object][c] * world.step_time;
+    next[c] = clip(wanted[c], std::max(world.vel_min[object][c], u[c] - change),
+                   std::min(world.vel_max[object][c], u[c] + change));
+  }
+  u = next;
+  with(world.drive[object], [&](const auto& drive) { u = constrain(drive, u); });
+  if (world.collision_mode == kContact) u = respond(world, state, row, u);
+}
+
+void limit(const World& world, State& state, int w) {
+  for (int i = 0; i < world.objects; ++i) limit(world, state, w, i);
+}
+
+void integrate(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  if (world.is_static[object] || state.stopped[row]) {
+    state.twist[row] = {};
+    return;
+  }
+  if (!world.dynamics[object].driven) return coast(world, state, row);
+  with(world.drive[object], [&](const auto& drive) {
+    Vec3 u = state.control[row];
+    if (drive.noise) {
+      const Vec3 sigma = deviation(drive, u);
+      const Draws draws(state.key(w), Stream::motion, world.number[object]);
+      const auto normals = draws.normals(static_cast<std::uint64_t>(state.count[w]));
+      for (int c = 0; c < 3; ++c) u[c] += sigma[c] * normals[c];
+    }
+    run(drive, Motion{state.pose[row], &state.extra[static_cast<std::size_t>(row) * state.extra_rows], state.twist[row],
+                      state.heading(row), u, world.step_time});
+    Pose& pose = state.pose[row];
+    pose.theta = into_range(pose.theta, world.angle_low[object], world.angle_high[object]);
+  });
+}
+
+void integrate(const World& world, State& state, int w) {
+  for (int i = 0; i < world.objects; ++i) integrate(world, state, w, i);
+}
+
+void remember(State& state, int row) {
+  if (!state.keep_history) return;
+  const Pose& pose = state.pose[row];
+  std::vector<double>& track = state.history[row];
+  const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
+  track.insert(track.end(), {pose.x, pose.y, pose.theta});
+  track.insert(track.end(), extra, extra + state.extra_rows);
+}
+
+void finish(const World& world, State& state, int w) {
+  const int first = w * world.objects;
+  ++state.count[w];
+  for (int i = 0; i < world.objects; ++i) {
+    const int row = first + i;
+    state.given[row] = 0;
+    if (!world.is_static[i] && !state.stopped[row]) remember(state, row);
+  }
+}
+
+}  // namespace irsim

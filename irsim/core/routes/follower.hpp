@@ -1,0 +1,89 @@
+// One object on its route during one step. `plan_route.cpp` plans, `route.cpp` follows corners, `follow_legs.cpp`
+// follows poses through narrow places, `steering.cpp` turns both into commands that keep clear of static objects.
+#pragma once
+
+#include "phases.hpp"
+#include "routes/route.hpp"
+#include "world/spec.hpp"
+
+namespace irsim {
+
+class Follower {
+ public:
+  Follower(const World& world, State& state, int w, int object, Workspace& work)
+      : world_(world),
+        state_(state),
+        w_(w),
+        object_(object),
+        row_(w * world.objects + object),
+        work_(work),
+        options_(*world.specs[object].route),
+        route_(state.routes[row_]),
+        fixed_(*state.scenes[w].fixed),
+        shapes_(*state.scenes[w].shapes),
+        blockers_{shapes_, fixed_.outlines, fixed_.grid, world.unobstructed.data()} {}
+
+  /// Plan where that is due, and set `State::target` to the point that the behavior heads for.
+  void update_target();
+  /// Change the command of the behavior so that the object stays on its route and hits no static object.
+  void adjust_command();
+
+ private:
+  static constexpr double kMaxHeadingError = 0.35;  // larger errors are corrected by turning on the spot [rad]
+
+  Vec2 position() const;
+  Box bounds() const;
+  /// Whether one of the bodies of the route can move straight between two points.
+  bool sees(std::size_t body, Vec2 from, Vec2 to);
+  /// Go on to the next corner where it is reached or the one after it is in sight.
+  void advance();
+  /// Set the target so far ahead that behaviors do not slow down at corners, in the direction of the next corner.
+  void aim(Goal& target);
+
+  bool plan_is_due() const;
+  void plan();
+  /// Log, once for every goal, that there is no path to it.
+  void report_no_path();
+  /// Report that there is no path if the object rests for long on a path that was planned for a smaller body.
+  void report_if_stuck();
+  /// Plan poses for a drive that cannot move sideways and cannot turn everywhere.
+  bool find_legs(double reach);
+  /// Plan a path on which `wide` fits; `tight` is the body for which corners must stay in sight. Without `search` only
+  /// the straight line is tried.
+  bool attempt(const Body& wide, const Body& tight, bool search);
+
+  double max_steering(const AckerOptions& car) const;
+  /// The command that continues along the legs, which are cleared when the last one is finished.
+  void follow_legs(Vec3& u);
+  /// Legs of a drive that turns on the spot.
+  void follow_legs_in_place(Vec3& u);
+  /// Legs of a car, by pure pursuit of those with one direction. Coulter: "Implementation of the Pure Pursuit Path
+  /// Tracking Algorithm" (1992).
+  void follow_legs_by_pursuit(Vec3& u);
+  /// Largest speed, at most `most`, from which a control can stop within `left` [m or rad].
+  double stopping_speed(double left, int control, double most) const;
+  /// Largest speed forward (`way` > 0) or backward [m/s].
+  double top_speed(int way) const;
+
+  /// The law of dash on a route: straight to the next corner, at a speed from which the object can turn there.
+  void steer_to_corner(Vec3& u);
+  /// Let a car back up first when its goal lies within its turning circle.
+  void back_off_from_goal();
+  /// Slow down, veer or back up where the command would end in a collision with a static object.
+  void keep_clear(Vec3& u);
+  bool clear_at(const Pose& pose);
+  /// Whether a command, followed by braking as hard as the limits allow, leads to no collision.
+  bool clear_after(const Vec3& command);
+
+  const World& world_;
+  State& state_;
+  int w_, object_, row_;
+  Workspace& work_;
+  const RouteOptions& options_;
+  Route& route_;
+  const Fixed& fixed_;
+  const Shapes& shapes_;
+  Blockers blockers_;
+};
+
+}  // namespace irsim

@@ -1,0 +1,60 @@
+// Routes: an object plans a path around static objects, and its behavior drives along it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fields.hpp"
+#include "geometry/vec.hpp"
+#include "planners.gen.hpp"
+#include "planning/pose_search.hpp"
+#include "planning/problem.hpp"
+
+namespace irsim {
+
+struct Fixed;
+struct World;
+struct State;
+struct Workspace;
+
+struct RouteOptions {
+  Planner planner;
+  double replan;     // time after which a new plan is made [s]; 0: only for a new goal, or when the path is lost
+  double lookahead;  // distance along the path of the point to head for [m]; 0: the next corner in sight
+  static constexpr auto fields() {
+    return std::make_tuple(field("planner", &RouteOptions::planner), field("replan", &RouteOptions::replan),
+                           field("lookahead", &RouteOptions::lookahead));
+  }
+};
+
+/// What an object remembers of its route from step to step.
+struct Route {
+  Vec2 goal{kNone, kNone};      // goal of the path
+  std::vector<Vec2> path;       // corners from the place of planning to the goal; empty if no path was found
+  std::size_t next = 0;         // corner of the path that the object heads for
+  std::int64_t planned_at = 0;  // step of the last plan
+  std::uint64_t plans = 0;      // number of plans in this episode, so that each has draws of its own
+  std::vector<Leg> legs;        // poses through a narrow place; empty where corners are enough
+  std::size_t leg = 0;          // leg that the object follows
+  int blocked_steps = 0;        // consecutive steps in which something blocked the leg
+  bool keeps_heading = false;   // the path is free of collisions only at the present heading
+  int backing_steps = 0;        // remaining steps of backing up
+  double wall_radius = 0.0;     // radius of the disc about the origin that behaviors keep off walls [m]
+  bool reported = false;        // whether the missing path to this goal was logged
+  // The path is free for a smaller body only, because poses for the whole body were not found from `failed_pose`.
+  bool uncertain = false;
+  Pose failed_pose{};
+  Vec2 resting_at{kNone, kNone};               // the object has been near this point ...
+  std::int64_t resting_since = 0;              // ... since this step
+  std::shared_ptr<const Fixed> planned_among;  // static objects of the last plan
+  std::vector<Body> bodies;                    // 0: for which the path is free of collisions, 1: for lines of sight
+};
+
+/// Make the plans that are due and set `State::target` of the objects with a route to the point they head for.
+/// `only`: for this object alone.
+void find_routes(const World& world, State& state, int w, Workspace& work, int only = -1);
+/// Change the commands of objects with a route so that they stay on it and hit no static object.
+void keep_routes(const World& world, State& state, int w, Workspace& work, int only = -1);
+
+}  // namespace irsim

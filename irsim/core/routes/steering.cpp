@@ -1,0 +1,167 @@
+// Steering to the next corner, and commands that keep clear of static objects.
+#include "routes/follower.hpp"
+
+#include "collision/touch.hpp"
+#include "world/features.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr int kBackingSteps = 8;      // steps that a manoeuvre of backing up lasts
+constexpr int kMaxBrakingSteps = 40;  // number of steps of braking that are simulated ahead
+
+}  // namespace
+
+void Follower::steer_to_corner(Vec3& u) {
+  const Goal& target = state_.target[row_];
+  const bool last = route_.next + 1 == route_.path.size();
+  const Pose& pose = state_.pose[row_];
+  const Vec2 way = target.position() - pose.position();
+  if (last && norm(way) < world_.goal_threshold[object_]) return;
+  const double error = wrap(std::atan2(way.y, way.x) - pose.theta);
+  const Vec3 &top = world_.vel_max[object_], &acce = world_.acce[object_];
+  const double left = norm(route_.path[route_.next] - pose.position());
+  double most = kInfinity;
+  if (!last) {
+    most = left / world_.step_time;
+    if (std::isfinite(acce[0]) && acce[0] > 0.0) most = std::min(most, std::sqrt(2.0 * acce[0] * left));
+    most = std::max(most, 0.05);
+  }
+  with(world_.drive[object_], [&](const auto& drive) {
+    using Drive = std::decay_t<decltype(drive)>;
+    if constexpr (std::is_same_v<Drive, DiffOptions>) {
+      double rate = std::min(std::fabs(top[1]), std::fabs(error) / world_.step_time);
+      if (std::isfinite(acce[1]) && acce[1] > 0.0) {  // the turn must be able to stop at the wanted heading
+        const double change = acce[1] * world_.step_time;
+        rate = std::min(rate, -0.5 * change + std::sqrt(0.25 * change * change + 2.0 * acce[1] * std::fabs(error)));
+      }
+      u[1] = error > 0.0 ? rate : -rate;
+      u[0] = std::fabs(error) > kMaxHeadingError ? 0.0 : std::min(u[0], most);
+    } else if constexpr (std::is_same_v<Drive, OmniOptions> || std::is_same_v<Drive, OmniAngularOptions>) {
+      const double c = std::cos(error), s = std::sin(error);
+      const double speed = std::min(
+          {std::fabs(top[0]) / std::max(std::fabs(c), 1e-9), std::fabs(top[1]) / std::max(std::fabs(s), 1e-9), most});
+      u[0] = speed * c, u[1] = speed * s;
+    } else if constexpr (std::is_same_v<Drive, AckerOptions>) {
+      if (drive.mode != Steering::steer) return;
+      const double most_psi = std::min({top[1], drive.psi_max, 1.4});
+      u[1] = clip(error, -most_psi, most_psi);
+      u[0] = std::min(u[0], std::max(most, 0.3 * top[0]));
+    }
+  });
+}
+
+void Follower::back_off_from_goal() {
+  const auto* car = std::get_if<AckerOptions>(&world_.drive[object_]);
+  if (car == nullptr || route_.next + 1 < route_.path.size() || route_.backing_steps > 0) return;
+  const Vec2 way = state_.goal[row_].position() - position();
+  const double threshold = world_.goal_threshold[object_];
+  if (norm(way) < threshold) return;
+  const double radius = car->wheelbase / std::tan(max_steering(*car));
+  const Vec2 point = unrotate(way, state_.heading(row_)), centre{0.0, point.y >= 0.0 ? radius : -radius};
+  if (norm(point - centre) < radius - 0.5 * threshold) route_.backing_steps = kBackingSteps;
+}
+
+void Follower::keep_clear(Vec3& u) {
+  if (std::holds_alternative<std::monostate>(world_.drive[object_]) || !clear_at(state_.pose[row_])) return;
+  const bool car = std::holds_alternative<AckerOptions>(world_.drive[object_]);
+  const int moving = std::holds_alternative<OmniOptions>(world_.drive[object_]) ||
+                             std::holds_alternative<OmniAngularOptions>(world_.drive[object_])
+                         ? 2
+                         : 1;
+  const auto scaled = [&](double share, double turn) {
+    Vec3 v = u;
+    for (int c = 0; c < 3; ++c) v[c] *= c < moving ? share : turn;
+    return v;
+  };
+  const auto back = [&] {
+    Vec3 v;
+    v[0] = 0.4 * world_.vel_min[object_][0];
+    if (car) v[1] = -u[1];
+    return v;
+  };
+  if (route_.backing_steps > 0) {
+    --route_.backing_steps;
+    if (clear_after(back())) {
+      u = back();
+      return;
+    }
+    route_.backing_steps = 0;
+  }
+  for (const double share : {1.0, 0.5, 0.25, 0.1}) {
+    if (!clear_after(scaled(share, 1.0))) continue;
+    u = scaled(share, 1.0);
+    return;
+  }
+  if (moving == 2) {  // pass it sideways first, then try without turning
+    for (const double angle : {0.4, 0.8, 1.2}) {
+      for (const double share : {1.0, 0.5, 0.25}) {
+        for (const double sign : {1.0, -1.0}) {
+          Vec3 v = scaled(share, 1.0);
+          const Vec2 veered = rotate({v[0], v[1]}, unit(sign * angle));
+          v[0] = veered.x, v[1] = veered.y;
+          if (!clear_after(v)) continue;
+          u = v;
+          return;
+        }
+      }
+    }
+    for (const double share : {1.0, 0.5, 0.25, 0.1}) {
+      if (!clear_after(scaled(share, 0.0))) continue;
+      u = scaled(share, 0.0);
+      return;
+    }
+  }
+  const bool stands = norm({state_.control[row_][0], moving == 2 ? state_.control[row_][1] : 0.0}) < 0.02;
+  if (!car && clear_after(scaled(0.0, 1.0))) {
+    u = scaled(0.0, 1.0);
+    return;
+  }
+  if (moving == 1 && stands && world_.vel_min[object_][0] < 0.0 && clear_after(back())) {
+    route_.backing_steps = kBackingSteps;
+    u = back();
+    return;
+  }
+  u = scaled(0.0, car ? 1.0 : 0.0);
+}
+
+bool Follower::clear_at(const Pose& pose) {
+  work_.ghost.resize(shapes_.size[0]);
+  work_.ghost.place(shapes_, object_, pose, unit(pose.theta));
+  const Footprint body = work_.ghost.footprint(shapes_, object_);
+  if (blockers_.meet(body)) return false;
+  if (route_.legs.empty()) return true;
+  // An object cannot leave its legs, so it waits for moving objects that are in its way.
+  return std::none_of(world_.moving.begin(), world_.moving.end(), [&](int i) {
+    return i != object_ && !world_.unobstructed[i] && touch(body, state_.scenes[w_].moving.footprint(shapes_, i));
+  });
+}
+
+bool Follower::clear_after(const Vec3& command) {
+  Pose pose = state_.pose[row_];
+  Vec3 control = state_.control[row_], wanted = command, twist;
+  const double* extra = &state_.extra[static_cast<std::size_t>(row_) * state_.extra_rows];
+  work_.extra.assign(extra, extra + state_.extra_rows);
+  for (int k = 0; k < kMaxBrakingSteps; ++k) {
+    bool moves = false;
+    for (int c = 0; c < 3; ++c) {
+      const double change = world_.acce[object_][c] * world_.step_time;
+      control[c] = clip(wanted[c], std::max(world_.vel_min[object_][c], control[c] - change),
+                        std::min(world_.vel_max[object_][c], control[c] + change));
+      moves = moves || control[c] != 0.0;
+    }
+    if (k > 0 && !moves) return true;
+    with(world_.drive[object_], [&](const auto& drive) {
+      control = constrain(drive, control);
+      run(drive, Motion{pose, work_.extra.data(), twist, unit(pose.theta), control, world_.step_time});
+    });
+    if (!clear_at(pose)) return false;
+    wanted = {};
+    if (std::holds_alternative<AckerOptions>(world_.drive[object_])) {
+      wanted[1] = command[1];
+      if (k > 0 && std::fabs(control[0]) < 1e-9) return true;
+    }
+  }
+  return true;
+}
+}  // namespace irsim

@@ -1,0 +1,57 @@
+#include "runs/log.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "world/state.hpp"
+
+namespace irsim {
+namespace {
+
+/// Add a block to `column` and its row to `rows`, unless it equals the last block bit for bit.
+template <class T>
+void add_if_changed(Column<std::int64_t>& rows, Column<T>& column, std::int64_t row, const T* now, std::size_t count) {
+  if (count == 0) return;
+  const bool same = column.size() >= count &&
+                    std::memcmp(column.numbers->data() + column.size() - count, now, count * sizeof(T)) == 0;
+  if (same) return;
+  *rows.add(1) = row;
+  std::copy_n(now, count, column.add(count));
+}
+
+}  // namespace
+
+Log::Log(const World& world, std::vector<int> movers_, int columns_, bool scans_)
+    : movers(std::move(movers_)),
+      objects(world.objects),
+      columns(columns_),
+      scans(scans_),
+      beams(scans_ ? world.beams_per_world : 0),
+      flags_now_(world.objects),
+      ranges_now_(beams) {}
+
+void Log::add(const State& state) {
+  if (rows == 0) first = state.count[0];
+  double* poses = pose.add(3 * movers.size());
+  float* controls = control.add(columns * movers.size());
+  for (const int i : movers) {
+    poses = std::copy_n(&state.pose[i].x, 3, poses);
+    for (int c = 0; c < columns; ++c) *controls++ = static_cast<float>(state.control[i].value[c]);
+  }
+  add_if_changed(goal_rows, goal, rows, state.goal.data, objects);
+  for (int i = 0; i < objects; ++i) {
+    flags_now_[i] = (state.arrived[i] ? 1 : 0) | (state.collided[i] ? 2 : 0) | (state.stopped[i] ? 4 : 0);
+  }
+  add_if_changed(flag_rows, flags, rows, flags_now_.data(), objects);
+  for (std::size_t b = 0; b < beams; ++b) ranges_now_[b] = returned_range(state, b);
+  add_if_changed(scan_rows, ranges, rows, ranges_now_.data(), beams);
+  ++rows;
+}
+
+void Log::clear() {
+  rows = 0;
+  pose.clear(), control.clear(), goal.clear(), flags.clear(), ranges.clear();
+  goal_rows.clear(), flag_rows.clear(), scan_rows.clear();
+}
+
+}  // namespace irsim

@@ -1,0 +1,63 @@
+// The record of a world: one row for each step while it is attached to a state.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "geometry/vec.hpp"
+#include "world/world.hpp"
+
+namespace irsim {
+
+struct State;
+
+/// Numbers that can grow while NumPy arrays view them; the viewed numbers do not change.
+template <class T>
+struct Column {
+  std::shared_ptr<std::vector<T>> numbers = std::make_shared<std::vector<T>>();
+
+  /// Add `count` numbers at the end and return where to write them.
+  T* add(std::size_t count) {
+    if (numbers.use_count() > 1) numbers = std::make_shared<std::vector<T>>(*numbers);
+    numbers->resize(numbers->size() + count);
+    return numbers->data() + numbers->size() - count;
+  }
+  void clear() {
+    if (numbers.use_count() > 1) numbers = std::make_shared<std::vector<T>>();
+    numbers->clear();
+  }
+  std::size_t size() const { return numbers->size(); }
+};
+
+/// Rows of world 0. Each row has poses and controls of the movers; goals, flags and scans are stored only where they
+/// differ from the row before.
+struct Log {
+  Log(const World& world, std::vector<int> movers, int columns, bool scans);
+
+  /// Add a row with the present state.
+  void add(const State& state);
+  /// Remove all rows. The next row has goals, flags and scans.
+  void clear();
+
+  std::vector<int> movers;  // objects whose pose and control are recorded
+  int objects, columns;     // `columns`: recorded numbers of each control
+  bool scans;
+  std::size_t beams;
+
+  std::int64_t first = 0, rows = 0;  // step of the first row, number of rows
+  Column<double> pose;               // (rows, movers, 3)
+  Column<float> control;             // (rows, movers, columns)
+  Column<std::int64_t> goal_rows, flag_rows, scan_rows;
+  Column<Goal> goal;           // (goal_rows, N)
+  Column<std::uint8_t> flags;  // (flag_rows, N): 1 arrived, 2 collided, 4 stopped
+  Column<float> ranges;        // (scan_rows, beams), infinite without a valid hit
+
+  std::size_t bytes() const { return 8 * (pose.size() + 3 * goal.size()) + 4 * (control.size() + ranges.size()); }
+
+ private:
+  std::vector<std::uint8_t> flags_now_;
+  std::vector<float> ranges_now_;
+};
+
+}  // namespace irsim

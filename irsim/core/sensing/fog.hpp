@@ -1,0 +1,49 @@
+// Fog: the cells of the world that no robot has seen yet (reference: section 9.3).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fields.hpp"
+#include "geometry/vec.hpp"
+
+namespace irsim {
+
+struct State;
+struct Workspace;
+struct World;
+
+constexpr int kMaxFogCells = 1 << 22;  // largest number of cells along an axis
+
+/// A robot without lidar that clears the fog in its field of view.
+struct FogView {
+  int object;
+  double angle, reach;  // [rad], [m]
+  bool occlusion;       // whether cells that are hidden by objects stay in the fog
+  static constexpr auto fields() {
+    using V = FogView;
+    return std::make_tuple(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
+                           field("occlusion", &V::occlusion));
+  }
+};
+
+/// Cells over the world. Cell (i, j), i along x, has the index i * rows + j.
+struct Fog {
+  std::array<double, 2> origin, size;  // lower left corner, extent [m]
+  int columns, rows;
+  std::vector<int> carriers;   // robots that clear the fog with their first lidar
+  std::vector<FogView> views;  // robots that clear the fog without a lidar
+  static constexpr auto fields() {
+    using F = Fog;
+    return std::make_tuple(field("origin", &F::origin), field("size", &F::size), field("columns", &F::columns),
+                           field("rows", &F::rows), field("carriers", &F::carriers), field("views", &F::views));
+  }
+
+  std::size_t cells() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  Vec2 cell() const { return {size[0] / columns, size[1] / rows}; }
+};
+
+/// Mark the cells that the robots of world w see now in `state.explored`.
+void lift_fog(const World& world, State& state, int w, Workspace& work);
+
+}  // namespace irsim

@@ -1,0 +1,83 @@
+// What an object knows about itself and its surroundings when its behavior decides (reference: 5.2).
+#pragma once
+
+#include "decision.hpp"
+
+namespace irsim {
+
+constexpr double kPadding = 0.1;  // margin added to every radius that behaviors see [m]
+
+/// Object k of a decision, world frame.
+struct Ego {
+  int id, row;
+  Vec2 position, velocity;  // origin [m], velocity of the present command at the present heading [m/s]
+  Vec2 desired;             // toward the goal at full speed [m/s]; zero without a goal or within 0.1 m of it
+  double radius;            // padded [m]
+  const Route* route;       // route that the object follows, or null
+};
+Ego ego_of(const Decision& decision, int k);
+
+/// Whether `ego` sees `other`: another object, either of a role that the behavior targets or a member of its group.
+inline bool is_shown(const Decision& decision, int ego, int other) {
+  const World& world = decision.world;
+  if (other == ego) return false;
+  const int roles = world.target_roles[ego];
+  if (roles == 0 || (roles == 1) == (world.is_robot[other] != 0)) return true;
+  return decision.grouped && world.group[other] == world.group[ego];
+}
+
+/// Call `visit(disc)`, by ascending id, for every other disc whose centre is nearer than `reach`. Radii have no margin.
+/// Members of a group behavior know each other's origins, which are then the centres.
+template <class Visit>
+void for_discs(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const World& world = decision.world;
+  const int w = decision.w();
+  const Neighbors& near = neighbors(world, decision.state, decision.work, w);
+  const double slack = decision.grouped ? std::max(near.off_centre, near.off_origin) : near.off_centre;
+  for_neighbors(world, decision.state, decision.work, w, ego.position, reach + slack, [&](int other) {
+    if (!is_shown(decision, ego.id, other)) return;
+    Disc disc = disc_of(world, decision.state, decision.work, w, other);
+    if (decision.grouped && world.group[other] == world.group[ego.id]) {
+      disc.centre = decision.state.pose[decision.first_row + other].position();
+    }
+    if (squared(disc.centre - ego.position) < reach * reach) visit(disc);
+  });
+}
+
+/// Call `visit(line)` for the segments of static linestrings within `reach`.
+template <class Visit>
+void for_static_lines(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const Walls& lines = decision.state.scenes[decision.w()].fixed->lines;
+  for_walls(lines, decision.work.walls, ego.position, reach, [&](const Wall& line) {
+    if (is_shown(decision, ego.id, line.object)) visit(line);
+  });
+}
+
+/// Call `visit(a, b)` for the segments of all moving linestrings, at any distance.
+template <class Visit>
+void for_moving_lines(const Decision& decision, const Ego& ego, Visit&& visit) {
+  const int w = decision.w();
+  const Scene& scene = decision.state.scenes[w];
+  for (const int object : neighbors(decision.world, decision.state, decision.work, w).lines) {
+    if (!is_shown(decision, ego.id, object)) continue;
+    const Shapes& shapes = *scene.shapes;
+    const int row = decision.first_row + object;
+    const Vec2 origin = decision.state.pose[row].position(), direction = decision.state.heading(row);
+    const Part& part = shapes.parts[shapes.body[object].part];
+    const Vec2* vertices = &shapes.vertices[shapes.body[object].vertex];
+    for (int v = part.first; v < part.last; ++v) {
+      visit(origin + rotate(vertices[v], direction), origin + rotate(vertices[v + 1], direction));
+    }
+  }
+}
+
+/// Call `visit(wall)` for the walls within `reach` whose outside faces the ego.
+template <class Visit>
+void for_facing_walls(const Decision& decision, const Ego& ego, double reach, Visit&& visit) {
+  const Walls& walls = decision.state.scenes[decision.w()].fixed->walls;
+  for_walls(walls, decision.work.walls, ego.position, reach, [&](const Wall& wall) {
+    if (is_shown(decision, ego.id, wall.object) && cross(wall.b - wall.a, ego.position - wall.a) <= 0.0) visit(wall);
+  });
+}
+
+}  // namespace irsim

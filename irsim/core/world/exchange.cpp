@@ -1,0 +1,120 @@
+#include "world/exchange.hpp"
+
+#include <algorithm>
+
+#include "phases.hpp"
+
+namespace irsim {
+namespace {
+
+/// Copy a row between states, which may differ in the number of extra rows.
+void copy_row(State& to, int row, const State& from, int old_row) {
+  to.pose[row] = from.pose[old_row];
+  to.control[row] = from.control[old_row];
+  to.twist[row] = from.twist[old_row];
+  to.command[row] = from.command[old_row];
+  to.drive[row] = from.drive[old_row];
+  to.contact_time[row] = from.contact_time[old_row];
+  to.air_time[row] = from.air_time[old_row];
+  to.touching[row] = from.touching[old_row];
+  to.given[row] = from.given[old_row];
+  to.arrived[row] = from.arrived[old_row];
+  to.collided[row] = from.collided[old_row];
+  to.stopped[row] = from.stopped[old_row];
+  to.goals[row] = from.goals[old_row];
+  to.infeasible[row] = from.infeasible[old_row];
+  to.goal_draws[row] = from.goal_draws[old_row];
+  to.initial_pose[row] = from.initial_pose[old_row];
+  to.initial_control[row] = from.initial_control[old_row];
+  const int both = std::min(to.extra_rows, from.extra_rows);
+  const std::size_t e = static_cast<std::size_t>(row) * to.extra_rows;
+  const std::size_t old_e = static_cast<std::size_t>(old_row) * from.extra_rows;
+  std::copy_n(&from.extra[old_e], both, &to.extra[e]);
+  std::copy_n(&from.initial_extra[old_e], both, &to.initial_extra[e]);
+  to.sync_goal(row);
+}
+
+/// The recorded history of a row, with the given number of extra rows.
+std::vector<double> track_of(const State& from, int row, int extra_rows) {
+  if (!from.keep_history) return {};
+  const std::vector<double>& old = from.history[row];
+  if (from.extra_rows == extra_rows) return old;
+  const std::size_t columns = 3 + static_cast<std::size_t>(from.extra_rows);
+  const int both = 3 + std::min(from.extra_rows, extra_rows);
+  std::vector<double> track;
+  for (std::size_t k = 0; k < old.size(); k += columns) {
+    for (int c = 0; c < 3 + extra_rows; ++c) track.push_back(c < both ? old[k + c] : 0.0);
+  }
+  return track;
+}
+
+/// Pairs of old rows as pairs of new rows; pairs of removed objects are left out.
+std::vector<Pair> rename_pairs(const std::vector<Pair>& pairs, const std::vector<int>& new_row) {
+  std::vector<Pair> out;
+  for (const auto& [i, j] : pairs) {
+    const int a = new_row[i], b = new_row[j];
+    if (a >= 0 && b >= 0) out.emplace_back(std::min(a, b), std::max(a, b));
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Rebuild the geometry of all objects after `scene.shapes` has changed.
+void rebuild_geometry(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  for (int i = 0; i < world.objects; ++i) state.radius[w * world.objects + i] = scene.shapes->radius[i];
+  scene.moving.resize(scene.shapes->size[0]);
+  scene.fixed = nullptr;
+  scene.bodies = nullptr;
+  place_fixed(world, state, w);
+  place_moving(world, state, w);
+}
+
+}  // namespace
+
+void continue_from(const World& world, State& state, const World& world_before, const State& before,
+                   const std::vector<Origin>& origins) {
+  state.count[0] = before.count[0];
+  state.scene_index[0] = before.scene_index[0];
+  state.noise[0] = before.noise[0];
+  state.seed[0] = before.seed[0];
+  state.fresh[0] = before.fresh[0];
+  state.event_count[0] = before.event_count[0];
+  Scene& scene = state.scenes[0] = before.scenes[0];
+  if (state.explored.size == before.explored.size) {
+    std::copy_n(before.explored.data, before.explored.size, state.explored.data);
+  }
+  auto shapes = std::make_shared<Shapes>();
+  std::vector<int> new_row(world_before.objects, -1);
+  for (int i = 0; i < world.objects; ++i) {
+    const Origin& origin = origins[i];
+    if (origin.state == &before) new_row[origin.object] = i;
+    copy_row(state, i, *origin.state, origin.object);
+    if (state.keep_history) state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);
+    shapes->copy(*origin.state->scenes[0].shapes, origin.object, world.is_static[i] != 0);
+  }
+  scene.shapes = std::move(shapes);
+  scene.sweep.reset(world.moving);
+  scene.contacts.clear();
+  scene.pairs = rename_pairs(before.scenes[0].pairs, new_row);
+  rebuild_geometry(world, state, 0);
+  sense(world, state, 0, state.workspaces.front());
+}
+
+void reshape(const World& world, State& state, int row, const std::vector<Outline>& outlines) {
+  const int w = row / world.objects;
+  Scene& scene = state.scenes[w];
+  auto shapes = std::make_shared<Shapes>();
+  for (int i = 0; i < world.objects; ++i) {
+    const bool fixed = world.is_static[i] != 0;
+    if (i == row % world.objects) {
+      shapes->add(outlines, fixed);
+    } else {
+      shapes->copy(*scene.shapes, i, fixed);
+    }
+  }
+  scene.shapes = std::move(shapes);
+  rebuild_geometry(world, state, w);
+}
+
+}  // namespace irsim

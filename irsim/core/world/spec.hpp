@@ -1,0 +1,77 @@
+// The template world that Python hands over, object by object.
+#pragma once
+
+#include <vector>
+
+#include "behaviors.gen.hpp"
+#include "fields.hpp"
+#include "kinematics.gen.hpp"
+#include "routes/route.hpp"
+#include "sensors.gen.hpp"
+#include "shapes.gen.hpp"
+
+namespace irsim {
+
+/// Body-frame outlines of the parts of an object. Each part has its own range of draws.
+inline std::vector<Outline> draw_outlines(const std::vector<PartSpec>& parts, const Draws& draws) {
+  std::vector<Outline> outlines;
+  for (const PartSpec& part : parts) {
+    const std::uint64_t first = static_cast<std::uint64_t>(outlines.size()) << 32;
+    with(part, [&](const auto& shape) { outlines.push_back(outline(shape, draws, first)); });
+  }
+  return outlines;
+}
+
+struct ObjectSpec {
+  int number;  // id in draws and events, the same when other objects come and go; -1: index in the list
+  int role;    // 0 robot, 1 obstacle
+  int group;
+  Drive drive;
+  std::vector<PartSpec> parts;
+  bool is_static, unobstructed, wander, loop;
+  std::vector<double> pose, extra, control, vel_min, vel_max, acce, angle_range;
+  std::vector<std::vector<double>> goals;
+  double goal_threshold;
+  int arrive_mode;  // 0 position, 1 state
+  std::vector<double> range_low, range_high;
+  int target_roles;  // 0 all, 1 robots, 2 obstacles
+  Behavior behavior;
+  bool grouped;                       // whether the behavior belongs to the group and decides for all members at once
+  std::optional<RouteOptions> route;  // how the object plans a path for its behavior to follow
+  std::vector<Sensor> sensors;
+  std::vector<double> centroid;  // x, y in the body frame [m], then squared radius of gyration [m^2]; both optional
+  double mass, friction, inertia, restitution, tau;  // for contacts; an inertia of NaN follows from shape and mass
+  bool driven;                                       // whether the object has a drive, native or in Python
+
+  static constexpr auto fields() {
+    using S = ObjectSpec;
+    return std::make_tuple(
+        field("number", &S::number), field("role", &S::role), field("group", &S::group), field("drive", &S::drive),
+        field("parts", &S::parts), field("static", &S::is_static), field("unobstructed", &S::unobstructed),
+        field("wander", &S::wander), field("loop", &S::loop), field("pose", &S::pose), field("extra", &S::extra),
+        field("control", &S::control), field("vel_min", &S::vel_min), field("vel_max", &S::vel_max),
+        field("acce", &S::acce), field("angle_range", &S::angle_range), field("goals", &S::goals),
+        field("goal_threshold", &S::goal_threshold), field("arrive_mode", &S::arrive_mode),
+        field("range_low", &S::range_low), field("range_high", &S::range_high), field("target_roles", &S::target_roles),
+        field("behavior", &S::behavior), field("grouped", &S::grouped), field("route", &S::route),
+        field("sensors", &S::sensors), field("centroid", &S::centroid), field("mass", &S::mass),
+        field("friction", &S::friction), field("inertia", &S::inertia), field("restitution", &S::restitution),
+        field("tau", &S::tau), field("driven", &S::driven));
+  }
+};
+
+/// Objects whose poses and goals are drawn for each scene.
+struct RandomPlacement {
+  std::vector<int> objects;
+  std::array<double, 3> range_low, range_high;
+  double min_distance;  // between objects, and between goals, of this placement [m]
+  int attempts;         // maximum number of draws for an object
+  static constexpr auto fields() {
+    using P = RandomPlacement;
+    return std::make_tuple(field("objects", &P::objects), field("range_low", &P::range_low),
+                           field("range_high", &P::range_high), field("min_distance", &P::min_distance),
+                           field("attempts", &P::attempts));
+  }
+};
+
+}  // namespace irsim

@@ -1,0 +1,238 @@
+#include "world/state.hpp"
+
+#include "phases.hpp"
+#include "world/features.hpp"
+#include "world/spec.hpp"
+
+namespace irsim {
+namespace {
+
+Goal goal_of(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : kNone};
+}
+
+void evaluate(const World& world, State& state, int w, bool with_arrival) {
+  Workspace& work = state.workspaces.front();
+  collide(world, state, w);
+  if (with_arrival) arrive(world, state, w);
+  sense(world, state, w, work);
+}
+
+void set_initial_values(const World& world, State& state, int w) {
+  for (int i = 0; i < world.objects; ++i) {
+    const ObjectSpec& spec = world.specs[i];
+    const int row = w * world.objects + i;
+    const auto at = [](const std::vector<double>& v, std::size_t k) { return k < v.size() ? v[k] : 0.0; };
+    state.initial_pose[row] = {at(spec.pose, 0), at(spec.pose, 1), at(spec.pose, 2)};
+    state.initial_control[row] = {{at(spec.control, 0), at(spec.control, 1), at(spec.control, 2)}};
+    for (int e = 0; e < state.extra_rows; ++e) {
+      state.initial_extra[static_cast<std::size_t>(row) * state.extra_rows + e] = at(spec.extra, e);
+    }
+    state.goals[row].initial.clear();
+    for (const auto& goal : spec.goals) {
+      if (goal.size() >= 2) state.goals[row].initial.push_back(goal_of(goal));
+    }
+  }
+}
+
+}  // namespace
+
+State::State(const World& world, const std::uint64_t* seeds, bool history_, bool drawn)
+    : worlds(world.copies),
+      objects(world.objects),
+      rows(world.copies * world.objects),
+      extra_rows(world.extra_rows),
+      keep_history(history_),
+      pose(rows),
+      extra(static_cast<std::size_t>(rows) * extra_rows),
+      control(rows),
+      twist(rows),
+      command(rows),
+      drive(rows),
+      contact_time(rows),
+      air_time(rows),
+      given(rows),
+      arrived(rows),
+      collided(rows),
+      stopped(rows),
+      touching(rows),
+      radius(rows),
+      infeasible(rows),
+      goal(rows, {kNone, kNone, kNone}),
+      ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      beam_angles(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      hits(static_cast<std::size_t>(worlds) * world.beams_per_world, -1),
+      valid(static_cast<std::size_t>(worlds) * world.beams_per_world),
+      velocities(static_cast<std::size_t>(worlds) * world.velocities_per_world),
+      explored(world.fog ? static_cast<std::size_t>(worlds) * world.fog->cells() : 0),
+      count(worlds),
+      scene_index(worlds),
+      noise(worlds),
+      seed(worlds),
+      failed_placement(worlds, -1),
+      direction(rows),
+      direction_of(rows, kNone),
+      goals(rows),
+      goal_draws(rows),
+      initial_pose(rows),
+      initial_extra(static_cast<std::size_t>(rows) * extra_rows),
+      initial_control(rows),
+      history(keep_history ? rows : 0),
+      scenes(worlds),
+      fresh(worlds),
+      event_count(worlds) {
+  workspaces.emplace_back();
+  if (!world.routed.empty()) routes.resize(rows), target.resize(rows);
+  std::copy(seeds, seeds + worlds, seed.data);
+  for (int w = 0; w < worlds; ++w) {
+    for (const Scan& scan : world.scans) {
+      std::copy(scan.mount.angle.begin(), scan.mount.angle.end(),
+                beam_angles.data + static_cast<std::size_t>(w) * world.beams_per_world + scan.mount.first);
+    }
+    if (drawn) draw_scene(world, *this, w);
+  }
+}
+
+void place_fixed(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  std::vector<Pose> poses;
+  poses.reserve(world.fixed_objects.size());
+  for (const int i : world.fixed_objects) poses.push_back(state.pose[w * world.objects + i]);
+  const auto is_current = [&](const std::shared_ptr<const Fixed>& fixed) {
+    return fixed &&
+           std::equal(poses.begin(), poses.end(), fixed->poses.begin(), fixed->poses.end(),
+                      [](const Pose& a, const Pose& b) { return a.x == b.x && a.y == b.y && a.theta == b.theta; });
+  };
+  if (is_current(scene.fixed)) return;
+  if (scene.shapes == world.shapes && is_current(world.fixed)) {
+    scene.fixed = world.fixed;
+  } else {
+    scene.fixed = make_fixed(world, *scene.shapes, std::move(poses));
+  }
+}
+
+void restart_row(const World& world, State& state, int row) {
+  const int w = row / world.objects, i = row % world.objects;
+  const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
+  state.pose[row] = state.initial_pose[row];
+  std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
+  state.control[row] = state.initial_control[row];
+  state.twist[row] = state.command[row] = {};
+  state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
+  state.contact_time[row] = state.air_time[row] = 0.0;
+  state.touching[row] = 0;
+  state.given[row] = state.arrived[row] = state.collided[row] = state.stopped[row] = 0;
+  state.radius[row] = state.scenes[w].shapes->radius[i];
+  state.infeasible[row] = 0;
+  state.goal_draws[row] = 0;
+  if (!state.routes.empty()) state.routes[row] = {};
+  if (state.keep_history) state.history[row].clear();
+  if (world.wander[i]) {
+    draw_wander_goal(world, state, w, i);
+    state.goals[row].initial = state.goals[row].goals;
+  } else {
+    state.goals[row].set(state.goals[row].initial);
+    state.sync_goal(row);
+  }
+}
+
+void restart(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  state.count[w] = 0;
+  scene.events.clear();
+  scene.pairs.clear();
+  if (world.fog) std::fill_n(state.explored.data + w * world.fog->cells(), world.fog->cells(), std::uint8_t{0});
+  scene.contacts.clear();
+  for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
+  place_fixed(world, state, w);
+  evaluate(world, state, w, true);
+}
+
+void draw_scene(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  set_initial_values(world, state, w);
+  scene.shapes = world.shapes ? world.shapes : make_shapes(world, make_key(state.seed[w], state.scene_index[w], 0));
+  scene.moving.resize(scene.shapes->size[0]);
+  scene.sweep.reset(world.moving);
+  scene.fixed = nullptr;
+  scene.bodies = nullptr;
+  state.failed_placement[w] = -1;
+  if (!world.placements.empty()) place_randomly(world, state, w);
+  restart(world, state, w);
+}
+
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene) {
+  for (int w = 0; w < state.worlds; ++w) {
+    if (!mask[w]) continue;
+    if (state.fresh[w] || next_scene) {
+      state.scene_index[w] = state.fresh[w] ? 0 : state.scene_index[w] + 1;
+      state.noise[w] = 0;
+      state.fresh[w] = 0;
+      draw_scene(world, state, w);
+    } else {
+      ++state.noise[w];
+      restart(world, state, w);
+    }
+  }
+}
+
+void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask) {
+  for (int w = 0; w < state.worlds; ++w) {
+    if (!mask[w]) continue;
+    state.seed[w] = seeds[w];
+    state.fresh[w] = 1;
+  }
+}
+
+void refresh(const World& world, State& state) {
+  for (int w = 0; w < state.worlds; ++w) {
+    place_fixed(world, state, w);
+    evaluate(world, state, w, false);
+  }
+}
+
+void draw_wander_goal(const World& world, State& state, int w, int object) {
+  const int row = w * world.objects + object;
+  const Draws draws(state.key(w), Stream::goal, world.number[object]);
+  const std::uint64_t first = 3 * static_cast<std::uint64_t>(state.goal_draws[row]++);
+  const Pose &low = world.range_low[object], &high = world.range_high[object];
+  state.goals[row].set({{draws.uniform(first, low.x, high.x), draws.uniform(first + 1, low.y, high.y),
+                         draws.uniform(first + 2, low.theta, high.theta)}});
+  state.sync_goal(row);
+}
+
+const Bodies& bodies_of(const World& world, State& state, int w) {
+  Scene& scene = state.scenes[w];
+  if (!scene.bodies) {
+    scene.bodies = world.bodies && scene.shapes == world.shapes ? world.bodies : make_bodies(world, *scene.shapes);
+  }
+  return *scene.bodies;
+}
+
+void pose_changed(const World& world, State& state, int row) {
+  if (world.is_static[row % world.objects]) place_fixed(world, state, row / world.objects);
+}
+
+Vec2 velocity_world(const World& world, const State& state, int row) {
+  std::vector<double> scratch;
+  return velocity_world(world, state, row, scratch);
+}
+
+Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch) {
+  return velocity_of_control(world, state, row, state.control[row], scratch);
+}
+
+Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 control, std::vector<double>& scratch) {
+  const int object = row % world.objects;
+  if (!world.dynamics[object].driven) return {control[0], control[1]};
+  Vec3 twist = state.twist[row];
+  with(world.drive[object], [&](const auto& drive) {
+    Pose pose = state.pose[row];
+    const double* extra = &state.extra[static_cast<std::size_t>(row) * state.extra_rows];
+    scratch.assign(extra, extra + state.extra_rows);
+    run(drive, Motion{pose, scratch.data(), twist, state.heading(row), control, 0.0});
+  });
+  return {twist[0], twist[1]};
+}
+
+}  // namespace irsim

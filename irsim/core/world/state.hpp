@@ -1,0 +1,145 @@
+// What changes during an episode. Row w * N + i holds object i of world w.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "random.hpp"
+#include "routes/route.hpp"
+#include "runs/log.hpp"
+#include "world/array.hpp"
+#include "world/scene.hpp"
+#include "world/workspace.hpp"
+#include "world/world.hpp"
+
+namespace irsim {
+
+/// Goals of one object. The queue starts at `head`; `loop` and resets restore `initial`.
+struct GoalQueue {
+  std::vector<Goal> goals, initial;
+  std::size_t head = 0;
+
+  bool empty() const { return head >= goals.size(); }
+  std::size_t left() const { return goals.size() - head; }
+  void set(const std::vector<Goal>& list) { goals = list, head = 0; }
+};
+
+struct State {
+  /// With `drawn`, scene 0 of every world is drawn and ready to step.
+  State(const World& world, const std::uint64_t* seeds, bool history, bool drawn = true);
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  int worlds, objects, rows, extra_rows;
+  bool keep_history;
+
+  // (R,) for each row; `extra` is (R * E,)
+  Array<Pose> pose;
+  Array<double> extra;
+  Array<Vec3> control, twist, command;
+  Array<Vec3> drive;                     // controls of the drives before contacts change them, command frame
+  Array<double> contact_time, air_time;  // time for which an object has touched something, or nothing [s]
+  Array<std::uint8_t> given, arrived, collided, stopped;
+  Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
+  Array<double> radius;
+  Array<std::int32_t> infeasible;  // steps of this episode in which no velocity avoided every collision
+  Array<Goal> goal;                // head of the queue; x is NaN without a goal
+  // (W * beams_per_world,)
+  Array<double> ranges, beam_angles;
+  Array<std::int32_t> hits;
+  Array<std::uint8_t> valid;     // 1 where the beam hit something within the limits of its range
+  Array<double> velocities;      // (W * velocities_per_world,) measured velocities [m/s]
+  Array<std::uint8_t> explored;  // (W * cells of the fog,) 1 where a robot has seen the cell
+  // (W,) for each world
+  Array<std::int64_t> count;
+  Array<std::uint32_t> scene_index, noise;
+  Array<std::uint64_t> seed;
+  Array<std::int32_t> failed_placement;
+
+  std::vector<Vec2> direction;            // (R,) cosine and sine of `direction_of`
+  std::vector<double> direction_of;       // (R,) heading for which `direction` was computed [rad]
+  std::vector<GoalQueue> goals;           // (R,)
+  std::vector<Route> routes;              // (R,), empty if no object has a route
+  std::vector<Goal> target;               // (R,), empty likewise: points that behaviors head for
+  std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
+  std::vector<Pose> initial_pose;         // (R,)
+  std::vector<double> initial_extra;
+  std::vector<Vec3> initial_control;
+  std::vector<std::vector<double>> history;  // (R,) recorded states, K * (3 + E) numbers each
+  std::vector<Scene> scenes;                 // (W,)
+  std::vector<std::uint8_t> fresh;           // (W,) 1 if the next reset draws scene 0 with noise 0
+  std::vector<std::int64_t> event_count;     // (W,) number of events since the state was made
+  std::vector<Workspace> workspaces;         // one per thread
+  std::shared_ptr<Log> record;               // record of world 0; null unless one is attached
+
+  /// Key of the random draws of the present episode of world w.
+  Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
+  /// Point that the behavior of a row heads for: its goal, or a point of its route.
+  const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
+  /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep
+  /// `Route::wall_radius` off them.
+  const Route* route_of(int row) const { return routes.empty() || routes[row].path.empty() ? nullptr : &routes[row]; }
+  /// Cosine and sine of the heading of a row.
+  Vec2 heading(int row) const { return direction_of[row] == pose[row].theta ? direction[row] : unit(pose[row].theta); }
+  Footprint footprint(const World& world, int w, int object) const {
+    const Scene& scene = scenes[w];
+    return (world.is_static[object] ? scene.fixed->outlines : scene.moving).footprint(*scene.shapes, object);
+  }
+  /// Centre and radius of the bounding circle, world frame.
+  std::pair<Vec2, double> bounds(const World& world, int w, int object) const {
+    const Scene& scene = scenes[w];
+    const Outlines& outlines = world.is_static[object] ? scene.fixed->outlines : scene.moving;
+    return {outlines.centres[scene.shapes->placed[object].object], scene.shapes->radius[object]};
+  }
+  void log(const World& world, int w, EventKind kind, int object, int partner, Vec2 where) {
+    const int second = partner < 0 ? -1 : world.number[partner];
+    scenes[w].events.push_back({kind, count[w], world.number[object], second, where.x, where.y});
+    ++event_count[w];
+  }
+  void sync_goal(int row) {
+    const GoalQueue& q = goals[row];
+    goal[row] = q.empty() ? Goal{kNone, kNone, kNone} : q.goals[q.head];
+  }
+};
+
+/// The range that a beam measured [m]; infinite without a valid hit.
+inline float returned_range(const State& state, std::size_t beam) {
+  return state.valid[beam] ? static_cast<float>(state.ranges[beam]) : std::numeric_limits<float>::infinity();
+}
+
+/// Draw shapes, placements and goals of world w for its present seed and scene counter, then `restart` it.
+void draw_scene(const World& world, State& state, int w);
+/// Draw poses and goals of the random placements of world w. `failed_placement` becomes the first object that did not
+/// fit.
+void place_randomly(const World& world, State& state, int w);
+/// Return one object to its initial values; collisions, arrival and sensors are not evaluated.
+void restart_row(const World& world, State& state, int row);
+/// Return world w to its initial values, then evaluate collisions, arrival and sensors.
+void restart(const World& world, State& state, int w);
+/// Reset the worlds where mask is set; see `State.reset` in _core.pyi.
+void reset(const World& world, State& state, const std::uint8_t* mask, bool next_scene);
+void reseed(State& state, const std::uint64_t* seeds, const std::uint8_t* mask);
+/// Update geometry, collisions and sensors after the caller has written poses.
+void refresh(const World& world, State& state);
+
+/// Build the geometry of the static objects at their poses unless it is up to date.
+void place_fixed(const World& world, State& state, int w);
+/// The objects of world w as rigid bodies, which are made when they are first needed.
+const Bodies& bodies_of(const World& world, State& state, int w);
+
+/// Call after a pose was written: the geometry of a static object is updated at once, others follow in the next step.
+void pose_changed(const World& world, State& state, int row);
+/// World-frame velocity [m/s] that the present control of a row gives at its present pose.
+Vec2 velocity_world(const World& world, const State& state, int row);
+/// Like the function above, with scratch memory. For drives in Python it is the velocity of the last step.
+Vec2 velocity_world(const World& world, const State& state, int row, std::vector<double>& scratch);
+
+/// World-frame velocity [m/s] that a control would give a row at its present pose.
+Vec2 velocity_of_control(const World& world, const State& state, int row, Vec3 control, std::vector<double>& scratch);
+
+/// Draw a goal for a wandering object.
+void draw_wander_goal(const World& world, State& state, int w, int object);
+
+}  // namespace irsim

@@ -1,0 +1,48 @@
+// Scratch memory of one thread, so that steps allocate no memory.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contact/contact.hpp"
+#include "orca/crowd.hpp"
+#include "planning/problem.hpp"
+#include "rvo/velocity_obstacles.hpp"
+#include "surroundings/neighbors.hpp"
+
+namespace irsim {
+
+struct Intent;
+
+struct BeamBuffers {
+  struct Body {
+    double distance;   // lower bound of the distance to the body [m]
+    double low, high;  // first and last beam that may hit it
+    int object;
+  };
+  std::vector<double> dx, dy, range;
+  std::vector<std::int32_t> hit;
+  std::vector<Body> bodies, sorted;
+};
+
+struct Workspace {
+  Workspace();
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+
+  std::vector<int> objects;
+  std::vector<Intent> intents;
+  BeamBuffers beams, blockers;
+  std::vector<Vec2> velocities;  // velocities of the objects of a world [m/s]
+  std::vector<double> extra;     // copy of a row of State::extra
+  Neighbors neighbors;
+  ContactBuffers contacts;
+  std::vector<int> walls;  // walls found near an object
+  VelocityObstacles velocity_obstacles;
+  OrcaCrowd orca;
+  SearchMemory search;  // memory of planners
+  Outlines ghost;       // outline of an object at a pose that is tried
+};
+
+}  // namespace irsim

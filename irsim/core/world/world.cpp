@@ -1,0 +1,242 @@
+#include "world/world.hpp"
+
+#include <stdexcept>
+
+#include "collision/touch.hpp"
+#include "sensing/beams.hpp"
+#include "world/features.hpp"
+#include "world/spec.hpp"
+
+namespace irsim {
+namespace {
+
+constexpr double kMaxFogBeams = 20000.0;  // largest number of beams of one view of the fog
+constexpr double kDiscCell = 2.0;         // cell size of the grid of static circles [m]
+
+Vec3 padded(const std::vector<double>& values) {
+  Vec3 out;
+  for (std::size_t c = 0; c < 3 && c < values.size(); ++c) out[static_cast<int>(c)] = values[c];
+  return out;
+}
+
+Pose pose_of(const std::vector<double>& values) {
+  const Vec3 v = padded(values);
+  return {v[0], v[1], v[2]};
+}
+
+bool is_random(const ObjectSpec& spec) {
+  for (const PartSpec& part : spec.parts) {
+    if (std::visit([](const auto& shape) { return is_drawn(shape); }, part)) return true;
+  }
+  return false;
+}
+
+bool same_behavior(const Behavior& a, const Behavior& b) {
+  bool equal = false;
+  with(a, [&](const auto& options) {
+    const auto* other = std::get_if<std::decay_t<decltype(options)>>(&b);
+    equal = other != nullptr && same(options, *other);
+  });
+  return equal;
+}
+
+void add_to_group(World& world, int object, const ObjectSpec& spec) {
+  if (std::holds_alternative<std::monostate>(spec.behavior)) return;
+  for (BehaviorGroup& group : world.behaviors) {
+    if (group.group == spec.group && group.grouped == spec.grouped && same_behavior(group.behavior, spec.behavior)) {
+      group.objects.push_back(object);
+      return;
+    }
+  }
+  world.behaviors.push_back({spec.behavior, spec.group, spec.grouped, {object}, {}});
+}
+
+void find_members(World& world) {
+  for (BehaviorGroup& group : world.behaviors) {
+    group.members = group.objects;
+    if (!group.grouped) continue;
+    group.members.clear();
+    for (int i = 0; i < world.objects; ++i) {
+      if (world.group[i] == group.group) group.members.push_back(i);
+    }
+  }
+}
+
+Mount mount_of(int object, int index) { return {object, index, 0, 0, 0, 0, {}, {}, {}, {}}; }
+
+/// Set the nominal beams of a mount; those of `like` are copied if the angles are equal.
+void set_beams(Mount& mount, std::vector<double> angles, const Mount* like = nullptr) {
+  mount.count = static_cast<int>(angles.size());
+  if (like != nullptr && like->angle == angles) {
+    mount.angle = std::move(angles), mount.cosine = like->cosine, mount.sine = like->sine;
+    return;
+  }
+  mount.angle = std::move(angles);
+  for (const double angle : mount.angle) {
+    mount.cosine.push_back(std::cos(angle));
+    mount.sine.push_back(std::sin(angle));
+  }
+}
+
+/// Add views of the fog with beams so dense that they miss no cell within reach.
+void add_fog_beams(World& world) {
+  const Fog& fog = *world.fog;
+  if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
+  if (std::max(fog.columns, fog.rows) > kMaxFogCells) throw std::invalid_argument("fog has too many cells");
+  const double cell = std::min(fog.cell().x, fog.cell().y);
+  for (const FogView& view : fog.views) {
+    if (view.object < 0 || view.object >= world.objects)
+      throw std::invalid_argument("a view of the fog names an object that does not exist");
+    Mount mount = mount_of(view.object, 0);
+    if (view.occlusion) {
+      const double wanted = std::ceil(2.0 * view.angle * view.reach / cell);
+      set_beams(mount, spread_beams(view.angle, 1 + static_cast<int>(clip(wanted, 1.0, kMaxFogBeams))));
+    }
+    world.fog_beams.push_back(std::move(mount));
+  }
+}
+
+void add_scans(World& world, int object, const ObjectSpec& spec) {
+  for (std::size_t k = 0; k < spec.sensors.size(); ++k) {
+    if (std::holds_alternative<std::monostate>(spec.sensors[k])) continue;  // this sensor is computed in Python
+    Mount mount = mount_of(object, static_cast<int>(k));
+    mount.first = world.beams_per_world, mount.first_velocity = world.velocities_per_world;
+    with(spec.sensors[k], [&](const auto& options) {
+      set_beams(mount, beams(options), world.scans.empty() ? nullptr : &world.scans.back().mount);
+      mount.velocity_rows = velocity_rows(options), mount.offset = options.offset;
+    });
+    world.beams_per_world += mount.count;
+    world.velocities_per_world += mount.count * mount.velocity_rows;
+    world.scans.push_back({spec.sensors[k], mount});
+  }
+}
+
+void check(const ObjectSpec& spec) {
+  if (spec.parts.empty()) throw std::invalid_argument("an object needs at least one part");
+  if (spec.angle_range.size() != 2) throw std::invalid_argument("angle_range must have two numbers");
+  if (std::isnan(spec.angle_range[0]) || std::isnan(spec.angle_range[1]) || spec.angle_range[0] >= spec.angle_range[1])
+    throw std::invalid_argument("angle_range must be an interval");
+  if (!(spec.mass > 0.0)) throw std::invalid_argument("mass must be positive");
+}
+
+}  // namespace
+
+World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
+             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_)
+    : step_time(step_time_),
+      collision_mode(collision_mode_),
+      gravity(gravity_),
+      copies(copies_),
+      objects(static_cast<int>(specs_.size())),
+      extra_rows(1),
+      specs(std::move(specs_)),
+      fog(std::move(fog_)),
+      placements(std::move(placements_)) {
+  if (copies < 0) throw std::invalid_argument("copies must not be negative");
+  bool random_shapes = false, random_statics = false;
+  for (const RandomPlacement& placement : placements) {
+    for (const int i : placement.objects) {
+      if (i < 0 || i >= objects) throw std::invalid_argument("a placement names an object that does not exist");
+      random_statics = random_statics || specs[i].is_static;
+    }
+  }
+  for (int i = 0; i < objects; ++i) {
+    const ObjectSpec& s = specs[i];
+    check(s);
+    random_shapes = random_shapes || is_random(s);
+    is_robot.push_back(s.role == 0);
+    is_static.push_back(s.is_static);
+    behaves.push_back(!std::holds_alternative<std::monostate>(s.behavior));
+    unobstructed.push_back(s.unobstructed);
+    wander.push_back(s.wander);
+    loop.push_back(s.loop);
+    state_arrival.push_back(s.arrive_mode == 1);
+    target_roles.push_back(static_cast<std::uint8_t>(s.target_roles));
+    group.push_back(s.group);
+    number.push_back(s.number < 0 ? i : s.number);
+    drive.push_back(s.drive);
+    dynamics.push_back(
+        {s.mass, s.friction, s.inertia, s.restitution, s.tau, s.driven, !s.is_static && std::isfinite(s.mass)});
+    vel_min.push_back(padded(s.vel_min));
+    vel_max.push_back(padded(s.vel_max));
+    acce.push_back(padded(s.acce));
+    angle_low.push_back(s.angle_range[0]);
+    angle_high.push_back(s.angle_range[1]);
+    goal_threshold.push_back(s.goal_threshold);
+    range_low.push_back(pose_of(s.range_low));
+    range_high.push_back(pose_of(s.range_high));
+    extra_rows = std::max(extra_rows, static_cast<int>(s.extra.size()));
+    (s.is_static ? fixed_objects : moving).push_back(i);
+    if (s.role == 0) robots.push_back(i);
+    if (!s.unobstructed) visible.push_back(i);
+    if (s.route && !s.is_static) routed.push_back(i);
+    add_to_group(*this, i, s);
+    add_scans(*this, i, s);
+  }
+  find_members(*this);
+  if (fog) add_fog_beams(*this);
+  if (random_shapes) return;
+  shapes = make_shapes(*this, {});
+  if (collision_mode == kContact) bodies = make_bodies(*this, *shapes);
+  if (random_statics) return;
+  std::vector<Pose> poses;
+  for (const int i : fixed_objects) poses.push_back(pose_of(specs[i].pose));
+  fixed = make_fixed(*this, *shapes, std::move(poses));
+}
+
+World::~World() = default;
+
+double World::cell(const Shapes& of, const std::vector<int>& ids) const {
+  if (ids.empty()) return 1.0;
+  std::vector<double> radii;
+  for (const int i : ids) {
+    if (!of.is_map(i)) radii.push_back(of.radius[i]);
+  }
+  if (radii.empty()) return 1.0;
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return 3.0 * *middle;
+}
+
+std::shared_ptr<const Shapes> make_shapes(const World& world, Key key) {
+  auto shapes = std::make_shared<Shapes>();
+  for (int i = 0; i < world.objects; ++i) {
+    const Draws draws(key, Stream::shape, world.number[i]);
+    shapes->add(draw_outlines(world.specs[i].parts, draws), world.is_static[i] != 0);
+  }
+  return shapes;
+}
+
+std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes, std::vector<Pose> poses) {
+  auto fixed = std::make_shared<Fixed>();
+  fixed->poses = std::move(poses);
+  fixed->outlines.resize(shapes.size[1]);
+  fixed->grid.clear(world.cell(shapes, world.fixed_objects));
+  for (std::size_t k = 0; k < world.fixed_objects.size(); ++k) {
+    const int i = world.fixed_objects[k];
+    fixed->outlines.place(shapes, i, fixed->poses[k], unit(fixed->poses[k].theta));
+    fixed->grid.add(i, fixed->outlines.boxes[shapes.placed[i].object]);
+  }
+  fixed->grid.build();
+  std::vector<Vec2> centres;
+  for (const int i : world.fixed_objects) {
+    const Footprint body = fixed->outlines.footprint(shapes, i);
+    if (body.count != 1 || body.parts[0].kind != Kind::circle) continue;
+    fixed->disc_ids.push_back(i);
+    centres.push_back(body.centre);
+  }
+  fixed->disc_points.build(centres, kDiscCell);
+  fixed->walls = make_walls(world, shapes, *fixed);
+  fixed->lines = make_lines(world, shapes, *fixed);
+  fixed->obstacles = make_obstacles(world, shapes, *fixed);
+  for (const int i : world.fixed_objects) {
+    const Footprint body = fixed->outlines.footprint(shapes, i);
+    fixed->grid.query(body.box, [&](int j) {
+      if (j > i && touch(body, fixed->outlines.footprint(shapes, j))) fixed->pairs.emplace_back(i, j);
+    });
+  }
+  std::sort(fixed->pairs.begin(), fixed->pairs.end());
+  return fixed;
+}
+
+}  // namespace irsim

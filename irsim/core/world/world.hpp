@@ -1,0 +1,104 @@
+// What never changes during an episode: N objects per world, with the same template for every copy.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contact/bodies.hpp"
+#include "geometry/vec.hpp"
+#include "kinematics.gen.hpp"
+#include "sensing/fog.hpp"
+#include "world/scene.hpp"
+
+namespace irsim {
+
+struct ObjectSpec;
+struct RandomPlacement;
+struct BehaviorGroup;
+struct Scan;
+
+/// A goal without a heading has theta NaN.
+using Goal = Pose;
+
+/// Where a sensor is mounted, its slice of the beams of a world, and its nominal beams in the sensor frame.
+struct Mount {
+  int object;
+  int index;  // index among the sensors of the object
+  int first, count;
+  int first_velocity, velocity_rows;  // slice of the velocities of a world: rows of `count` numbers
+  std::array<double, 3> offset;       // pose in the body frame [m, m, rad]
+  std::vector<double> angle, cosine, sine;
+};
+
+enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
+
+/// What contacts need to know about an object besides its shape.
+struct BodyDynamics {
+  double mass;         // [kg], may be infinite
+  double friction;     // coefficient of friction with the ground
+  double inertia;      // [kg m^2], NaN: from shape and mass
+  double restitution;  // bounciness, 0 to 1
+  double tau;          // time constant of the drive [s]
+  bool driven;         // whether it has a drive; a body without one moves only when it is pushed
+  bool pushable;       // whether it is not static and has a finite mass
+};
+
+struct World {
+  World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
+        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  double step_time;                // [s]
+  int collision_mode;              // CollisionMode
+  double gravity;                  // [m/s^2]
+  std::array<double, 4> extent{};  // x0, y0, x1, y1 [m]: paths are planned within this box
+  int copies;
+  int objects;     // N
+  int extra_rows;  // E
+
+  // (N,) for each object
+  std::vector<std::uint8_t> is_robot, is_static, unobstructed, wander, loop, state_arrival, target_roles, behaves;
+  std::vector<int> group;
+  std::vector<int> number;  // id in draws and events; equal to the index until objects are removed
+  std::vector<Drive> drive;
+  std::vector<BodyDynamics> dynamics;
+  std::vector<Vec3> vel_min, vel_max, acce;
+  std::vector<double> angle_low, angle_high, goal_threshold;
+  std::vector<Pose> range_low, range_high;
+  std::vector<ObjectSpec> specs;  // as given: initial values, shapes, sensors
+
+  // object ids
+  std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: those that are not unobstructed
+  std::vector<int> routed;                                  // objects with a route to follow
+  std::vector<BehaviorGroup> behaviors;
+  std::vector<Scan> scans;
+  int beams_per_world = 0, velocities_per_world = 0;
+  std::optional<Fog> fog;
+  std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
+  std::vector<RandomPlacement> placements;
+
+  std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
+  std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed
+  std::shared_ptr<const Fixed> fixed;    // at the poses of the template; null if these poses or shapes are drawn
+
+  /// Cell size of a grid that suits most of these objects [m].
+  double cell(const Shapes& of, const std::vector<int>& ids) const;
+};
+
+/// Largest friction with the ground [N]; infinite for an object of infinite mass.
+inline double ground_friction(const World& world, int object) {
+  const BodyDynamics& m = world.dynamics[object];
+  return m.friction > 0.0 ? m.friction * m.mass * world.gravity : 0.0;
+}
+
+/// The shapes of one scene; random ones are drawn.
+std::shared_ptr<const Shapes> make_shapes(const World& world, Key key);
+/// The geometry of the static objects (`world.fixed_objects`) at these poses.
+std::shared_ptr<const Fixed> make_fixed(const World& world, const Shapes& shapes, std::vector<Pose> poses);
+
+}  // namespace irsim

@@ -1,0 +1,14 @@
+"""What is documented about a code."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+__all__ = ["Code"]
+
+
+class Code(NamedTuple):
+    """A documented code."""
+
+    title: str
+    explanation: str

@@ -1,0 +1,104 @@
+"""Codes of keys, values and names of features."""
+
+from __future__ import annotations
+
+from irsim.diagnostics.codes.code import Code
+
+__all__ = ["KEYS_AND_VALUES"]
+
+KEYS_AND_VALUES: dict[str, Code] = {
+    # keys and values
+    "unknown-key": Code(
+        "unknown key",
+        "The key is not part of the language at this place; 'allowed' lists those that are. IR-SIM 2.12 ignores most "
+        "unknown keys: irsim.make and irsim run do so too, with a warning; strict reading refuses them.",
+    ),
+    "missing-key": Code(
+        "key missing",
+        "This mapping needs the key, which has no default.",
+    ),
+    "conflicting-keys": Code(
+        "keys exclude each other",
+        "Two keys set the same thing in different ways. Keep one.",
+    ),
+    "ignored-key": Code("key without effect", "Another key of the same entry makes this one meaningless."),
+    "wrong-type": Code(
+        "value of the wrong kind",
+        "The key takes another type of value, such as a number instead of text; 'allowed' says which.",
+    ),
+    "wrong-length": Code(
+        "wrong number of elements",
+        "A vector has too few or too many numbers. Poses are [x, y] or [x, y, theta]; vel_min, vel_max, acce and "
+        "velocity have one number per control component of the kinematics.",
+    ),
+    "scalar-list": Code(
+        "list where a single number is needed",
+        "A list of plain numbers is one vector for all objects, so keys that take a single number cannot be given "
+        "per object (mass, friction, inertia and restitution can). Write one entry per value. In 'state' and 'goal'"
+        " the cause is one level of brackets too many.",
+    ),
+    "not-a-mapping": Code(
+        "mapping expected",
+        "A feature is a mapping with a name: 'kinematics: {name: diff}', not 'kinematics: diff'.",
+    ),
+    "unknown-value": Code(
+        "unknown word",
+        "The key takes one of a fixed set of words; 'allowed' lists them.",
+    ),
+    "invalid-value": Code(
+        "invalid value",
+        "The value is not valid for this key; the message says why.",
+    ),
+    "out-of-range": Code(
+        "number out of range",
+        "The number is outside the bounds of this key, which are in 'allowed'.",
+    ),
+    "range-order": Code(
+        "bounds in the wrong order",
+        "The lower bound of a range must not be greater than the upper bound.",
+    ),
+    "infinite-number": Code("infinity not allowed", "Only acce, mass and inertia may be infinite (.inf)."),
+    "not-a-number": Code(
+        "NaN not allowed",
+        "NaN (not a number) has no meaning in a scenario. Give a number.",
+    ),
+    "angle-over-full-turn": Code(
+        "angle larger than a full turn",
+        "Opening angles must be from 0 to 2π = 6.28318 radians. A value such as 90, 180 or 360 is probably in degrees.",
+    ),
+    "unknown-color": Code(
+        "unknown color",
+        "Colors are names ('red', 'tab:blue', 'xkcd:sky blue'), '#RRGGBB', a grey level as text ('0.5'), or [r, g, b] "
+        "with numbers from 0 to 1.",
+    ),
+    # names of features
+    "unknown-behavior": Code(
+        "unknown behavior",
+        "No behavior of that name is built in or registered for the object's kinematics. Register your own with "
+        "irsim.register_behavior before the scenario is read: in a Python program, or with --import MODULE on the "
+        "command line. Random goals and loops are keys of every behavior, not behaviors: {name: dash, wander: "
+        "true}, {name: dash, loop: true}.",
+    ),
+    "behavior-for-other-drive": Code(
+        "behavior registered for other kinematics",
+        "This behavior is registered, but not for the kinematics of this object. Register it for these kinematics too.",
+    ),
+    "not-a-group-behavior": Code(
+        "not a group behavior",
+        "This behavior decides for each object separately: write it under 'behavior'.",
+    ),
+    "bad-social-group": Code(
+        "social group with missing or repeated members",
+        "'social_groups' of a group 'sfm' lists which members walk together, by the index of each member in its "
+        "group, counted from 0 in the order of the file. Each index must be below the number of members and may "
+        "occur once.",
+    ),
+    "unknown-kinematics": Code("unknown kinematics", "No drive of that name is built in or registered."),
+    "unknown-shape": Code("unknown shape", "No shape of that name is built in or registered."),
+    "unknown-sensor": Code("unknown sensor", "No sensor of that name is built in or registered."),
+    "unknown-distribution": Code("unknown distribution", "No distribution of that name is built in or registered."),
+    "unknown-map": Code("unknown map generator", "No map generator of that name is built in or registered."),
+    "unknown-planner": Code("unknown planner", "No path planner of that name is built in or registered."),
+    "unknown-object": Code("unknown object", "No object of the scenario has that name."),
+}
+"""Codes of a key or value that the language does not have."""

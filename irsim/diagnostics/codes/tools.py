@@ -1,0 +1,111 @@
+"""Codes of errors outside scenarios: of the command line, the MCP server and other tools."""
+
+from __future__ import annotations
+
+from irsim.diagnostics.codes.code import Code
+
+__all__ = ["TOOLS"]
+
+TOOLS: dict[str, Code] = {
+    "unknown-template": Code(
+        "unknown template",
+        "No bundled template has that name; irsim templates lists them.",
+    ),
+    "unknown-parameter": Code(
+        "unknown parameter", "The template has no parameter of that name; irsim describe NAME lists them."
+    ),
+    "bad-parameter": Code(
+        "parameter not accepted",
+        "The value has the wrong type or is out of range; the message says what is accepted.",
+    ),
+    "unknown-skill": Code(
+        "unknown skill",
+        "This package has no agent skill of that name; irsim skills list shows them.",
+    ),
+    "unknown-topic": Code(
+        "unknown topic",
+        "The language has no key or component of that name, and no template, metric, guide or code has it.",
+    ),
+    "unknown-format": Code(
+        "unknown file format",
+        "The suffix of the file selects the format; the message lists the known suffixes.",
+    ),
+    "file-exists": Code(
+        "file exists",
+        "An existing file is overwritten only with --force.",
+    ),
+    "import-failed": Code(
+        "module cannot be imported", "A module named by --import raised an error; the message has it."
+    ),
+    "behavior-failed": Code(
+        "behavior in Python failed",
+        "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
+    ),
+    "invalid-input": Code(
+        "input not usable",
+        "The input is not usable; the message says what is wrong with it.",
+    ),
+    "file-access": Code(
+        "file cannot be read or written",
+        "The system refuses access. Check the path, the permissions and the free disk space.",
+    ),
+    "out-of-memory": Code(
+        "not enough memory",
+        "The work needs more memory than there is. Use fewer objects, beams or frames.",
+    ),
+    "unknown-run": Code(
+        "unknown run",
+        "The workspace has no recorded run of that id. Runs are deleted 24 hours after their last use, and the "
+        "least recently used ones when all together exceed 500 MB; the message names recent ones.",
+    ),
+    "unknown-job": Code(
+        "unknown job",
+        "The workspace has no job of that id. Jobs are deleted after 24 hours; the message names recent ones.",
+    ),
+    "unreadable-run": Code(
+        "run cannot be read",
+        "A file of the recorded run was changed, removed or truncated; record the run again.",
+    ),
+    "step-out-of-range": Code(
+        "step outside the run",
+        "The recorded run has no such step; the message has the range of its steps.",
+    ),
+    "unknown-tool": Code("unknown tool", "The server has no tool of that name; the message names the nearest."),
+    "unknown-prompt": Code("unknown prompt", "The server has no prompt of that name; the message lists those it has."),
+    "unknown-argument": Code(
+        "unknown argument",
+        "The tool has no argument of that name; the message names the nearest one, or all of them.",
+    ),
+    "bad-argument": Code(
+        "argument not accepted",
+        "An argument of the call has the wrong type, is out of range, or does not fit the others.",
+    ),
+    "invalid-scenario": Code(
+        "scenario with errors",
+        "Nothing was run or drawn. The message has the first problems; validate_scenario (irsim validate) lists all, "
+        "with a fix for each.",
+    ),
+    "over-limit": Code(
+        "more work than is allowed",
+        "The message has the limit and what was requested. Use fewer steps or objects.",
+    ),
+    "out-of-time": Code(
+        "computing time is over",
+        "The work was stopped. A run is recorded up to that moment, see inspect_run; other work leaves no result. "
+        "Use fewer steps, objects or lidar beams.",
+    ),
+    "busy": Code(
+        "too many calls at once",
+        "The server is already working on as many calls as it allows. Call again a little later.",
+    ),
+    "worker-failed": Code(
+        "worker process died",
+        "The process that did the work ended without a result; the server itself continues.",
+    ),
+    "internal-error": Code(
+        "unexpected error",
+        "There is a mistake in irsim or in user code; IRSIM_TRACEBACK=1 shows where. Please report it if it is in "
+        "irsim.",
+    ),
+}
+"""Codes of errors outside scenarios: of the command line and other tools."""

@@ -1,0 +1,148 @@
+"""Beginnings and ends of an environment: reading the file, reset, reload, seeds, end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NoReturn
+from weakref import ref
+
+from irsim.diagnostics.diagnostic import Diagnostic, format_path
+from irsim.env.drawing import finish_drawing, redraw
+from irsim.env.loop import log_collisions
+from irsim.env.objects import count_ids, restore_objects
+from irsim.env.parameters import EnvParam, WorldParam, checked_step_mode
+from irsim.env.queries import objects
+from irsim.env.state import EnvState
+from irsim.objects.extensions.attach import attach_python
+from irsim.objects.view import ObjectView
+from irsim.objects.views import make_view, views
+from irsim.scenario.open import open_scenario
+from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.active_env import use
+from irsim.simulation.random_streams import check_seed, fresh_seed
+from irsim.simulation.simulation import Simulation
+
+__all__ = ["end", "open_world", "quit_program", "reload", "reset", "set_random_seed"]
+
+
+def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) -> None:
+    """Read a scenario and build its first scene."""
+    if isinstance(world_name, ResolvedScenario):
+        scenario = world_name
+    else:
+        scenario, warnings = open_scenario(world_name, strict=env._strict)
+        for warning in warnings:
+            env.logger.warning(_one_line(warning))
+    mode = checked_step_mode(env._wanted_mode if env._wanted_mode is not None else scenario.world.step_mode)
+    chosen = env._wanted_seed if env._wanted_seed is not None else scenario.world.seed
+    seed = fresh_seed() if chosen is None else check_seed(chosen)
+    simulation = Simulation(scenario, [seed], history=True)
+    simulation.report = env.logger.error_once
+    simulation.owner = ref(env)
+    simulation.make_view = make_view
+    attach_python(simulation)
+    env.scenario, env._seed, env._simulation = scenario, seed, simulation
+    env._originals = views(simulation)
+    env._objects = list(env._originals)
+    env._exchanged = False
+    env._world = env._world_class(simulation)
+    env.world_param = WorldParam(simulation, mode)
+    here = ref(env)
+    env.env_param = EnvParam(lambda: _objects_of(here()), env.logger)
+    count_ids(env)
+    env._limit_warnings = set()
+    env._events_seen = env._events_logged = 0
+    env._label = scenario.world.status
+
+
+def reset(env: EnvState, random: bool = False) -> None:
+    """Back to the start.
+
+    Args:
+        random: Draw the next scene (random shapes, poses, goals) instead of repeating this one.
+
+    Raises:
+        PlacementError: The next scene has no room for a random object.
+    """
+    env._ended = False
+    use(env)
+    if random and env._exchanged:
+        restore_objects(env)
+    else:
+        env._simulation.reset(next_scene=random)
+    if random:
+        count_ids(env)
+    _start_over(env, "Reset")
+
+
+def reload(env: EnvState, world_name: str | Path | None = None) -> None:
+    """Read the scenario again, or another one, and begin it as ``make`` does with this environment's seed.
+
+    Objects are new ones; views kept from before show what they last showed. The figure stays.
+
+    Args:
+        world_name: Another file; default: the present one.
+    """
+    env._ended = False
+    name = env.world_name if world_name is None else world_name
+    env._wanted_seed = env._seed
+    open_world(env, name)
+    env.world_name = name
+    _start_over(env, env.scenario.world.status)
+
+
+def _start_over(env: EnvState, label: str | None) -> None:
+    env.pause_flag = env.debug_flag = env.reset_flag = False
+    env.debug_count = 0
+    env.reload_flag = False
+    env._events_logged = 0
+    env._label = label
+    redraw(env)
+    log_collisions(env)
+
+
+def set_random_seed(env: Any, seed: int | None = None, reload: bool = False) -> None:
+    """Change the seed; the next ``reset`` starts again from its first scene.
+
+    Args:
+        seed: 0 to 2**64 - 1; None draws a fresh one.
+        reload: Also read the scenario again and begin it with this seed.
+    """
+    env._seed = fresh_seed() if seed is None else check_seed(seed)
+    env._simulation.reseed([env._seed])
+    env._wanted_seed = env._seed
+    if reload:
+        env.reload()
+
+
+def end(env: EnvState, ending_time: float = 3.0, **kwargs: Any) -> None:
+    """Write the animation if there is one, and close the figure.
+
+    A script may go on: what is stepped, reset or drawn after that has a figure and an animation of its own. Ending
+    twice in a row does nothing more.
+
+    Args:
+        ending_time: Seconds a window stays open.
+        **kwargs: Options of the animation: ``ani_name``, ``suffix``, ``last_frame_duration``, ``fps``, …
+    """
+    if env._ended and env._plot is None:
+        return
+    finish_drawing(env, ending_time, **kwargs)
+    env._ended = True
+    env.logger.info(f"{env} ended after {env._world.time} s")
+
+
+def quit_program(env: EnvState) -> NoReturn:
+    """End and leave the program."""
+    end(env, ending_time=1.0)
+    raise SystemExit(0)
+
+
+def _objects_of(env: EnvState | None) -> list[ObjectView]:
+    return [] if env is None else objects(env)
+
+
+def _one_line(finding: Diagnostic) -> str:
+    where = f"line {finding.line}: " if finding.line else ""
+    fix = f" ({finding.fix})" if finding.fix else ""
+    return f"{where}{format_path(finding.path)}: {finding.message}{fix} [{finding.code}]"

@@ -1,0 +1,97 @@
+"""What an environment holds; the functions of this room work on it, and :class:`irsim.env.Env` lists them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from irsim.env.parameters import EnvParam, PathParam, WorldParam, WorldView
+
+if TYPE_CHECKING:
+    from irsim.common.log import Logger
+    from irsim.graphics.scene.palette import Palette
+    from irsim.gui import KeyboardControl, MouseControl
+    from irsim.objects.view import ObjectView
+    from irsim.rendering.env_plot import EnvPlot
+    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["EnvState"]
+
+
+class EnvState:
+    """The parts of an environment, and what was asked of it.
+
+    Attributes:
+        id: Number of the environment in this process.
+        world_name: The file that it was made from, as it was given.
+        scenario: The scenario, resolved.
+        logger: Where its warnings go.
+        world_param, env_param, path_param, palette_param: Parameter objects under the names that scripts know.
+        display, headless, save_ani, ani_kwargs, full: How it is drawn; see :class:`irsim.env.Env`.
+        pause_flag, quit_flag, debug_flag, reset_flag, reload_flag, save_figure_flag: Requests by keys or scripts, which
+            the next step or frame carries out.
+        debug_count: Number of single steps that were asked for in debugging.
+        _simulation: The simulation behind it.
+        _objects: Its objects now, in the order of their rows.
+        _originals: The objects of the file.
+        _exchanged: Whether objects have come or gone since the file was read.
+        _world: The world under the names that scripts know.
+        _plot: The figure; None before something is drawn.
+        _title: Title set by a script; None shows the status.
+        _label: Status set by a script, until the next step.
+        _keyboard, _mouse: Live control of its figure.
+        _seed: Seed of the present scenes.
+        _wanted_seed, _wanted_mode, _strict: Arguments of ``make``.
+        _ended: Whether ``end`` was called, and no step since.
+        _limit_warnings: Ids of the objects whose cut actions were reported.
+        _events_seen, _events_logged: Number of events that exist, and that were logged.
+    """
+
+    id: int
+    world_name: str | Path | ResolvedScenario | None
+    scenario: ResolvedScenario
+    logger: Logger
+    world_param: WorldParam
+    env_param: EnvParam
+    path_param: PathParam
+    palette_param: Palette
+    display: bool
+    headless: bool
+    save_ani: bool
+    ani_kwargs: dict[str, Any]
+    full: bool
+    pause_flag: bool
+    quit_flag: bool
+    debug_flag: bool
+    reset_flag: bool
+    reload_flag: bool
+    save_figure_flag: bool
+    debug_count: int
+
+    _simulation: Simulation
+    _objects: list[ObjectView]
+    _originals: list[ObjectView]
+    _exchanged: bool
+    _world: WorldView
+    _plot: EnvPlot | None
+    _title: str | None
+    _label: str | None
+    _keyboard: KeyboardControl | None
+    _mouse: MouseControl | None
+    _seed: int
+    _wanted_seed: int | None
+    _wanted_mode: str | None
+    _strict: bool
+    _ended: bool
+    _limit_warnings: set[int]
+    _events_seen: int
+    _events_logged: int
+
+    _world_class: ClassVar[type[WorldView]] = WorldView
+    """The class of ``_world``."""
+
+    def _make_plot(self, attach: Callable[[Any], None]) -> EnvPlot:
+        """Make the figure, which calls ``attach`` with its axes."""
+        raise NotImplementedError

@@ -1,0 +1,216 @@
+"""How an episode ended, in words: which robots arrived, which did not, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.out_of_bounds import exits_message
+from irsim.episodes.stuck import (
+    find_circling,
+    find_obstruction,
+    heading_message,
+    is_moving_obstacle,
+    jam_message,
+    no_progress_since,
+)
+from irsim.results.run import HorizonSource, Left, RobotResult
+from irsim.simulation.events import Event
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.objects.view import ObjectView
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+
+__all__ = ["has_one_end", "others_arrived_message", "reason_message", "summary_message"]
+
+_MAX_NAMED = 3
+"""Number of robots that a sentence names."""
+_MAX_EVENTS = 100
+"""Number of last events that are searched for a missing path."""
+_MAX_STANDING_SPEED = 1e-3
+"""Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
+_LIMIT_SOURCES: dict[HorizonSource, str] = {
+    "argument": "the steps asked for",
+    "scenario": "world.time_limit",
+    "default": "the default limit; world.time_limit sets another",
+    "limits": "the maximum number of steps of one run here",
+}
+"""Where the time limit comes from, in words."""
+
+
+def summary_message(
+    env: Env,
+    robots: list[RobotResult],
+    hits: Sequence[Event],
+    behavior: str | None,
+    parked: Sequence[str],
+    held: dict[str, Event],
+    events: Sequence[Event],
+    left: Sequence[Left],
+) -> str:
+    """Say which robots arrived, the first collision, and what else happened to objects."""
+    parts = [_arrivals_message(robots, env.sim_time, parked)]
+    if hit := _first_collision_message({robot.name for robot in robots}, hits):
+        parts.append(hit)
+    if out := exits_message(env.scenario, left):
+        parts.append(out)
+    if gone := _departures_message(env, robots):
+        parts.append(gone)
+    if others := others_arrived_message(env.scenario, events):
+        parts.append(others)
+    if jam := jam_message(env.simulation, held):
+        parts.append(jam)
+    changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
+    return changed + "; ".join(parts)
+
+
+def _arrivals_message(robots: list[RobotResult], sim_time: float, parked: Sequence[str]) -> str:
+    """Say how many robots arrived and when, and how many of them after a collision."""
+    if not robots:
+        return f"no robots; {seconds(sim_time)} simulated"
+    arrived = [robot.time_to_goal for robot in robots if robot.time_to_goal is not None]
+    touched = sum(robot.outcome == "collision" for robot in robots if robot.time_to_goal is not None)
+    if len(robots) > 1:
+        all_arrived = len(arrived) == len(robots)
+        when = f", the last at {seconds(max(arrived))}" if all_arrived else f" within {seconds(sim_time)}"
+        share = "all" if touched == len(arrived) else str(touched)
+        after = f", {share} of them after a collision" if touched else ""
+        still = f", {len(parked)} {'is' if len(parked) == 1 else 'are'} parked" if parked else ""
+        return f"{len(arrived)} of {len(robots)} robots arrived{when}{after}{still}"
+    if arrived:
+        return f"the robot arrived at {seconds(arrived[0])}{', after a collision' * touched}"
+    if parked and robots[0].outcome == "timeout":
+        return f"the robot is parked; {seconds(sim_time)} simulated"
+    if robots[0].outcome == "collision":
+        return "the robot collided"  # the message about what it hit says when
+    return f"the robot did not arrive within {seconds(sim_time)}"
+
+
+def _departures_message(env: Env, robots: list[RobotResult]) -> str | None:
+    """Say which robots arrived but are not at their goal at the end; None if there are none."""
+    views = {view.name: view for view in env.robot_list}
+    gone = [
+        quoted(robot.name)
+        for robot in robots
+        if robot.outcome == "success" and not views[robot.name].arrive and has_one_end(views[robot.name].record)
+    ]
+    if len(gone) < 2:
+        return f"{gone[0]} left its goal again" if gone else None
+    return f"{listed(gone, _MAX_NAMED)} left their goals again"
+
+
+def has_one_end(record: ObjectRecord) -> bool:
+    """Whether an object has a fixed last goal."""
+    return not (record.wander or record.loop)
+
+
+def others_arrived_message(scenario: ResolvedScenario, events: Sequence[Event]) -> str | None:
+    """Say how many of the moving obstacles that have a goal arrived; None if there are none.
+
+    Args:
+        scenario: The scenario.
+        events: Events of the episode.
+    """
+    walking = {
+        record.name
+        for record in scenario.objects
+        if is_moving_obstacle(record) and record.goals and has_one_end(record)
+    }
+    if not walking:
+        return None
+    arrived = walking & {event.object for event in events if event.kind == "arrival"}
+    return f"{len(arrived)} of {len(walking)} moving obstacle{'s' * (len(walking) != 1)} arrived"
+
+
+def reason_message(
+    env: Env,
+    robots: list[RobotResult],
+    hits: Sequence[Event],
+    events: Sequence[Event],
+    source: HorizonSource,
+    parked: Sequence[str],
+    held: dict[str, Event],
+) -> str:
+    """Say why an episode failed: the first collision, and what the robots that did not arrive were doing."""
+    if not robots:
+        return "there are no robots"
+    reasons = []
+    collided = {robot.name for robot in robots if robot.outcome == "collision"}
+    if hit := _first_collision_message(collided, hits):
+        others = len(collided) - 1
+        reasons.append(hit + (f" (in all {others + 1} robots collided)" if others else ""))
+    views = {view.name: view for view in env.robot_list}
+    late = [robot for robot in robots if robot.outcome == "timeout" and robot.name not in parked]
+    if late:
+        shown = late[:_MAX_NAMED]
+        states = [f"{quoted(robot.name)} {_state(env, views[robot.name], robot, events, held)}" for robot in shown]
+        more = f" and {len(late) - _MAX_NAMED} more robots" if len(late) > _MAX_NAMED else ""
+        reasons.append(f"at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]}) {', '.join(states)}{more}")
+    if still := [robot for robot in robots if robot.outcome == "timeout" and robot.name in parked]:
+        names = listed([quoted(robot.name) for robot in still], _MAX_NAMED)
+        reasons.append(f"{names} {'is' if len(still) == 1 else 'are'} parked (cannot move, no goal written)")
+        if len(reasons) == 1:
+            reasons.append(f"the run ended at {seconds(env.sim_time)} ({_LIMIT_SOURCES[source]})")
+    return "; ".join(reasons)
+
+
+def _first_collision_message(names: set[str], events: Sequence[Event]) -> str | None:
+    first = next((e for e in events if e.kind == "collision" and names & {e.object, str(e.partner)}), None)
+    if first is None:
+        return None
+    place = f"({first.x:.2f}, {first.y:.2f})"
+    return f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)} near {place}"
+
+
+def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Event], held: dict[str, Event]) -> str:
+    """Say what a robot that has not arrived is doing: ``stands still 3.21 m from its goal``."""
+    record = view.record
+    speed = float(np.linalg.norm(view.velocity_xy))
+    standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
+    last = events[-_MAX_EVENTS:]
+    place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
+    if not _is_inside(env, robot):
+        place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
+    if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
+        return f"stands still {place}: there is no path to it"
+    if speed >= standing:
+        if circle := _circling_message(env, view, events):
+            return f"circles its goal: {circle}"
+        if no_progress_since(env.simulation.state.trajectory(view.row)[:, :2], env.step_time, view.max_speed) is None:
+            return f"still moved at {speed:.2g} m/s, {place}"
+        return f"hardly moves {place}{_obstruction_message(env, view, held)}"
+    if record.kinematics is None:
+        return f"has no kinematics, so it stands still {place}"
+    if record.behavior is None and record.group_behavior is None:
+        if not env.scenario.has_written_goal(record):
+            return "has no behavior, so it stands still; no goal is written for it"
+        return f"has no behavior, so it stands still {place}"
+    row = view.row
+    if off := heading_message(record, env.simulation.pose[row], env.simulation.state.goal[row]):
+        return f"stands still {place}: {off}"
+    return f"stands still {place}{_obstruction_message(env, view, held)}"
+
+
+def _obstruction_message(env: Env, view: ObjectView, held: dict[str, Event]) -> str:
+    """Say which object stopped by a collision is in the way of a robot; empty if there is none."""
+    near = find_obstruction(env.simulation, view.row, held) if held else None
+    return f", and {near.message}" if near is not None and near.held else ""
+
+
+def _circling_message(env: Env, view: ObjectView, events: Sequence[Event]) -> str | None:
+    """Describe the circle that a robot drives around its goal; None if it does not."""
+    if view.goal is None or not has_one_end(view.record):
+        return None
+    turns = (e.step for e in reversed(events) if e.kind == "waypoint" and e.object == view.name)
+    track = env.simulation.state.trajectory(view.row)[next(turns, 0) :, :3]
+    circle = find_circling(track, view.goal[:2, 0])
+    return None if circle is None else circle.message
+
+
+def _is_inside(env: Env, robot: RobotResult) -> bool:
+    left, low, right, top = env.scenario.world.bounds
+    return left <= robot.pose[0] <= right and low <= robot.pose[1] <= top

@@ -1,0 +1,60 @@
+"""The command line that reproduces an episode or a picture."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from irsim.episodes.episode import seed_of
+from irsim.scenario.resolve.randomness import random_parts
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+
+__all__ = ["overlay_options", "region_options", "reproduce_command", "strip_options"]
+
+_NO_FILE = "scenario.yaml"
+"""File name in the command of a scenario that is given as text."""
+
+
+def reproduce_command(
+    verb: str,
+    path: str | Path | None,
+    env: Env,
+    steps: int | None,
+    strict: bool,
+    imports: Sequence[str] = (),
+    extra: Sequence[str] = (),
+) -> str:
+    """Write the command line that reproduces an episode; for a scenario without a file it says how to name one.
+
+    It has the seed unless the seed decides nothing and is the default of the command.
+    """
+    words = ["irsim", verb, _NO_FILE if path is None else str(path)]
+    if random_parts(env.scenario) or env.seed != seed_of(env.scenario, None):
+        words += ["--seed", str(env.seed)]
+    if steps is not None:
+        words += ["--steps", str(steps)]
+    if strict:
+        words.append("--strict")
+    for name in imports:
+        words += ["--import", name]
+    text = shlex.join([*words, *extra])
+    return text if path is not None else f"{text}  # the text, saved as {_NO_FILE}"
+
+
+def region_options(region: Sequence[float] | None) -> list[str]:
+    """Return the option of ``irsim render`` for a part of the world."""
+    return [] if region is None else ["--region", *(f"{float(value):g}" for value in region)]
+
+
+def overlay_options(overlays: Sequence[str] | None) -> list[str]:
+    """Return the option of ``irsim render`` for what a picture shows besides bodies."""
+    return [] if overlays is None else ["--overlays", ",".join(overlays)]
+
+
+def strip_options(moments: int | None) -> list[str]:
+    """Return the option of ``irsim render`` for several moments in one picture."""
+    return [] if moments is None else ["--strip", str(moments)]

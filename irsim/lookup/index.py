@@ -1,0 +1,151 @@
+"""Answers that need no search: the index, lists of codes, guides and templates, and single entries of these lists."""
+
+from __future__ import annotations
+
+from irsim.bundled import templates
+from irsim.bundled.templates import Template
+from irsim.compat import DIFFERENCES
+from irsim.diagnostics.codes import CODES, TOOL_CODES, Code
+from irsim.diagnostics.examples import EXAMPLES
+from irsim.lookup.answer import Answer, Key
+from irsim.lookup.guides import GUIDES
+from irsim.lookup.metrics import METRIC_TOPICS
+from irsim.lookup.schema_walk import mappings, yaml_text
+from irsim.options.registry import REGISTRIES, Registry
+from irsim.scenario.model.json_schema import json_schema
+
+__all__ = [
+    "all_codes",
+    "code_answer",
+    "codes_answer",
+    "difference_answer",
+    "guide_answer",
+    "guides_answer",
+    "index_answer",
+    "template_answer",
+    "templates_answer",
+]
+
+
+def index_answer() -> Answer:
+    """Answer an empty topic: the components, templates, guides, metrics and codes."""
+    schema = json_schema()
+    language = max(mappings(schema, schema), key=lambda option: len(option["properties"]))
+    sections = Key(name="scenario", text=", ".join(language["properties"]))
+    kinds = [Key(name=kind, text=_overview(registry)) for kind, registry in sorted(REGISTRIES.items())]
+    return Answer(
+        topic="",
+        kind="index",
+        title="What irsim describe knows",
+        groups={
+            "the scenario and its components": [sections, *kinds],
+            "templates": [Key(name="templates", text=", ".join(templates.names()))],
+            "more": [
+                Key(name="guides", text=", ".join(GUIDES)),
+                Key(name="metrics", text=f"the {len(METRIC_TOPICS)} numbers that measure how good an episode was"),
+                Key(name="codes", text=f"the {len(all_codes())} codes of errors and warnings"),
+            ],
+        },
+        example="irsim describe robot.sensors.lidar2d",
+    )
+
+
+def _overview(registry: Registry) -> str:
+    """List the components of a kind; those that are not simulated come last."""
+    features = registry.features()
+    later = [feature.name for feature in features if not feature.simulated]
+    names = [", ".join(feature.name for feature in features if feature.simulated)]
+    names += [f"not simulated yet: {', '.join(later)}"] if later else []
+    return "; ".join(part for part in names if part)
+
+
+def guides_answer() -> Answer:
+    """List the guides."""
+    lines = [Key(name=name, text=guide.title) for name, guide in GUIDES.items()]
+    return Answer(topic="guides", kind="index", title="Guides", groups={"guides": lines})
+
+
+def guide_answer(name: str, see: list[str]) -> Answer:
+    """Show a guide.
+
+    Args:
+        name: Name of the guide.
+        see: Related topics.
+    """
+    guide = GUIDES[name]
+    title = f"{name}: {guide.title}"
+    return Answer(topic=name, kind="guide", title=title, text=guide.text, example=guide.example, see=see)
+
+
+def difference_answer(name: str) -> Answer:
+    """Explain an intended difference from IR-SIM 2.12.
+
+    Args:
+        name: Number of the difference.
+    """
+    one = DIFFERENCES[name]
+    text = f"IR-SIM 2.12: {one.theirs}. irsim: {one.ours}. Why: {one.why}."
+    return Answer(topic=name, kind="guide", title=f"{name}: an intended difference from IR-SIM 2.12", text=text)
+
+
+def all_codes() -> dict[str, Code]:
+    """Return the codes of findings and of errors outside scenarios."""
+    return {**CODES, **TOOL_CODES}
+
+
+def code_answer(name: str) -> Answer:
+    """Explain a code, with an example if it has one.
+
+    Args:
+        name: The code.
+    """
+    code = all_codes()[name]
+    example = None
+    if name in EXAMPLES:
+        wrong, right = EXAMPLES[name]
+        example = "\n".join([f"# not  {line}" for line in wrong.splitlines()] + right.splitlines())
+    return Answer(
+        topic=name, kind="code", title=f"{name}: {code.title}", text=code.explanation, example=example, see=["codes"]
+    )
+
+
+def codes_answer() -> Answer:
+    """List the codes."""
+    lines = [Key(name=name, text=code.title) for name, code in all_codes().items()]
+    return Answer(topic="codes", kind="index", title="Codes of errors and warnings", groups={"codes": lines})
+
+
+def templates_answer() -> Answer:
+    """List the templates."""
+    lines = [Key(name=template.name, text=template.purpose) for template in templates.load_all()]
+    return Answer(topic="templates", kind="index", title="Templates", groups={"templates": lines})
+
+
+def template_answer(template: Template) -> Answer:
+    """Show a template and its parameters.
+
+    Args:
+        template: The template.
+    """
+    keys = [
+        Key(
+            name=name,
+            type="a name" if parameter.choices else "",
+            unit=parameter.unit,
+            default=yaml_text(parameter.default),
+            allowed=parameter.allowed(),
+            text=parameter.description,
+        )
+        for name, parameter in template.parameters.items()
+    ]
+    first = keys[0] if keys else None
+    setting = f" --set {first.name}={first.default}" if first else ""
+    return Answer(
+        topic=template.name,
+        kind="template",
+        title=f"template {template.name}: {template.title}",
+        text=f"{template.purpose} With the default parameters it ends in {' or '.join(template.outcomes)}.",
+        groups={"parameters": keys},
+        example=f"irsim new {template.name}{setting}",
+        see=["templates"],
+    )

@@ -1,0 +1,154 @@
+"""Answers to free text: the keys of one name, otherwise the topics whose names and texts fit the words best."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import re
+from collections.abc import Sequence
+
+from irsim.bundled import templates
+from irsim.common.text import clean
+from irsim.lookup import full_text
+from irsim.lookup.answer import Answer, Key, TopicError
+from irsim.lookup.guides import GUIDES
+from irsim.lookup.index import all_codes, code_answer
+from irsim.lookup.metrics import METRIC_TOPICS, metric_line
+from irsim.lookup.schema_walk import Node, alternatives, paths, step
+from irsim.lookup.synonyms import EVERYDAY, named
+from irsim.options.registry import REGISTRIES
+
+__all__ = ["MAX_HITS", "all_topics", "near_topics", "search_answer"]
+
+MAX_HITS = 5
+"""Topics that a search shows."""
+_MAX_EVERYDAY = 3
+"""Topics among them that are found by their everyday names."""
+_MAX_NAMESAKES = 20
+"""Keys of one name that are shown."""
+_MIN_LIKENESS = 0.8
+"""Similarity (0 to 1) from which on a name is suggested, or ends a search."""
+_MAX_CHOICES = 12
+"""Number of allowed words up to which they can be searched; longer lists (colours) cannot."""
+
+
+def search_answer(schema: Node, topic: str, words: list[str]) -> Answer:
+    """Answer free text: with all keys of that name if there are any, otherwise with what fits the words best.
+
+    Args:
+        schema: JSON Schema of the language.
+        topic: The text.
+        words: Its words.
+
+    Raises:
+        TopicError: Nothing fits, or a name is so similar that the text is probably a misspelling of it.
+    """
+    wanted = " ".join(words).lower()
+    keys = [(_hit(path, node), node) for path, node in paths(schema) if path[0] != "obstacle"]  # robots have the same
+    keys.sort(key=lambda found: len(found[0].name))
+    same = [hit for hit, _ in keys if _last(hit) == wanted]
+    if same:
+        return _hits_answer(wanted, same[:_MAX_NAMESAKES], f"{len(same)} keys are called '{clean(wanted)}'")
+    code = next((name for name in all_codes() if sorted(name.split("-")) == sorted(re.split(r"[\s_-]+", wanted))), None)
+    if code is not None:
+        return code_answer(code)
+    topics, (documents, lines) = all_topics(schema), _documents(schema, keys)
+    metrics = [full_text.Document(name, f"{m.key} metric", m.text) for name, m in METRIC_TOPICS.items()]
+    lines |= {name: Key(name=name, text=metric_line(metric)) for name, metric in METRIC_TOPICS.items()}
+    found, unknown = full_text.best(documents, topic)
+    if not found or not full_text.best(metrics, topic)[1]:  # without a word of their own, metrics are not meant
+        found, unknown = full_text.best(documents + metrics, topic)
+    called = named(topic)
+    unknown = [word for word in unknown if not any(word in full_text.words_of(EVERYDAY[name]) for name in called)]
+    if not (called or found) or (unknown and difflib.get_close_matches(".".join(words), topics, 1, _MIN_LIKENESS)):
+        raise TopicError(topic, near_topics(topics, words))
+    lines |= {name: _line_of(schema, name) for name in called}
+    hits = [lines[name] for name in dict.fromkeys([*called[:_MAX_EVERYDAY], *found])][:MAX_HITS]
+    return _hits_answer(
+        wanted,
+        hits,
+        f"{len(hits)} topics fit '{clean(wanted)}' best" if len(hits) > 1 else f"About '{clean(wanted)}'",
+        unknown,
+    )
+
+
+def _hits_answer(wanted: str, hits: list[Key], title: str, unknown: Sequence[str] = ()) -> Answer:
+    text = f"Nothing about {', '.join(map(repr, map(clean, unknown)))}." if unknown else ""
+    return Answer(topic=clean(wanted), kind="search", title=title, text=text, groups={"topics": hits})
+
+
+def _documents(schema: Node, keys: list[tuple[Key, Node]]) -> tuple[list[full_text.Document], dict[str, Key]]:
+    """Return everything that can be searched, and the line that is shown of each."""
+    documents, lines = [], {}
+
+    def add(name: str, line: str, heads: str, text: str) -> None:
+        documents.append(full_text.Document(name, heads, text))
+        lines[name] = Key(name=name, text=_one_sentence(line))
+
+    for name, guide in GUIDES.items():
+        add(name, guide.title, f"{name} {guide.title} {' '.join(guide.words)}", guide.text)
+    for template in templates.load_all():
+        add(
+            template.name,
+            template.purpose,
+            f"{template.name} {template.title} {' '.join(template.tags)}",
+            template.purpose,
+        )
+    for name, code in all_codes().items():
+        add(name, code.title, f"{name} {code.title}", code.explanation)
+    known: set[tuple[str, str]] = set()
+    for hit, node in keys:
+        if (_last(hit), hit.text) not in known:
+            known.add((_last(hit), hit.text))
+            choices = " ".join(map(str, _choices(schema, node)))
+            add(hit.name, hit.text, _last(hit), f"{hit.text} {choices} {hit.name}")
+    return documents, lines
+
+
+def _one_sentence(text: str) -> str:
+    return re.split(r"(?<=[.])\s", text, maxsplit=1)[0]
+
+
+def _choices(schema: Node, node: Node) -> list[object]:
+    """Return the allowed words of a key; none if they are many."""
+    values = [value for option in alternatives(schema, node) for value in option.get("enum", [])]
+    return values if len(values) <= _MAX_CHOICES else []
+
+
+def _hit(path: tuple[str, ...], node: Node) -> Key:
+    return Key(name=".".join(path), text=" ".join(str(node.get("description", "")).split()))
+
+
+def _line_of(schema: Node, name: str) -> Key:
+    """Return the line of a guide, or of a path of the language, even if another path has the same text."""
+    if name in GUIDES:
+        return Key(name=name, text=GUIDES[name].title)
+    [node, *_] = functools.reduce(lambda nodes, word: step(schema, nodes, word), name.split("."), [schema])
+    return Key(name=name, text=_one_sentence(_hit((), node).text))
+
+
+def _last(hit: Key) -> str:
+    return hit.name.rpartition(".")[2].lower()
+
+
+def near_topics(topics: set[str], words: list[str]) -> list[str]:
+    """Return topics with similar names: paths with one word corrected, otherwise the most similar last words."""
+    near = difflib.get_close_matches(".".join(words), topics, 3, _MIN_LIKENESS)
+    if not near:
+        by_last: dict[str, str] = {}
+        for topic in sorted(topics, key=len):
+            by_last.setdefault(topic.rpartition(".")[2], topic)
+        near = [by_last[name] for name in difflib.get_close_matches(words[-1], by_last, 3, 0.75)]
+    return near
+
+
+def all_topics(schema: Node) -> set[str]:
+    """Return the names of all topics."""
+    return {
+        *(".".join(path) for path, _ in paths(schema)),
+        *all_codes(),
+        *templates.names(),
+        *GUIDES,
+        *METRIC_TOPICS,
+        *(f"{r.kind}.{n}" for r in REGISTRIES.values() for n in r.names()),
+    }

@@ -1,0 +1,124 @@
+"""The typed result of ``irsim.benchmark``: its episodes, and their summary by scenario and behavior."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from irsim.results.base import Result
+from irsim.results.findings import Finding
+
+__all__ = ["BenchmarkResult", "BenchmarkRow", "EpisodeRow", "Estimate", "Proportion"]
+
+
+class Proportion(Result):
+    """A share of episodes."""
+
+    count: int
+    """Number of episodes in which it happened."""
+    n: int
+    """Number of all episodes."""
+    rate: float
+    """``count / n``."""
+    low: float | None
+    """Lower end of the 95 % interval (Wilson); None where nothing is random, because the share is then exact."""
+    high: float | None
+    """Upper end of the interval."""
+
+
+class Estimate(Result):
+    """A metric over episodes. Episodes in which it is undefined are left out."""
+
+    n: int
+    """Number of episodes in which it is defined."""
+    mean: float | None = None
+    """Mean; None without such episodes."""
+    std: float | None = None
+    """Sample standard deviation; None for fewer than two episodes."""
+    low: float | None = None
+    """Lower end of the 95 % interval of the mean, by bootstrap (10,000 resamples, always the same draws); for metrics
+    that are 0 or 1 by Wilson, and None where nothing is random; for differences of shares see ``paired``."""
+    high: float | None = None
+    """Upper end of the interval."""
+
+
+class BenchmarkRow(Result):
+    """One scenario under one behavior, over all seeds."""
+
+    scenario: str
+    """The file; ``(all)`` for all files together, if each has the same number of episodes, and that number is above
+    one or there are at least ten files."""
+    behavior: str
+    """The robots' behavior, or ``as-written``."""
+    episodes: int
+    """Number of episodes."""
+    success: Proportion
+    """Every robot reached its goal without a collision before."""
+    collision: Proportion
+    """A robot was stopped by a collision, or arrived after one."""
+    timeout: Proportion
+    """Neither, when the time limit was reached."""
+    metrics: dict[str, Estimate]
+    """Metrics of the episodes by key: ``time_to_goal`` [s], ``path_length`` [m], ``velocity_avg`` [m/s], …"""
+    paired: dict[str, Estimate] = Field(default_factory=dict)
+    """Differences to the first behavior, paired by scenario and seed; ``success``, ``collision`` and ``timeout`` are
+    among them. The intervals of these three are Newcombe's for paired shares, which hold even where all pairs
+    agree."""
+    failed: dict[str, list[int]] = Field(default_factory=dict)
+    """Seeds that ended in ``collision`` and in ``timeout``; empty for ``(all)``."""
+    failures: dict[str, int] = Field(default_factory=dict)
+    """Number of episodes by failing robot and kind of failure, the ten most frequent: ``'car': timeout``; empty for
+    ``(all)``."""
+
+
+class EpisodeRow(Result):
+    """One episode of a benchmark."""
+
+    scenario: str
+    """The file."""
+    behavior: str
+    """The robots' behavior, or ``as-written``."""
+    seed: int
+    """Its seed."""
+    outcome: Literal["success", "collision", "timeout"]
+    """As in :class:`RunResult`."""
+    steps: int
+    """Number of executed steps."""
+    sim_time: float
+    """Simulated time [s]."""
+    time_limit: float
+    """Horizon [s]."""
+    unreachable: int
+    """Number of robots for which no path to their goal was found."""
+    failures: dict[str, str]
+    """How the first ten unsuccessful robots failed, by name: ``timeout``, or ``collision with 'crate'``."""
+    metrics: dict[str, float | None]
+    """Metrics of the episode by key; None where undefined."""
+
+
+class BenchmarkResult(Result):
+    """What ``irsim benchmark`` found."""
+
+    scenarios: list[str]
+    """The files."""
+    behaviors: list[str]
+    """The behaviors; differences are to the first."""
+    seeds: list[int]
+    """The seeds, the same for all."""
+    step_time: dict[str, float]
+    """Period of each scenario [s]: metrics are sampled at every step."""
+    random: dict[str, list[str]]
+    """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
+    rows: list[BenchmarkRow]
+    """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes."""
+    episodes: list[EpisodeRow]
+    """Every episode."""
+    notes: list[str]
+    """Remarks that matter for reading the numbers."""
+    warnings: dict[str, list[Finding]]
+    """Warnings about the scenarios."""
+    version: str
+    """Version of irsim."""
+    reproduce: str
+    """Command that reproduces this result."""

@@ -1,0 +1,114 @@
+"""The typed results of ``irsim.render`` and ``irsim.api.snapshot``: pictures, and the poses in them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from irsim.results.base import Result
+from irsim.results.findings import Finding
+
+__all__ = ["MovingPose", "RenderResult", "RobotPlan", "RobotPose", "SnapshotResult"]
+
+
+class RenderResult(Result):
+    """What ``irsim render`` drew."""
+
+    scenario: str
+    """The file."""
+    seed: int
+    """Seed that was used."""
+    steps: int
+    """Number of executed steps."""
+    frames: int
+    """Number of pictures drawn."""
+    size: tuple[int, int]
+    """Width and height [px]."""
+    files: list[str]
+    """Files written."""
+    warnings: list[Finding]
+    """Warnings about the scenario."""
+    reproduce: str
+    """Command that reproduces this result."""
+
+
+class RobotPose(Result):
+    """Where a robot is in a snapshot."""
+
+    name: str
+    label: str
+    """Its label in the picture; its goal's label is the same with the prefix ``G-``."""
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad]."""
+    goal: tuple[float, float] | None
+    """Present goal [m]; None without one."""
+    status: Literal["under way", "arrived", "collided"]
+    """Its state at that moment."""
+
+
+class MovingPose(Result):
+    """Where a moving obstacle is in a snapshot."""
+
+    name: str
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad]."""
+    velocity: tuple[float, float]
+    """Velocity along x and y of the world [m/s]; an omni drive need not move in the direction of its heading."""
+
+
+class RobotPlan(Result):
+    """The path that a robot would take through its goals."""
+
+    name: str
+    label: str
+    """Its label in the picture."""
+    own: bool
+    """Whether the robot's own behavior planned it; otherwise it is a shortest path round everything static, which the
+    robot itself may not know."""
+    length: float
+    """Length of the path, as far as one was found [m]."""
+    margin: float | None
+    """Smallest distance, approximately, between a disc inside the robot's body and anything static [m]; None if
+    nothing is static."""
+    tightest: tuple[float, float]
+    """Position of that smallest distance [m]."""
+    lost: tuple[float, float] | None
+    """First goal that it cannot reach [m]; None if it reaches all of them."""
+
+
+class SnapshotResult(Result):
+    """What ``irsim.api.snapshot`` drew."""
+
+    scenario: str
+    """The file, or ``(text)``."""
+    seed: int
+    """Seed that was used."""
+    random: list[str]
+    """What the seed decides; empty if every seed gives the same run."""
+    steps: int
+    """Number of executed steps."""
+    sim_time: float
+    """Simulated time [s]."""
+    extent: tuple[float, float, float, float]
+    """Bounds of the world [m]: x_min, x_max, y_min, y_max."""
+    obstacles: int
+    """Number of obstacles from entries, without the boundary and the map."""
+    contents: str
+    """The obstacles in words, with the boundary and the map."""
+    robots: list[RobotPose]
+    """One entry per robot."""
+    moving: list[MovingPose]
+    """One entry per obstacle that can move."""
+    moments: list[int] = []
+    """Steps in the picture, from left to right and top to bottom, if it shows several."""
+    plans: list[RobotPlan] = []
+    """Planned paths of the robots, if requested."""
+    size: tuple[int, int]
+    """Width and height [px]."""
+    warnings: list[Finding]
+    """Warnings about the scenario."""
+    reproduce: str
+    """Command that draws the same picture."""
+    png: bytes = Field(default=b"", exclude=True, repr=False)
+    """The picture."""

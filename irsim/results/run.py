@@ -1,0 +1,176 @@
+"""The typed results of a run: of ``irsim.run``, and of ``irsim inspect`` and ``irsim replay`` from its record."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from irsim.results.base import Result
+from irsim.results.findings import Finding
+
+__all__ = ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable"]
+
+HorizonSource = Literal["argument", "scenario", "default", "limits"]
+"""Where the time limit of a run comes from."""
+
+
+class EventRecord(Result):
+    """Something that happened in an episode."""
+
+    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path."""
+    time: float
+    """Simulated time [s]."""
+    step: int
+    """Steps executed; 0 is the initial state."""
+    object: str
+    """Name of the object; in a collision, of the first of the two."""
+    partner: str | None
+    """Name of the other object in a collision."""
+    x: float
+    """Position of the object [m]."""
+    y: float
+    """Position of the object [m]."""
+
+
+class Left(Result):
+    """An object that left the world."""
+
+    name: str
+    time: float
+    """Time when it left [s]."""
+    x: float
+    y: float
+
+
+class RobotResult(Result):
+    """How the episode ended for one robot."""
+
+    name: str
+    outcome: Literal["success", "collision", "timeout"]
+    """``success``: arrived without a collision before; ``collision``: stopped by one, or arrived after one;
+    ``timeout``: neither."""
+    time_to_goal: float | None
+    """Time of first arrival [s]; None when it never arrived."""
+    collision_count: int
+    """Number of contacts that began."""
+    infeasible_steps: int | None = None
+    """Steps in which its behavior found no velocity that avoids all others (only ``orca`` reports this); None
+    if there were none."""
+    path_length: float
+    """Distance travelled until the end of the run [m]."""
+    distance_to_goal: float | None
+    """Distance to the present goal at the end [m]; None without a goal."""
+    min_clearance: float | None = None
+    """Smallest distance, edge to edge, to anything it could hit, until it arrived [m]; negative: overlap; None if
+    there is nothing to hit, and in runs of more than two million poses."""
+    nearest: str | None = None
+    """Name of that nearest object."""
+    pose: tuple[float, float, float]
+    """x, y [m] and heading [rad] at the end."""
+
+
+class RunResult(Result):
+    """What ``irsim run`` did."""
+
+    scenario: str
+    """The file."""
+    seed: int
+    """Seed that was used."""
+    random: list[str]
+    """What the seed decides; empty if every seed gives the same run."""
+    behavior: str | None = None
+    """Behavior of every robot instead of its own; None: the scenario as written."""
+    outcome: Literal["success", "collision", "timeout"]
+    """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
+    summary: str
+    """One sentence: which robots arrived, which did not, and why."""
+    reason: str | None = None
+    """Why the run failed: the first collision, and what robots that did not arrive were doing; None on success."""
+    steps: int
+    """Number of executed steps."""
+    sim_time: float
+    """Simulated time [s]."""
+    time_limit: float
+    """Time limit [s]: from the file, from ``--steps``, or max(30 s, 4 x longest path / top speed)."""
+    time_limit_from: HorizonSource
+    """Where the time limit comes from; ``limits``: cut to the maximum number of steps of one run."""
+    robots: list[RobotResult]
+    """One entry per robot."""
+    parked: list[str] = Field(default_factory=list)
+    """Robots that cannot move and have no goal of their own; they never arrive."""
+    jammed: list[str] = Field(default_factory=list)
+    """Moving obstacles that a collision with another obstacle has stopped."""
+    left: list[Left] = Field(default_factory=list)
+    """The first moving objects whose position left the world; ``world.boundary: walls`` keeps objects in."""
+    events: list[EventRecord]
+    """The first events, in order; repeated arrivals of an object at the same goal count once."""
+    event_count: int
+    """Number of such events."""
+    warnings: list[Finding]
+    """Warnings about the scenario."""
+    files: list[str] = Field(default_factory=list)
+    """Files written."""
+    version: str
+    """Version of irsim."""
+    reproduce: str
+    """Command that reproduces this result."""
+    run_id: str | None = None
+    """Id of the recorded run, for ``irsim inspect``; None if it was not recorded."""
+    artifacts: dict[str, str] = Field(default_factory=dict)
+    """Files of the record by name."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record leaves out because there was too much of it."""
+
+
+class RunTable(Result):
+    """What ``irsim inspect`` found in a recorded run."""
+
+    run_id: str
+    """Id of the run."""
+    status: Literal["running", "finished", "cancelled", "interrupted"]
+    """``interrupted``: cut short, no process writes it any more; the table shows what was recorded."""
+    outcome: Literal["success", "collision", "timeout"] | None
+    """How it ended; None if it has no result."""
+    summary: str
+    """One sentence about the run."""
+    view: str
+    """What the table shows."""
+    columns: list[str]
+    """Names of the columns; lengths in m, times in s, angles in rad."""
+    rows: list[list[float | int | str | bool | None]]
+    """The rows."""
+    total: int
+    """Number of rows on all pages together."""
+    every: int
+    """Every Nth step is shown."""
+    from_step: int
+    """First step of the table."""
+    to_step: int
+    """Last step of the table."""
+    next_cursor: str | None
+    """Cursor of the next page; None on the last one."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record, and so the table, leaves out because there was too much of it."""
+
+
+class ReplayResult(Result):
+    """The page that ``irsim replay`` wrote."""
+
+    run_id: str
+    """Id of the run it shows."""
+    file: str
+    """The page."""
+    bytes: int
+    """Size of the page [bytes]."""
+    objects: int
+    """Number of robots and obstacles in it."""
+    last_step: int
+    """Last step in it."""
+    every: int
+    """It shows every Nth step; 1: all."""
+    scans: Literal["none", "recorded", "computed"]
+    """Whether scans are taken from the record, or computed in the page from the shapes it draws."""
+    notes: list[str] = Field(default_factory=list)
+    """What the record leaves out because there was too much of it."""

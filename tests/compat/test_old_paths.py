@@ -1,0 +1,132 @@
+"""The module paths of IR-SIM 2.12, from one table: imports, identity, `dir`, pickles, `python -m`, stubs, freezing."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import irsim
+from irsim.compat.finder import OldPathFinder
+from irsim.compat.names import reference_names
+from irsim.compat.paths import NAMES, SAME, old_paths
+from irsim.compat.stubs import stub_files
+
+PACKAGES = sorted({path for path in old_paths() if any(other.startswith(f"{path}.") for other in old_paths())})
+
+
+def run(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("path", sorted(SAME))
+def test_another_name_is_the_same_module(path: str) -> None:
+    assert importlib.import_module(path) is importlib.import_module(SAME[path])
+    assert importlib.import_module(SAME[path]).__spec__.name == SAME[path]
+
+
+@pytest.mark.parametrize("path", sorted(NAMES))
+def test_a_module_of_names_gives_and_lists_each_of_them(path: str) -> None:
+    module = importlib.import_module(path)
+    for name, home in NAMES[path].items():
+        where, _, name_there = home.partition(":")
+        assert getattr(module, name) is getattr(importlib.import_module(where), name_there or name)
+    assert set(NAMES[path]) <= set(dir(module))
+    assert set(module.__all__) == set(NAMES[path])
+    with pytest.raises(AttributeError, match="nonsense"):
+        _ = module.nonsense
+
+
+def test_no_old_path_has_a_file() -> None:
+    folder = Path(irsim.__file__).parent
+    below = {path.removeprefix("irsim.").replace(".", "/") for path in old_paths()}
+    assert [name for name in sorted(below) if (folder / name).is_dir() or (folder / f"{name}.py").is_file()] == []
+
+
+def test_every_module_of_the_reference_is_found_or_known_to_be_absent() -> None:
+    from irsim.compat.differences import ABSENT
+
+    modules = {place.partition(":")[0] for place in reference_names()}
+    missing = [name for name in sorted(modules - ABSENT.keys()) if importlib.util.find_spec(name) is None]
+    assert missing == []
+
+
+@pytest.mark.parametrize(
+    "package",
+    ["irsim", "irsim.api", "irsim.benchmarks", "irsim.env", "irsim.gui", "irsim.metrics", "irsim.msg", "irsim.results",
+     "irsim.rendering", "irsim.runs", *PACKAGES],
+)  # fmt: skip
+def test_packages_list_what_they_offer(package: str) -> None:
+    code = f"import importlib; m = importlib.import_module({package!r}); print(set(m.__all__) <= set(dir(m)))"
+    assert run(code) == "True"
+
+
+def test_packages_and_modules_are_attributes_without_being_imported() -> None:
+    code = (
+        "import irsim\nprint(irsim.lib.handler.kinematics_handler.KinematicsFactory.__name__, "
+        "irsim.world.map.obstacle_map.ObstacleMap.__name__, irsim.util.util.WrapToPi(0.0), "
+        "irsim.env.env_plot.EnvPlot.__name__, irsim.config.env_param.platform_name != '')"
+    )
+    assert run(code) == "KinematicsFactory ObstacleMap 0.0 EnvPlot True"
+
+
+def test_a_function_and_a_module_of_one_name() -> None:
+    code = (
+        "import irsim.lib.algorithm.social_force_model\nfrom irsim.lib.algorithm import social_force_model as f\n"
+        "print(callable(f), irsim.lib.algorithm.social_force_model is f)"
+    )
+    assert run(code) == "True True"
+
+
+def test_there_is_one_finder_and_it_answers_for_listed_paths_only() -> None:
+    importlib.reload(irsim)
+    finders = [finder for finder in sys.meta_path if type(finder).__name__ == "OldPathFinder"]
+    assert len(finders) == 1
+    assert OldPathFinder().find_spec("irsim.world.nothing") is None
+    assert OldPathFinder().find_spec("other.world") is None
+    with pytest.raises(ModuleNotFoundError):
+        importlib.import_module("irsim.world.nothing")
+
+
+def test_pickles_name_either_path() -> None:
+    from irsim.world.sensors.lidar2d import Lidar2D
+
+    assert pickle.loads(pickle.dumps(Lidar2D)) is Lidar2D
+    old = b"cirsim.world.sensors.lidar2d\nLidar2D\n."
+    assert pickle.loads(old) is Lidar2D
+
+
+def test_reload_keeps_the_module() -> None:
+    module = importlib.import_module("irsim.lib.algorithm.rvo")
+    assert importlib.reload(module) is importlib.import_module("irsim.functions.rvo")
+
+
+@pytest.mark.parametrize("path", ["irsim.lib.path_planners.a_star", "irsim.lib.algorithm.rvo", "irsim.world.world"])
+def test_old_paths_run_as_programs(path: str) -> None:
+    subprocess.run([sys.executable, "-W", "error", "-m", path], check=True, timeout=60)
+
+
+def test_stubs_have_each_path_and_name_existing_homes() -> None:
+    files = stub_files(SAME, NAMES)
+    assert files["py.typed"] == "partial\n"
+    assert len(files) == 1 + len(old_paths())
+    for text in files.values():
+        for line in text.splitlines():
+            if line.startswith("from "):
+                _, module, _, *names = line.split()
+                found = importlib.import_module(module)
+                assert names[0] == "*" or hasattr(found, names[0]), line
+
+
+def test_freezing_programs_are_told_where_the_hook_is() -> None:
+    from irsim.compat.freezing import hook_folders
+
+    (folder,) = hook_folders()
+    text = Path(folder, "hook-irsim.py").read_text(encoding="utf-8")
+    assert "hiddenimports" in text
