@@ -10,8 +10,8 @@ from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import ArgumentError
 
 if TYPE_CHECKING:
+    from irsim.common.arrays import Floats
     from irsim.env import Env
-    from irsim.graphics.scene.scene import Floats
     from irsim.rendering.planned_paths import PlannedPath
     from irsim.rendering.snapshot import Extra
     from irsim.results.picture import RobotPlan

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
+from irsim.common.arrays import Floats
 from irsim.common.files import check_suffix, write_new
 from irsim.components.maps._rosmap import MODES, RosMeta, pixels_of, ros_raster
 from irsim.components.maps._site import MapProblem, MapSite
@@ -24,7 +24,6 @@ from irsim.simulation.simulation import Simulation
 
 __all__ = ["MODES", "MapFileError", "MapFiles", "export_map", "import_map"]
 
-Floats = NDArray[np.float64]
 _MAX_ASPECT_ERROR = 1e-6
 """Share by which the sides of a cell may differ for it to count as square."""
 

@@ -20,6 +20,7 @@ from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
 from irsim.common.arguments import as_given, check_whole_number
+from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
@@ -134,8 +135,6 @@ def benchmark(
 
     rank = {seed: position // _SEEDS_PER_TURN for position, seed in enumerate(chosen)}
     turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
-    from irsim import __version__
-
     head = BenchmarkResult(
         scenarios=names,
         behaviors=wanted,
@@ -146,7 +145,7 @@ def benchmark(
         episodes=[],
         notes=[],
         warnings=warnings,
-        version=__version__,
+        version=version(),
         reproduce=_command(names, wanted, chosen, steps, strict, imports),
     )
 

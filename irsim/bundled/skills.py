@@ -34,7 +34,7 @@ Action = Literal["installed", "updated", "unchanged", "kept"]
 
 
 class SkillError(CodedError, ValueError):
-    """The package has no such skill."""
+    """The name of a skill is unknown."""
 
 
 class PlaceError(CodedError, OSError):
@@ -145,7 +145,7 @@ def _check_place(place: Path) -> None:
         if path.is_symlink():
             target = os.readlink(path)
             what = f"'{path}' is a link to '{target}', which is not a folder"
-            raise PlaceError("file-access", what, f"make that folder, or remove the link: rm '{path}'")
+            raise PlaceError("file-access", what, f"create that folder, or remove the link: rm '{path}'")
         raise PlaceError("file-access", f"'{path}' is a file where a folder must be", "move it away")
 
 

@@ -129,7 +129,7 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
 
 
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
-    """max(30 s, 4 x the longest way from start over its goals / that robot's top speed) [s]."""
+    """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s."""
     longest = 0.0
     for view in env.robot_list:
         points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]

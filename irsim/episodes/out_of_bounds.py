@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.common.text import quoted, seconds
 from irsim.results.run import Left
 
@@ -18,8 +18,6 @@ __all__ = ["MAX_LISTED_EXITS", "exits_message", "find_exits"]
 
 MAX_LISTED_EXITS = 10
 """Number of exits that a result lists one by one."""
-
-Floats = NDArray[np.float64]
 
 
 def find_exits(scenario: ResolvedScenario, track: Callable[[int], Floats], steps: int) -> list[Left]:

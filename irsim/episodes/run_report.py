@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.version import version
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.reproduce import reproduce_command
@@ -59,8 +60,6 @@ def run_result(
         strict: Whether the scenario was read strictly.
         behavior: Behavior that every robot had instead of its own.
     """
-    from irsim import __version__
-
     events = env.events
     hits, counts = _collisions(env, events)
     listed = _without_repeats(env.scenario, events)
@@ -96,7 +95,7 @@ def run_result(
         event_count=len(listed),
         warnings=warnings,
         files=files,
-        version=__version__,
+        version=version(),
         reproduce=reproduce_command("run", path, env, given, strict, imports, extra),
     )
 

@@ -121,10 +121,10 @@ def jam_message(simulation: Simulation, held: dict[str, Event]) -> str | None:
         return None
     count = sum(is_moving_obstacle(record) for record in simulation.scenario.objects)
     first = min(held.values(), key=lambda event: event.step)
-    whom = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
+    hit = f"{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
     return (
         f"{len(held)} of {count} moving obstacle{'s' * (count != 1)} {'was' if len(held) == 1 else 'were'} stopped by "
-        f"a collision ({'first ' * (len(held) > 2)}{whom}): collision_mode: unobstructed_obstacles lets them go on"
+        f"a collision ({'first ' * (len(held) > 2)}{hit}): collision_mode: unobstructed_obstacles lets them go on"
     )
 
 

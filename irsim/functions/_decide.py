@@ -9,10 +9,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.options.registry import BEHAVIORS, KINEMATICS, SHAPES
 from irsim.scenario.open import or_raise
 from irsim.scenario.read import read
@@ -21,7 +21,6 @@ from irsim.simulation.build import build_world
 
 __all__ = ["Agent", "behavior_options", "dash", "decide"]
 
-Floats = NDArray[np.float64]
 PADDING = 0.1
 """What IR-SIM adds to radii that avoidance laws see [m]."""
 _FAR = 100.0

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.simulation.active_env import current_rng
 
 __all__ = [
@@ -19,7 +19,6 @@ __all__ = [
     "omni_kinematics",
 ]
 
-Floats = NDArray[np.float64]
 _DEFAULT_ALPHA = [0.03, 0.0, 0.0, 0.03]
 """Default noise coefficients of differential and Ackermann drives."""
 

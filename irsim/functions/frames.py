@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from irsim.common.angles import FULL_TURN, wrap
+from irsim.common.arrays import Floats
 
 __all__ = [
     "ClipTo2Pi",
@@ -29,8 +29,6 @@ __all__ = [
     "vel_world2omni",
     "vertices_transform",
 ]
-
-Floats = NDArray[np.float64]
 
 
 def _flat(values: Any) -> Floats:

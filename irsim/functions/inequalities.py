@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 __all__ = ["polygon_inequality"]
-
-Floats = NDArray[np.float64]
 
 
 def polygon_inequality(points: Floats, straight: float = 0.0) -> tuple[Floats, Floats] | None:

@@ -11,13 +11,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.simulation.active_env import current_rng
 
 __all__ = ["generate_polygon", "random_generate_polygon"]
-
-Floats = NDArray[np.float64]
 
 
 def generate_polygon(

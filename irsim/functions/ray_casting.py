@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
+
 __all__ = ["cast_ray_segments", "cast_rays"]
 
-Floats = NDArray[np.float64]
 MIN_RANGE_M = 1e-9
 """Hits nearer than this do not count [m]."""
 

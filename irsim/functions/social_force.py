@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.functions._decide import behavior_options, decide
 
 __all__ = ["SocialForceModelBatch", "social_force_model"]
 
-Floats = NDArray[np.float64]
 _UNLIMITED_SPEED_M_S = 1e9
 _FORCE_PERIOD_S = 1e-3
 """Period [s] over which a force is measured as a change of velocity."""

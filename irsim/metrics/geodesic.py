@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Geodesics", "inscribed_radius"]
 
-Floats = NDArray[np.float64]
 _MAX_CELL_M = 0.05
 """Largest cell [m]; cells are half the radius of the disc where that is less."""
 _MAX_CELLS = 250_000
@@ -52,7 +51,7 @@ class Geodesics:
         self._terrains: dict[tuple[float, float, float, float], core.Terrain] = {}
         self._known: dict[Any, Floats | None] = {}
 
-    def way(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> Floats | None:
+    def path(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> Floats | None:
         """Find the shortest path of a disc.
 
         Args:
@@ -75,8 +74,8 @@ class Geodesics:
         return self._known[key]
 
     def length(self, start: Floats, goal: Floats, radius: float, *, coarse: bool = False) -> float:
-        """Length of :meth:`way` [m]; NaN if there is no path."""
-        way = self.way(start, goal, radius, coarse=coarse)
+        """Length of :meth:`path` [m]; NaN if there is no path."""
+        way = self.path(start, goal, radius, coarse=coarse)
         return math.nan if way is None else float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
     def _search(self, line: Floats, radius: float, larger: float = 1.0) -> Floats | None:

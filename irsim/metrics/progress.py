@@ -55,7 +55,7 @@ def progress_metrics(track: Track, geodesics: Geodesics, radius: float) -> tuple
     goals = _goals(track)
     if not len(goals):
         return found | dict.fromkeys(("spl", "stl", "barn_score", "failure_to_progress"), nan), []
-    ways = [geodesics.way(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
+    ways = [geodesics.path(a, b, radius) for a, b in zip([track.position[0], *goals[:-1]], goals, strict=True)]
     if any(way is None for way in ways):
         return found | dict.fromkeys(("spl", "stl", "barn_score"), nan), [UNREACHABLE]
     if track.arrival is None:

@@ -7,8 +7,8 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.components.behaviors.sfm import Sfm
 from irsim.metrics.roles import HUMAN, STATIC
 from irsim.metrics.trajectory import Track
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["group_gaps", "obstacle_force", "social_forces", "social_metrics"]
 
-Floats = NDArray[np.float64]
 _GROUP_MARGIN_M = 0.45
 """Distance [m] by which the space of a group extends beyond its members."""
 _EQUAL_SHARE = 0.1

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.angles import wrap
+from irsim.common.arrays import Floats
 from irsim.metrics.roles import HUMAN, kinds_of, social_groups
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HOLONOMIC", "Track", "thin_path", "tracks"]
 
-Floats = NDArray[np.float64]
 HOLONOMIC = ("omni", "omni_angular")
 """Drives that need not turn to move in another direction."""
 _POINT_SPACING_M = 0.05

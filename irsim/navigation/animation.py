@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["draw_search"]
+from irsim.common.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["draw_search"]
 
 
 def draw_search(

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.navigation.outlines import body_parts, parts_of
@@ -17,7 +16,6 @@ from irsim.simulation.occupancy import OCCUPIED, grid_occupied
 
 __all__ = ["OCCUPIED", "EnvGridMap", "Map", "coarsen", "terrain_of", "world_map"]
 
-Floats = NDArray[np.float64]
 MAX_EQUAL_RATIO = 1.05
 """A resolution up to this many times that of the grid of the world counts as equal to it."""
 MIN_EQUAL_RATIO = 0.95

@@ -6,14 +6,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.geometry import ObjectBody
 
 __all__ = ["body_parts", "parts_of", "placed_parts"]
-
-Floats = NDArray[np.float64]
 
 
 def parts_of(thing: Any) -> list[Any]:

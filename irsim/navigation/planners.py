@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.navigation.map import EnvGridMap, cells_of, footprint_of, terrain_of
 from irsim.simulation.random_streams import check_seed, fresh_seed
 
 __all__ = ["RRT", "AStarPlanner", "InformedRRTStar", "JPSPlanner", "PRMPlanner", "PathNode", "PathPlanner", "RRTStar"]
 
-Floats = NDArray[np.float64]
 _DRAWS_PER_CALL = 2**40
 """Distance in the random stream between the first draws of two calls, so that calls never share draws."""
 _MIN_POINT_NUMBERS = 2

@@ -10,7 +10,8 @@ import numpy as np
 from contourpy import FillType, LineType, contour_generator
 
 import irsim._core as core
-from irsim.graphics.scene.scene import Bounds, Floats, Label, Line, Mark, Region, Scene, Stroke
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.scene import Bounds, Label, Line, Mark, Region, Scene, Stroke
 from irsim.metrics.geodesic import inscribed_radius
 from irsim.metrics.roles import STATIC, kinds_of
 from irsim.navigation.outlines import placed_parts

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.palette import Color
-from irsim.graphics.scene.scene import Floats, Label, Line, Mark, Scene, Stroke
+from irsim.graphics.scene.scene import Label, Line, Mark, Scene, Stroke
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
 from irsim.objects.views import views
 from irsim.rendering.clearance_map import FreeSpace
@@ -134,7 +135,7 @@ def _shortest_path(
     for radius in dict.fromkeys(radii):
         if clearance <= radius - _CLEARANCE_TOLERANCE_M:
             continue
-        path = geodesics.way(start, goal, radius, coarse=True)
+        path = geodesics.path(start, goal, radius, coarse=True)
         if path is not None:
             return np.concatenate([[start], path[1:-1], [goal]])  # its ends are only the centres of cells
     return None

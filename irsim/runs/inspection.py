@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import nearest
 from irsim.metrics import approaches
@@ -35,7 +35,6 @@ _NOT_RECORDED = "not recorded"
 _MAX_PARTNERS = 5
 """Number of objects of each kind that ``closest`` lists for one object."""
 Cell = float | int | str | bool | None
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -115,7 +115,7 @@ def _one_of(name: str, value: str, choices: list[str]) -> None:
     if value not in choices:
         near = nearest(value, choices)
         fix = f"did you mean {near}?" if near else f"give one of {', '.join(choices)}"
-        raise failure("bad-argument", f"{clean(value)!r} is not valid", where=name, fix=fix)
+        raise failure("bad-argument", f"{clean(value)!r} is not accepted", where=name, fix=fix)
 
 
 def _quoted(text: str, longest: int) -> str:

@@ -149,7 +149,7 @@ class Services:
     def _source(self, scenario_path: str | None, scenario_yaml: str | None) -> dict[str, str]:
         if bool(scenario_path) == bool(scenario_yaml):
             given = "both scenario_path and scenario_yaml are" if scenario_path else "no scenario is"
-            fix = "give either scenario_yaml (the YAML text) or scenario_path (a file in the workspace)"
+            fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
             raise failure("bad-argument", f"{given} given", fix=fix)
         if scenario_path:
             return {"path": self.workspace.scenario(scenario_path)}

@@ -74,9 +74,9 @@ class StrictTool(Tool):
         accepted = {place: _accepted(error.schema, error.instance) for place, error in errors.items()}
         if len(errors) == 1:
             ((where, error),) = errors.items()
-            what, fix = f"{_shown(error.instance)} is not valid", accepted[where]
+            what, fix = f"{_shown(error.instance)} is not accepted", accepted[where]
         else:
-            what = "; ".join(f"{place} must not be {_shown(error.instance)}" for place, error in errors.items())
+            what = "; ".join(f"{place} does not accept {_shown(error.instance)}" for place, error in errors.items())
             where, fix = self.name, "; ".join(f"{place}: {text}" for place, text in accepted.items())
         raise failure("bad-argument", what, where=where, fix=fix)
 
@@ -86,7 +86,7 @@ class StrictTool(Tool):
         name = path[0] if path else self.name
         return failure(
             "bad-argument",
-            f"{_shown(arguments.get(name))} is not valid: {first['msg'].lower()}",
+            f"{_shown(arguments.get(name))} is not accepted: {first['msg'].lower()}",
             where=".".join(path) or self.name,
             fix=_accepted(self.parameters["properties"].get(name, {})),
         )

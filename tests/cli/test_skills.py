@@ -166,9 +166,8 @@ def test_a_link_to_nothing_in_place_of_the_folder_is_named(where: str, more: lis
     told = " ".join(result.stderr.split())
     assert result.exit_code == 1
     assert "error file-access" in told
-    assert (
-        f"{where}' is a link to 'nowhere', which is not a folder. Fix: make that folder, or remove the link: rm" in told
-    )
+    assert f"{where}' is a link to 'nowhere', which is not a folder." in told
+    assert "Fix: create that folder, or remove the link: rm" in told
     link.unlink()
     link.write_text("", encoding="utf-8")
     result = CliRunner().invoke(app, ["skills", "install", "--target", "claude", *more])

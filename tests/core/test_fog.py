@@ -105,7 +105,7 @@ def test_worlds_without_fog_have_no_cells() -> None:
     assert state.explored.size == 0
     with pytest.raises(ValueError, match="cell"):
         scene(robot(), fog=fog(0, 3))
-    with pytest.raises(ValueError, match="nobody"):
+    with pytest.raises(ValueError, match="names an object that does not exist"):
         scene(robot(), fog=fog(views=[core.FogView(object=3, angle=1.0, reach=1.0, occlusion=False)]))
 
 

@@ -252,12 +252,12 @@ async def test_limits(workspace: Path) -> None:
             assert told.startswith("over-limit: ")
             assert product in told
         for arguments, start in (
-            ({"scenarios": []}, "bad-argument: there are no scenarios"),
+            ({"scenarios": []}, "bad-argument: there must be at least one scenario"),
             ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: 0 seeds"),
             (
                 {"scenarios": [ROOM], "first_seed": 2**53 - 9},
                 (
-                    f"bad-argument: the seeds {2**53 - 9} to {2**53} go beyond {2**53 - 1}, the largest that "
+                    f"bad-argument: the seeds {2**53 - 9} to {2**53} exceed {2**53 - 1}, the largest that "
                     f"run_episode takes (first_seed). Fix: give at most {2**53 - 10}."
                 ),
             ),

@@ -46,7 +46,7 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (
             "delete_everything",
             {},
-            "unknown-tool: there is no tool 'delete_everything'. Fix: there are lookup, validate_",
+            "unknown-tool: there is no tool 'delete_everything'. Fix: the tools are lookup, validate_",
         ),
         ("run_episode", {"scenario_yaml": ROOM, "max_steps": 0}, "(max_steps). Fix: give an integer from 1 to 5000."),
         ("run_episode", {"scenario_yaml": ROOM, "seed": -1}, "bad-argument: -1 is not accepted"),
@@ -105,7 +105,7 @@ def furnished(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (
             "validate_scenario",
             {"scenario_yaml": "#" * 262_145},
-            "file-too-large: 262,145 bytes; a scenario may have 262,144",
+            "file-too-large: a scenario must have at most 262,144 bytes, got 262,145",
         ),
     ],
 )
@@ -195,7 +195,9 @@ def text_in(node: ast.AST) -> str | None:
 
 async def test_other_refusals_have_a_code_too(empty: Path) -> None:
     async with connected(empty) as client:
-        with pytest.raises(MCPError, match=r"^unknown-prompt: there is no prompt 'nope'\. Fix: there are design_scen"):
+        with pytest.raises(
+            MCPError, match=r"^unknown-prompt: there is no prompt 'nope'\. Fix: the prompts are design_scen"
+        ):
             await client.get_prompt("nope")
         told = await client.call_tool("lookup", {"topic": "unknown-prompt"})
     assert text_of(told).startswith("unknown-prompt: unknown prompt")

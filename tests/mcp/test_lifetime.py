@@ -162,7 +162,7 @@ async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(workspa
 
     async with connected(workspace) as client:
         told = error_of(await client.call_tool("run_episode", {"scenario_yaml": LONG}, progress_callback=on_progress))
-        found = re.search(r"inspect_run run_id=(\S+) shows how far it came", told)
+        found = re.search(r"inspect_run run_id=(\S+) shows the steps until then", told)
         assert found is not None, told
         assert re.match(
             r"worker-failed: the process that did the work ended with code -9 after \d+ of [0-9,]+ steps", told
@@ -183,7 +183,7 @@ async def test_more_calls_than_workers_are_told_to_come_back(empty: Path) -> Non
             await anyio.sleep(0.3)
             told = error_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))
             tasks.cancel_scope.cancel()
-        assert told.startswith("busy: 1 calls are being worked on")
+        assert told.startswith("busy: 1 calls are being processed")
         assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
 
 

@@ -72,10 +72,10 @@ async def test_every_prompt_names_tools_that_there_are(workspace: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "arguments", "said"),
     [
-        ("design_scenario", {}, "lacks goal. Fix: it takes goal, kinematics, difficulty"),
+        ("design_scenario", {}, "needs goal. Fix: its arguments are goal, kinematics, difficulty"),
         ("design_scenario", {"goal": "x", "kinematics": "omny"}, "did you mean omni?"),
         ("design_scenario", {"goal": "x", "difficulty": "brutal"}, "give one of easy, medium, hard"),
-        ("design_scenario", {"goal": "x", "color": "red"}, "takes no color"),
+        ("design_scenario", {"goal": "x", "color": "red"}, "has no argument color"),
         ("debug_run", {"run_id": "room-000000"}, "unknown-run: there is no run 'room-000000'"),
         ("debug_run", {"run_id": "../../etc"}, "unknown-run"),
         ("compare_policies", {"scenario": "../room.yaml"}, "path-outside-workspace"),

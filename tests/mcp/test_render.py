@@ -74,7 +74,7 @@ async def test_plans_in_words(empty: Path) -> None:
         given = {"scenario_yaml": ROOM, "overlays": ["plan", "clearance"], "size_px": 300}
         result = await client.call_tool("render_snapshot", given)
         refused = await client.call_tool("render_snapshot", {"scenario_yaml": ROOM, "strip": 13})
-    assert "a way for r0: " in text_of(result)
+    assert "a path for r0: " in text_of(result)
     assert "(strip)" in error_of(refused)
     assert "2 to 12" in error_of(refused)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.compat.util.random import rng
 from irsim.functions.frames import get_affine_transform
 
@@ -19,7 +19,6 @@ __all__ = [
     "random_point_range",
 ]
 
-Floats = NDArray[np.float64]
 _MIN_CORNERS = 3
 
 

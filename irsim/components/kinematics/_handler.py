@@ -8,15 +8,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.components.kinematics._options import CustomKinematics
 from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR
 from irsim.options.registry import KINEMATICS
 
 __all__ = ["KinematicsHandler", "handler_class", "register_kinematics"]
 
-Floats = NDArray[np.float64]
 Handler = TypeVar("Handler", bound="type[KinematicsHandler]")
 _PALETTE = {"robot": ROBOT_COLOR, "robot_acker": ACKER_COLOR, "obstacle": OBSTACLE_COLOR}
 

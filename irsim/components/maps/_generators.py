@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal, cast
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, create_model
 
+from irsim.common.arrays import Floats
 from irsim.components.maps._bundled import bundled_map, bundled_names
 from irsim.components.maps._options import MapOptions
 from irsim.components.maps._picture import image_raster, open_picture
@@ -26,8 +26,6 @@ __all__ = [
     "build_grid_from_generator",
     "resolve_obstacle_map",
 ]
-
-Floats = NDArray[np.float64]
 
 
 class GridMapGenerator(ABC):

@@ -9,7 +9,7 @@ import irsim._core as core
 from irsim.components.maps._site import Noise, Raster
 
 if TYPE_CHECKING:
-    from irsim.components.maps._site import Floats
+    from irsim.common.arrays import Floats
 
 __all__ = ["MapCells", "MapGrid", "Walls", "map_grid"]
 

@@ -13,7 +13,7 @@ from PIL import Image
 from irsim.components.maps._site import MapProblem, MapSite, Raster
 
 if TYPE_CHECKING:
-    from irsim.components.maps._site import Floats
+    from irsim.common.arrays import Floats
 
 __all__ = ["image_raster", "open_picture", "upright"]
 

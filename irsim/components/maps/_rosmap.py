@@ -14,12 +14,12 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.components.maps._picture import open_picture, upright
 from irsim.components.maps._site import MapProblem, MapSite, Raster, cells_along
 
 __all__ = ["RosMeta", "occupancy_of", "pixels_of", "read_meta", "ros_raster"]
 
-Floats = NDArray[np.float64]
 MODES = ("trinary", "scale", "raw")
 UNKNOWN = -1.0
 _MAX_YAML_BYTES = 64 * 1024

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    Floats = NDArray[np.float64]
+    from irsim.common.arrays import Floats
 
 __all__ = ["MapProblem", "MapSite", "Noise", "Raster", "cells_along"]
 

@@ -13,7 +13,7 @@ from irsim.options.registry import MAPS
 from irsim.options.units import Fraction, Integer, Meters, Number
 
 if TYPE_CHECKING:
-    from irsim.components.maps._site import Floats
+    from irsim.common.arrays import Floats
 
 
 class PerlinMap(MapOptions):

@@ -16,6 +16,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.graphics.encoding.pixels import Pixels
 from irsim.graphics.figure.compositor import Compositor
 from irsim.graphics.figure.glyphs import Glyphs, QuickText
@@ -23,7 +24,7 @@ from irsim.graphics.figure.grids import GridLayer
 from irsim.graphics.figure.layers import BeamLayer, FogLayer, MarkLayer, layer_key, rgba
 from irsim.graphics.figure.pictures import Pictures
 from irsim.graphics.scene.labels import free_places, small_bodies
-from irsim.graphics.scene.scene import Bounds, Floats, GridImage, Label, Picture, Scene
+from irsim.graphics.scene.scene import Bounds, GridImage, Label, Picture, Scene
 
 __all__ = ["SceneFigure", "fitting_size", "inches"]
 

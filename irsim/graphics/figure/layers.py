@@ -14,8 +14,9 @@ from matplotlib.image import AxesImage
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.palette import Color
-from irsim.graphics.scene.scene import Beams, Circle, Dots, Floats, Fog, Geometry, Line, Mark, Scene, Sector
+from irsim.graphics.scene.scene import Beams, Circle, Dots, Fog, Geometry, Line, Mark, Scene, Sector
 
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from irsim.graphics.scene.scene import Circle, Floats, Geometry, Line, Picture, Region, Sector
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.scene import Circle, Geometry, Line, Picture, Region, Sector
 
 if TYPE_CHECKING:
     from irsim._core import State

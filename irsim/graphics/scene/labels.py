@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import bounds, picture_outline
-from irsim.graphics.scene.scene import Bounds, Floats, Scene
+from irsim.graphics.scene.scene import Bounds, Scene
 
 __all__ = ["free_places", "small_bodies"]
 

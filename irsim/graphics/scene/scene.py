@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import ArgumentError
 from irsim.graphics.scene.palette import Color
 
@@ -36,7 +37,6 @@ __all__ = [
     "region_extent",
 ]
 
-Floats = NDArray[np.float64]
 
 Bounds = tuple[float, float, float, float]
 """Left, bottom, right, top."""

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.graphics.scene.bodies import Body, Pose, arrow, box, ellipse, place, read_body
 from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import (
     Circle,
-    Floats,
     Fog,
     Geometry,
     GridImage,

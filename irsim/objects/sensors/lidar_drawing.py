@@ -6,7 +6,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from irsim.graphics.scene.scene import Beams, Dots, Floats
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.scene import Beams, Dots
 
 __all__ = ["BEAM_ZORDER", "draw_scan"]
 

@@ -12,10 +12,7 @@ from irsim.components.behaviors._options import CustomOptions
 from irsim.options.registry import SHAPES
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
+    from irsim.common.arrays import Floats
 
 __all__ = ["has_fixed_shape", "inner_disc", "parts_of", "segment_gap", "thickness", "top_speed"]
 

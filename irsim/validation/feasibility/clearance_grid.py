@@ -29,7 +29,7 @@ Box = tuple[float, float, float, float]
 _MAX_CELLS = 150_000
 """Greatest number of cells of a grid over the world."""
 _MAX_ROUGH_CELLS = 40_000
-"""The same where several scenes are examined."""
+"""Greatest number of cells of a grid over the world if several scenes are examined."""
 _CELLS_PER_RADIUS = 4
 """Cells along the radius of the smallest mover, unless that takes too many cells."""
 _REFINEMENT = 10.0
@@ -188,9 +188,9 @@ def free_place(grid: ClearanceGrid, near: Point, radius: float, other: Point | N
 
     Args:
         grid: The grid.
-        near: Where to search from [m].
+        near: Position from which the distance counts [m].
         radius: Radius of the disc [m].
-        other: The place from which the result should be reachable [m].
+        other: Position from which the place should be reachable [m].
     """
     reached = None if other is None else reachable_place(grid, near, radius, other, radius - grid.half)
     if reached is not None:
@@ -204,9 +204,9 @@ def reachable_place(grid: ClearanceGrid, near: Point, radius: float, other: Poin
 
     Args:
         grid: The grid.
-        near: Where to search from [m].
+        near: Position from which the distance counts [m].
         radius: Radius of the disc [m].
-        other: Where the path must lead [m].
+        other: Position to which the path must lead [m].
         width: Least distance of the path to obstacles [m].
     """
     places = _places(grid, near, radius)

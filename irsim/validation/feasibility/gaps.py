@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.validation.feasibility.scenes import Scene
 
 __all__ = ["Gaps", "Opening", "find_gaps"]
 
 Point = tuple[float, float]
-Floats = NDArray[np.float64]
 Shapes = NDArray[np.object_]
 """Shapely geometries."""
 _MAX_FEATURES = 40_000
@@ -236,4 +236,7 @@ def _shapes(a: Floats, b: Floats) -> Shapes:
     """Make a shapely segment of each feature, and a point of each disc."""
     import shapely
 
-    return np.where((a == b).all(axis=1), shapely.points(a), shapely.linestrings(np.stack([a, b], axis=1)))
+    shapes = np.asarray(shapely.linestrings(np.stack([a, b], axis=1)), dtype=object)
+    discs = (a == b).all(axis=1)
+    shapes[discs] = shapely.points(a[discs])
+    return shapes
