@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from irsim.api.public import PUBLIC_HOMES
 from irsim.common.conflict import refuse_conflicts
+from irsim.common.public_names import PUBLIC_HOMES
 from irsim.compat.finder import install
 
 refuse_conflicts()

@@ -11,8 +11,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from irsim.api.public import PUBLIC_HOMES
 from irsim.common import data_files as resources
+from irsim.common.public_names import PUBLIC_HOMES
 from irsim.lookup.tables import plain_table
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.options.base import field_docs

@@ -227,7 +227,7 @@ def test_the_table_says_of_how_many_episodes_a_mean_is(files) -> None:
     shown = CliRunner().invoke(app, arguments).output
     lines = [line for line in shown.splitlines() if re.search(r"(dash|rvo) +10 ", line)]
     assert [f"({n})" in line for n, line in zip(times, lines, strict=True)] == [n < 10 for n in times]
-    assert "(5): of 5 of the n episodes" in shown
+    assert "only 5 of the n episodes have this value" in shown
     pairs = found[1].paired["time_to_goal"].n
     assert f"] ({pairs})" in next(line for line in shown.splitlines() if "same seeds" in line)
 

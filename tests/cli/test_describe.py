@@ -134,7 +134,7 @@ def test_json(irsim: Run) -> None:
         ("env.reset", "program: the Python loop"),
         ("seeds", "seeds: what is random"),
         ("pillar", "things: how everyday"),
-        ("obstacle avoidance", "avoidance: who avoids"),
+        ("obstacle avoidance", "avoidance: what each behavior avoids"),
         ("radians", "units: metres"),
         ("altitude", "limits: what cannot be simulated"),
         ("drone", "limits: what cannot be simulated"),

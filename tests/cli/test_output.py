@@ -42,7 +42,7 @@ def test_many_robots_are_not_all_listed(irsim: Run, room: Path) -> None:
 def test_a_progress_bar_only_for_what_takes_long(monkeypatch: pytest.MonkeyPatch, seconds: float, shown: bool) -> None:
     terminal = Terminal()
     monkeypatch.setattr("sys.stderr", terminal)
-    monkeypatch.setattr(output, "_PATIENCE", 0.1)
+    monkeypatch.setattr(output, "_PROGRESS_DELAY_S", 0.1)
     with output.progress("simulating") as report:
         report(1, 4)
         time.sleep(seconds)
@@ -53,7 +53,7 @@ def test_a_progress_bar_only_for_what_takes_long(monkeypatch: pytest.MonkeyPatch
 def test_no_progress_bar_in_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = io.StringIO()
     monkeypatch.setattr("sys.stderr", stream)
-    monkeypatch.setattr(output, "_PATIENCE", 0.0)
+    monkeypatch.setattr(output, "_PROGRESS_DELAY_S", 0.0)
     with output.progress("simulating") as report:
         time.sleep(0.1)
         report(1, 2)

@@ -105,7 +105,7 @@ def test_what_the_user_changed_stays_until_forced() -> None:
     assert rows["irsim-scenario"]["changed"] == ["SKILL.md"]
     assert page.read_text(encoding="utf-8") == "mine"
     shown = CliRunner().invoke(app, ["skills", "install", "--target", "claude"])
-    assert "left alone; --force overwrites" in shown.stdout
+    assert "kept; --force overwrites" in shown.stdout
     code, _ = call("install", "--target", "claude", "--force")
     assert code == 0
     assert page.read_text(encoding="utf-8") != "mine"

@@ -92,7 +92,7 @@ def test_fix_of_standard_input_prints_nothing_else(irsim: Run, room: Path, more:
     before = room.read_text(encoding="utf-8")
     result = irsim("validate", "-", "--fix", more, input=ROOM)
     assert result.exit_code == 2
-    assert "--fix prints the repaired text of standard input" in " ".join(result.stderr.split())
+    assert "--fix with - prints the repaired text" in " ".join(result.stderr.split())
     assert room.read_text(encoding="utf-8") == before
 
 

@@ -131,7 +131,7 @@ async def test_limits(workspace: Path) -> None:
             assert product in told
         for arguments, start in (
             ({"scenarios": []}, "bad-argument: there must be at least one scenario"),
-            ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: 0 seeds"),
+            ({"scenarios": [ROOM], "seeds": 0}, "bad-argument: seeds must be at least 1, got 0"),
             (
                 {"scenarios": [ROOM], "first_seed": 2**53 - 9},
                 (

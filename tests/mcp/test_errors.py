@@ -195,9 +195,8 @@ def text_in(node: ast.AST) -> str | None:
 
 async def test_other_refusals_have_a_code_too(empty: Path) -> None:
     async with connected(empty) as client:
-        with pytest.raises(
-            MCPError, match=r"^unknown-prompt: there is no prompt 'nope'\. Fix: the prompts are design_scen"
-        ):
+        fix = "Fix: the prompts are design_scen"
+        with pytest.raises(MCPError, match=rf"^unknown-prompt: there is no prompt 'nope'\. {fix}"):
             await client.get_prompt("nope")
         told = await client.call_tool("lookup", {"topic": "unknown-prompt"})
     assert text_of(told).startswith("unknown-prompt: unknown prompt")

@@ -58,7 +58,7 @@ async def test_a_job_that_is_cancelled_keeps_the_episodes_that_were_done(workspa
         assert 0 < ended["done"] < ended["total"] == 6
         assert sum(row["episodes"] for row in ended["rows"]) == ended["done"]
         assert ended["rows"][0]["success"][0] == 1
-        assert f"the {ended['done']} episodes that were done; call benchmark again for all" in ended["next"]
+        assert f"the {ended['done']} completed episodes; call benchmark again for all" in ended["next"]
         assert text_of(result).startswith(f"cancelled: {ended['done']} episodes, ")
         table = data_of(await client.call_tool("inspect_run", {"run_id": job}))
         assert (table["status"], table["total"]) == ("cancelled", ended["done"])
@@ -92,7 +92,9 @@ async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(wor
         ended = data_of(await client.call_tool("get_job", {"job_id": job}))
         assert ended["status"] == "interrupted"
         assert told <= ended["done"] < 1800
-        assert ended["next"].startswith("the process that did the work ended without a result. This is of the ")
+        assert ended["next"].startswith(
+            "the process that did the work ended without a result. This is the result of the "
+        )
         table = data_of(await client.call_tool("inspect_run", {"run_id": job, "limit": 5}))
         assert table["total"] == ended["done"]
         await gone(os.getpid())

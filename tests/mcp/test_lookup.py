@@ -94,7 +94,7 @@ async def test_parameters_are_filled_in(empty: Path) -> None:
             {"topic": "corridor-pasing"},
             "unknown-topic: 'corridor-pasing' is not a topic (topic). Fix: did you mean ",
         ),
-        ({"topic": "xyzzy"}, "Fix: lookup without a topic lists what there is."),
+        ({"topic": "xyzzy"}, "Fix: lookup without a topic lists all topics."),
         ({"topic": "xyzzy", "parameters": {"a": 1}}, "unknown-template: there is no template 'xyzzy'"),
         ({"topic": "crossing", "parameters": {"beam": 1}}, "(parameters). Fix: did you mean beams?"),
         ({"topic": "crossing", "parameters": {"beams": 1.5}}, "bad-parameter: beams cannot be 1.5"),

@@ -145,7 +145,7 @@ async def test_pages(empty: Path, era: str) -> None:
             ("irsim://docs/behaviour", "Did you mean behaviors?"),
             ("irsim://docs/..", "Unknown|no page|not"),
             ("irsim://docs/%2e%2e%2fsecret", "Unknown|no page|not"),
-            ("irsim://docs/readme?offset=-1", "offset is 0 or more"),
+            ("irsim://docs/readme?offset=-1", "offset must be at least 0"),
         ):
             with pytest.raises(MCPError) as caught:
                 await client.read_resource(uri)

@@ -91,7 +91,7 @@ def test_version_and_help() -> None:
     ("arguments", "said"),
     [
         (("--workspace", "/no/such/folder"), "there is no folder /no/such/folder"),
-        (("--max-robots", "0"), "0 is not positive"),
+        (("--max-robots", "0"), "must be positive, got 0"),
         (("--max-work", "many"), "invalid"),
         (("--port", "80"), "unrecognized arguments"),
         (("--http", "x"), "x is not [HOST:]PORT"),
@@ -135,4 +135,4 @@ def test_limits_can_be_raised_and_lowered(workspace: Path) -> None:
     answers = [json.loads(process.stdout.readline()) for _ in range(2)]
     process.communicate()
     issues = answers[1]["result"]["structuredContent"]["issues"]
-    assert "at most 2 are read" in issues[0]["message"]
+    assert "the limit is 2 robots" in issues[0]["message"]

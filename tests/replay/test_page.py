@@ -86,7 +86,7 @@ def test_the_command(run: Run, workspace: Path) -> None:
     assert named.stdout.startswith("wrote other.html (")
     twice = CliRunner().invoke(app, ["replay", run.id, "--html", "other.html", "-o", "page.html"])
     assert twice.exit_code == 2
-    assert "name one file" in twice.output
+    assert "give one file" in twice.output
 
 
 def test_a_run_that_was_cut_short_is_shown(workspace: Path) -> None:

@@ -83,8 +83,8 @@ def convert_list_length(input_data: Any, number: int = 0, per_object: bool = Fal
     """Return a list with one value for each of ``number`` objects.
 
     Args:
-        input_data: One value for all objects, or a list with a value for each; the last value is repeated if the list
-            is too short. A list of numbers counts as one value, unless ``per_object`` is set.
+        input_data: One value for all objects, or a list with a value for each, whose last value is repeated if needed.
+            A list of numbers counts as one value, unless ``per_object`` is set.
         number: Number of objects.
         per_object: Treat every list as a list with a value for each object.
     """
@@ -145,19 +145,13 @@ def to_numpy(
 
 
 def traj_to_xy_list(traj: Any, three_d: bool = False) -> Any:
-    """Return the coordinates of a path as lists x, y and, with ``three_d``, z.
-
-    The path is a list of columns, or an array (2 or more, N).
-    """
+    """Return lists x, y and, with ``three_d``, z of a path, given as a list of columns or an array (2 or more, N)."""
     columns = np.asarray(traj) if isinstance(traj, np.ndarray) else np.hstack([np.reshape(p, (-1, 1)) for p in traj])
     return tuple(list(columns[row]) for row in range(3 if three_d else 2))
 
 
 def points_to_xy_list(points: Any, three_d: bool = False) -> Any:
-    """Return the coordinates of points as lists x, y and, with ``three_d``, z.
-
-    The points are a list of points, or an array (2 or more, N).
-    """
+    """Return lists x, y and, with ``three_d``, z of points, given as a list of points or an array (2 or more, N)."""
     if isinstance(points, np.ndarray):
         return traj_to_xy_list(points, three_d)
     return tuple([point[row] for point in points] for row in range(3 if three_d else 2))
@@ -295,10 +289,7 @@ def ensure_column_vector(*param_names: str) -> Callable[[Function], Function]:
 
 
 def normalize_actions(func: Function) -> Function:
-    """Decorate a method ``step(self, actions)``, so that it can be called as ``step(action, action_id)``.
-
-    The method receives a list with an action, or None, for each of ``self.objects``.
-    """
+    """Decorate ``step(self, actions)``, which gets an action or None per object, to accept ``(action, action_id)``."""
 
     @functools.wraps(func)
     def step(self: Any, action: Any = None, action_id: Any = 0) -> Any:
@@ -337,10 +328,7 @@ def plot_only(method: Function) -> Function:
 
 # files, time, log ----------------------------------------------------------------------------------------------------
 def file_check(file_name: str | None, root_path: str | None = None) -> str | None:
-    """Return the absolute path of a file, or None if it does not exist.
-
-    The name is tried as given, then in ``root_path``, then in all folders below it.
-    """
+    """Return the absolute path of a file, found as named, in ``root_path`` or in a folder below it; otherwise None."""
     if file_name is None:
         return None
     if os.path.isfile(file_name):

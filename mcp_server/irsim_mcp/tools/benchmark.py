@@ -116,7 +116,7 @@ def tool(services: Services) -> StrictTool:
 
 def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int, first: int) -> None:
     if not scenarios or seeds < 1:
-        what = "there must be at least one scenario" if not scenarios else f"there must be seeds, got {seeds}"
+        what = "there must be at least one scenario" if not scenarios else f"seeds must be at least 1, got {seeds}"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
     total = len(scenarios) * len(behaviors) * seeds
     within = len(scenarios) <= MAX_SCENARIOS and len(behaviors) <= MAX_BEHAVIORS and seeds <= MAX_SEEDS

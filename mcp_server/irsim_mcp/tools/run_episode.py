@@ -22,9 +22,10 @@ __all__ = ["Episode", "tool"]
 _DESCRIPTION = """
     Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is
     success (every robot reached its goal, no collision before), collision, or timeout; none of them is an error. The
-    reason says which robot hit what, where and when, and how far robots were from their goals. Also returns robots
-    (unsuccessful first), first events, the command that repeats the run, and a run_id, kept for 24 hours after its last
-    use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment with
+    reason says what hit what, where and when, and how far robots were from their goals. Also returns robots
+    (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
+    use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment
+    with
     render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds if
     anything is random.
 """
