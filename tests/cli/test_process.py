@@ -81,7 +81,7 @@ def test_a_full_disk_is_told_in_one_line(room: Path, tmp_path: Path, words: list
 def test_a_record_that_cannot_be_written_ends_with_1(room: Path, tmp_path: Path) -> None:
     limited = "ulimit -f 1; trap '' XFSZ; exec \"$@\""
     command = ["bash", "-c", limited, "-", sys.executable, "-m", "irsim", "run", "room.yaml", "--record"]
-    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}  # it would be cut off at that size, and found by others
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}  # cut off at that size, others would read it
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment, check=False)
     assert done.returncode == 1
     assert done.stderr.startswith("error file-access: ")
