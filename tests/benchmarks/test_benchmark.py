@@ -279,7 +279,7 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
         irsim.benchmark([files[0], files[0]])
     with pytest.raises(BenchmarkError, match="at least one seed"):
         irsim.benchmark(files, seeds=0)
-    with pytest.raises(BenchmarkError, match="outside"):
+    with pytest.raises(BenchmarkError, match="must be from 0 to"):
         irsim.benchmark(files, seeds=[-1])
     with pytest.raises(ScenarioNotFoundError):
         irsim.benchmark([*files, str(tmp_path / "none.yaml")])

@@ -75,7 +75,7 @@ def tree(folder: Path) -> dict[str, str]:
 async def test_it_is_there_only_on_demand(empty: Path, era: str) -> None:
     async with connected(empty, era) as client:
         assert "write_scenario" not in [tool.name for tool in (await client.list_tools()).tools]
-        assert "save YAML yourself" in (client.instructions or "")
+        assert "save YAML that must be kept yourself" in (client.instructions or "")
     async with writer(empty, era) as client:
         tools = {tool["name"]: tool for tool in listed((await client.list_tools()).tools)}
         assert "write_scenario saves" in (client.instructions or "")

@@ -175,7 +175,7 @@ def test_features_of_plug_ins_are_validated_like_ours() -> None:
     class Bounce(BaseModel):
         name: str = "bounce"
 
-    own = Registry("behavior", "irsim.behaviors", "irsim.none")
+    own = Registry("behavior", "irsim.components.behaviors", "irsim.none")
     own.register(Bounce)
     assert "bounce" in own.names()
     feature = own.get("bounce")
