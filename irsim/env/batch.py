@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.views import make_view
 from irsim.scenario.open import open_scenario
@@ -24,7 +25,6 @@ from irsim.simulation.simulation import Simulation
 
 __all__ = ["Batch", "batch"]
 
-Floats = NDArray[np.float64]
 MAX_BATCH_OBJECTS = 10_000_000
 """Largest number of objects in all worlds of a batch; each object takes about 1 kB of memory."""
 

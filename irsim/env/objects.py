@@ -7,16 +7,11 @@ from dataclasses import replace
 from itertools import count
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import admit, alone, dismiss, restore
 from irsim.objects.view import ObjectView
 from irsim.objects.views import views
 from irsim.scenario.single_object import read_object
-
-Floats = NDArray[np.float64]
 
 
 def create_robot(env: EnvState, kinematics: Any = None, **keys: Any) -> ObjectView:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.env.object_list import ObjectList
 from irsim.env.state import EnvState
 from irsim.objects.info import ObjectInfo, ObstacleInfo
@@ -15,8 +15,6 @@ from irsim.objects.view import ObjectView
 from irsim.simulation.events import Event, read_events
 from irsim.simulation.outcome import Outcome, outcome_of
 from irsim.simulation.simulation import Simulation
-
-Floats = NDArray[np.float64]
 
 
 def contacts(env: EnvState) -> list[Contact]:

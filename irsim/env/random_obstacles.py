@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.env.queries import obstacle_list
 from irsim.env.state import EnvState
 from irsim.objects.shapely_geometry import touching
 
 __all__ = ["random_obstacle_position", "random_polygon_shape"]
 
-Floats = NDArray[np.float64]
 MAX_DRAWS = 100
 """Largest number of draws per obstacle; after that, a pose that overlaps another object is accepted."""
 

@@ -7,16 +7,15 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.geometry import ObjectBody
 from irsim.objects.neighbors import discs
 
 __all__ = ["ObjectAvoidance"]
 
-Floats = NDArray[np.float64]
 MIN_GOAL_DISTANCE = 0.1
 """Distance [m] to the goal below which the desired velocity is zero."""
 _PER_AXIS = ("omni", "omni_angular", None)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.components.kinematics._handler import KinematicsHandler
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["SimObject", "column"]
-
-Floats = NDArray[np.float64]
 
 
 def column(values: Any) -> Floats:

@@ -6,15 +6,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject, column
 from irsim.objects.sensors.contact import Contact2D
 
 __all__ = ["ObjectDynamics"]
-
-Floats = NDArray[np.float64]
 
 
 class ObjectDynamics(SimObject):

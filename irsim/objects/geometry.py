@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.functions.inequalities import polygon_inequality
 from irsim.objects.base import SimObject, column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ObjectBody", "convex_inequality"]
 
-Floats = NDArray[np.float64]
 Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _CIRCLE_POINTS = 64
 """Number of vertices of the polygon that stands for a circle."""

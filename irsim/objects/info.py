@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 __all__ = ["ObjectInfo", "ObstacleInfo"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass

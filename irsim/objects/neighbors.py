@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["AVOIDANCE_MARGIN", "centres", "discs"]
 
-Floats = NDArray[np.float64]
 AVOIDANCE_MARGIN = 0.1
 """Margin [m] that the avoidance laws of IR-SIM add to the radius of a body."""
 

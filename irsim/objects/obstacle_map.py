@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_collision_geometry
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObstacleMap", "grid_values"]
-
-Floats = NDArray[np.float64]
 
 
 def grid_values(simulation: Simulation, world: int = 0) -> Floats | None:

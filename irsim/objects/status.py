@@ -8,15 +8,14 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject
 from irsim.objects.shapely_geometry import from_shapely, touching, touching_circle
 from irsim.simulation.active_env import last_used
 
 __all__ = ["ObjectStatus"]
 
-Floats = NDArray[np.float64]
 _STOPS = {0: ("robot", "obstacle"), 2: ("robot",)}
 """Roles of the objects that a contact stops, by collision mode of the core."""
 

@@ -6,9 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from irsim.common.arrays import Floats
 from irsim.objects.avoidance import ObjectAvoidance
 from irsim.objects.base import column
 from irsim.objects.drawing.by_hand import ObjectDrawing
@@ -28,8 +26,6 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["ObjectView"]
-
-Floats = NDArray[np.float64]
 
 
 class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, ObjectDrawing):

@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
 from irsim.diagnostics.errors import BehaviorError
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PythonDrives", "attach_python_drives"]
 
-Floats = NDArray[np.float64]
 _CORE_CONTROLS = 3
 _CONTACT = COLLISION_MODES["contact"]
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)

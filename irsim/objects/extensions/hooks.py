@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["HOOKS", "Hooks", "ObjectHooks", "overridable"]
 
-Floats = NDArray[np.float64]
 HOOKS = ("step", "pre_process", "gen_behavior_vel", "mid_process", "post_process")
 Method = TypeVar("Method", bound=Callable[..., Any])
 

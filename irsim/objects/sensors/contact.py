@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Contact", "Contact2D", "ContactReport", "contact_step", "contacts_of"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(eq=False)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.setters import refuse, sensor_options
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FMCWLidar2D", "Lidar2D"]
 
-Floats = NDArray[np.float64]
 _MISS_MARGIN = 0.02
 """Beams whose range is within this of ``range_max`` [m] leave no point in the cloud."""
 _HIGHLIGHT = "#56B4E9"
