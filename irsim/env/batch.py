@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.views import make_view
 from irsim.scenario.open import open_scenario
@@ -24,30 +25,31 @@ from irsim.simulation.simulation import Simulation
 
 __all__ = ["Batch", "batch"]
 
-Floats = NDArray[np.float64]
-_MAX_ROWS = 10_000_000
-"""Objects of a batch; each takes about a kilobyte."""
+MAX_BATCH_OBJECTS = 10_000_000
+"""Largest number of objects in all worlds of a batch; each object takes about 1 kB of memory."""
 
 
 class Batch:
-    """``n`` worlds of N objects each.
+    """``n`` worlds of N objects each, stepped together.
 
-    World i equals ``irsim.make(scenario, seed=seeds[i])`` bit for bit, whatever the number of threads; its k-th masked
-    reset equals that environment's k-th ``reset(random=True)``. Arrays are views of the engine's memory: they show
-    the present state and change with the next step; copy what you keep.
+    World i equals ``irsim.make(scenario, seed=seeds[i])`` bit for bit, whatever the number of threads. The k-th reset
+    of world i through a mask equals the k-th ``reset(random=True)`` of that environment. Arrays are views of the
+    engine's memory: they show the present state and change with the next step, so copy what you keep.
 
     Attributes:
         pose: (n, N, 3) x, y [m], heading [rad], world frame.
         extra: (n, N, E) extra state rows (steering angle of Ackermann drives first).
         velocity: (n, N, 3) executed controls, command frame, zero padded.
         twist: (n, N, 3) true velocity [m/s], world frame, and yaw rate [rad/s].
-        goal: (n, N, 3) present goals; NaN where there is none (or no goal heading).
+        goal: (n, N, 3) present goals: x, y [m], heading [rad], world frame; NaN for objects without a goal, and for
+            the heading of goals without one.
         arrived, collided, stopped: (n, N) uint8 flags.
-        infeasible: (n, N) steps of the episode in which the behavior found no velocity that avoids everybody (`orca`).
+        infeasible: (n, N) number of steps of the episode in which the behavior (`orca`) found no velocity that avoids
+            all objects.
         ranges: (n, B) ranges of all lidars of a world, one after another [m].
-        explored: (n, nx, ny) uint8, cells of the fog map that robots have seen; no cells without ``fog_map``.
-        count: (n,) executed steps of each episode.
-        seeds: The seeds.
+        explored: (n, nx, ny) uint8, 1 for cells of the fog map that robots have seen; empty without ``fog_map``.
+        count: (n,) number of steps executed in each episode.
+        seeds: Seed of each world.
         names: Names of the N objects.
         robots: Ids of the robots.
     """
@@ -84,19 +86,19 @@ class Batch:
 
     @property
     def done(self) -> NDArray[np.bool_]:
-        """(n,) whether every robot of a world has arrived or stopped."""
+        """Whether every robot of a world has arrived or stopped, (n,)."""
         return self._simulation.done()
 
     def step(self, actions: Any = None) -> None:
         """Advance every world by one period.
 
         Args:
-            actions: None lets behaviors drive; (n, k, c) controls of the first k robots, c at least the number of
-                control components of each (surplus columns are ignored). NaN in the first component leaves a robot
-                to its behavior.
+            actions: (n, k, c) controls of the first k robots, in the command frame of each drive. c must be at least
+                the number of control components of each of these robots; surplus columns are ignored. NaN in the first
+                component leaves a robot to its behavior. None leaves all robots to their behaviors.
 
         Raises:
-            ValueError: Another shape.
+            ValueError: The actions have another shape, or are not finite.
         """
         if actions is not None:
             self._impose(np.asarray(actions, dtype=np.float64))
@@ -118,10 +120,14 @@ class Batch:
         self._given[:, :acting] = given
 
     def advance(self, steps: int, *, until_done: bool = False) -> int:
-        """Let behaviors drive for ``steps`` periods in one go.
+        """Advance every world by ``steps`` periods in one call, driven by behaviors.
+
+        Args:
+            steps: Largest number of periods.
+            until_done: Stop each world as soon as every robot in it has arrived or stopped.
 
         Returns:
-            Periods executed by the world that went on longest.
+            Largest number of periods that any world executed.
         """
         return self._simulation.advance(steps, until_done=until_done)
 
@@ -129,12 +135,13 @@ class Batch:
         """Start new episodes.
 
         Args:
-            mask: (n,) worlds that start their next scene; None puts every world back to the start of its present one.
-            random: Says it explicitly: draw the next scene or keep the present one.
+            mask: (n,) True for each world to reset, which then starts its next scene. None resets every world to the
+                start of its present scene.
+            random: True draws the next scene, False repeats the present one; None decides as described for ``mask``.
 
         Raises:
-            ValueError: ``mask`` is not (n,).
-            PlacementError: A scene has no room for a random object.
+            ValueError: ``mask`` does not have the shape (n,).
+            PlacementError: No free space was found for a random object.
         """
         chosen = None if mask is None else np.asarray(mask, dtype=bool)
         if chosen is not None and chosen.shape != (self.n,):
@@ -154,13 +161,14 @@ def batch(
 
     Args:
         scenario: YAML file or resolved scenario.
-        n: How many worlds.
-        seeds: One per world; default: consecutive ones from the scenario's seed, or from fresh entropy.
-        threads: Default: one per core.
-        strict: As for ``irsim.make``.
+        n: Number of worlds.
+        seeds: One seed per world. By default consecutive numbers, which start at the scenario's seed or, without one,
+            at a number from fresh entropy.
+        threads: Number of threads; by default one per core.
+        strict: Treat what IR-SIM would ignore as errors, as for ``irsim.make``.
 
     Raises:
-        ValueError: ``n`` below 1 or not as many seeds.
+        ValueError: ``n`` is below 1, or the number of seeds is not ``n``.
         ScenarioError: The file cannot be used.
     """
     if n < 1:
@@ -169,9 +177,9 @@ def batch(
         resolved = scenario
     else:
         resolved, _ = open_scenario(scenario, strict=strict)
-    if n * len(resolved.objects) > _MAX_ROWS:
+    if n * len(resolved.objects) > MAX_BATCH_OBJECTS:
         raise ValueError(
-            f"{n:,} worlds of {len(resolved.objects):,} objects are more than {_MAX_ROWS:,} objects in all"
+            f"{n:,} worlds of {len(resolved.objects):,} objects are more than {MAX_BATCH_OBJECTS:,} objects in all"
         )
     if seeds is None:
         first = resolved.world.seed if resolved.world.seed is not None else fresh_seed()

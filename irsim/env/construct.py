@@ -1,4 +1,4 @@
-"""Objects and worlds that scripts construct by themselves, with keywords."""
+"""Classes of objects and worlds that scripts construct directly, with keywords."""
 
 from __future__ import annotations
 
@@ -33,29 +33,29 @@ __all__ = [
 
 
 class _AnyObject(type):
-    """Every object of an environment is an ``ObjectBase``, whoever made it."""
+    """Metaclass for which every object of an environment is an ``ObjectBase``, however it was made."""
 
     def __instancecheck__(cls, instance: Any) -> bool:
         return isinstance(instance, ObjectView) if cls.__name__ == "ObjectBase" else super().__instancecheck__(instance)
 
 
 class ObjectBase(ObjectView, metaclass=_AnyObject):
-    """An object made with the keys of a scenario entry; ``env.add_object`` puts it into a world.
+    """An object made from the keys of a scenario entry; ``env.add_object`` puts it into a world.
 
     Subclasses may override ``pre_process``, ``mid_process``, ``post_process``, ``gen_behavior_vel`` and ``step``.
 
     Args:
-        shape: ``{"name": "circle", "radius": 0.2}``, …; by default a circle of 1 m.
-        kinematics: ``{"name": "diff"}``, …; None never moves.
-        state: Initial state, by default zeros.
+        shape: Shape, such as ``{"name": "circle", "radius": 0.2}``; by default a circle of 1 m.
+        kinematics: Drive, such as ``{"name": "diff"}``; an object without one never moves.
+        state: Initial state; by default zeros.
         velocity: Initial control.
-        goal: A goal, or a list of goals; None has none.
+        goal: A goal, a list of goals, or None.
         role: ``robot`` or ``obstacle``.
-        color: By default black.
-        **keys: The other keys of an entry.
+        color: Colour; by default black.
+        **keys: The other keys of a scenario entry.
 
     Raises:
-        ScenarioError: The keys cannot be used.
+        ScenarioError: A key or value is not valid.
     """
 
     def __init__(
@@ -89,27 +89,27 @@ def _empty(**keys: Any) -> ResolvedScenario:
 
 
 class World(WorldView):
-    """A world by itself, without objects.
+    """A world without objects and without an environment.
 
     Args:
-        name: Its name.
+        name: Name of the world.
         height: Extent along y [m].
         width: Extent along x [m].
         step_time: Period of a step [s].
-        sample_time: Period of the drawn frames [s]; None: that of the steps.
-        offset: [x, y] of the lower left corner [m]; None: the origin.
+        sample_time: Period of the drawn frames [s]; None draws every step.
+        offset: [x, y] of the lower left corner [m]; None is the origin.
         step_mode, control_mode, collision_mode: As in a scenario.
-        gravity, friction, restitution, drive_tau: For ``collision_mode: contact``.
+        gravity, friction, restitution, drive_tau: Settings of ``collision_mode: contact``, as in a scenario.
         obstacle_map: An array (nx, ny) of occupancies, a picture file, or the mapping of a generator.
-        mdownsample: Keep every so many rows and columns of it.
-        fog_map, fog_map_resolution: Cells that robots have seen, and their size [m].
+        mdownsample: Keep every Nth row and column of the map.
+        fog_map, fog_map_resolution: Whether to record the cells that robots have seen, and the size of a cell [m].
         plot: Keys of the figure.
-        status: Word for titles.
-        world_param_instance: Accepted as it was before; a world has parameters of its own.
+        status: Word shown in titles.
+        world_param_instance: Ignored, accepted for compatibility: each world has its own parameters.
         **keys: Other keys of the ``world`` section.
 
     Raises:
-        ScenarioError: A key or value cannot be used.
+        ScenarioError: A key or value is not valid.
     """
 
     def __init__(
@@ -142,11 +142,11 @@ class World(WorldView):
 
 
 class ObjectGroup(Sequence[ObjectView]):
-    """Objects that belong together; settings are those of the first.
+    """Objects that belong together; the settings of the first member hold for the group.
 
     Args:
         members: The objects.
-        group_id: Number of the group; default: that of the first.
+        group_id: Number of the group; by default that of the first member.
     """
 
     def __init__(self, members: Iterable[ObjectView], group_id: int | None = None) -> None:
@@ -164,7 +164,7 @@ class ObjectGroup(Sequence[ObjectView]):
 
     @property
     def number(self) -> int:
-        """How many members."""
+        """Number of members."""
         return len(self.members)
 
     @property
@@ -188,15 +188,15 @@ class ObjectGroup(Sequence[ObjectView]):
         return self.members[0].logger if self.members else None
 
     def gen_group_vel(self) -> list[Any]:
-        """The control each member would choose now, (vel_dim, 1) each; None for those that never move."""
+        """Return the control that each member would choose now, (vel_dim, 1) each; None for static members."""
         return [None if view.static else view.gen_behavior_vel() for view in self.members]
 
     def step(self, actions: Sequence[Any] | None = None, sensor_step: bool = True) -> None:
-        """Move each member alone by one period.
+        """Advance each member by one period, without the other objects of the world.
 
         Args:
-            actions: A control for each; None, or None inside, lets behaviors choose.
-            sensor_step: Also read the sensors anew.
+            actions: One control per member; None in place of a control, or of the list, lets the behavior choose.
+            sensor_step: Also update the sensors.
         """
         wanted = [None] * len(self.members) if actions is None else list(actions)
         for view, action in zip(self.members, wanted, strict=True):
@@ -204,7 +204,7 @@ class ObjectGroup(Sequence[ObjectView]):
 
 
 class _Old(ObjectBase):
-    """Classes that IR-SIM has deprecated."""
+    """Base of the object classes that IR-SIM has deprecated."""
 
     _fixed: tuple[Literal["robot", "obstacle"], str | None, Any] = ("obstacle", None, "k")
 

@@ -1,4 +1,4 @@
-"""The figure of an environment: it is made when something is first drawn, and never in headless mode."""
+"""Methods of an environment that draw its figure, which is made at the first drawing and never in headless mode."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def start_drawing(env: EnvState) -> None:
-    """Begin without a figure; ``plt.gcf()`` finds it nevertheless where pyplot is in use."""
+    """Start without a figure; if pyplot is in use, announce the figure there, so that ``plt.gcf()`` returns it."""
     env._plot = None
     env._title = None
     if not env.headless and "matplotlib.pyplot" in sys.modules:
@@ -24,7 +24,7 @@ def start_drawing(env: EnvState) -> None:
 
 
 def status(env: EnvState) -> str:
-    """One word for titles: Arrived, Collision, Pause, Running, …."""
+    """Return the status word of the title: Arrived, Collision, Pause, Running, …."""
     if env.pause_flag:
         return "Pause"
     simulation = env._simulation
@@ -44,17 +44,17 @@ def status(env: EnvState) -> str:
 
 
 def set_status(env: EnvState, status: str) -> None:
-    """Label shown until the next step."""
+    """Show this status word in the title until the next step."""
     env._label = str(status)
 
 
 def disable_all_plot(env: EnvState) -> bool:
-    """Alias of ``headless``."""
+    """Return whether nothing is drawn; the same as ``headless``."""
     return env.headless
 
 
 def env_plot(env: EnvState) -> EnvPlot:
-    """The figure, made when first asked for."""
+    """Return the figure, which the first call makes."""
     if env._plot is None:
         env._plot = env._make_plot(lambda ax: attach_live(env, ax))
         if env._title is not None:
@@ -69,15 +69,15 @@ def render(
     mode: str = "dynamic",
     **kwargs: Any,
 ) -> None:
-    """Bring the figure up to date (every ``sample_time``), then do what keys have asked for.
+    """Update the figure, at most once per ``sample_time``, then carry out the requests of the keyboard.
 
-    Headless, nothing is drawn.
+    In headless mode nothing is drawn.
 
     Args:
-        interval: Seconds to show the frame, where there is a window.
-        figure_kwargs: Options of the saved frame.
-        mode: Which objects to update: ``dynamic``, ``static`` or ``all``.
-        **kwargs: Object plot options that hold for this frame.
+        interval: Time for which a window shows the frame [s].
+        figure_kwargs: Options of the frame that is kept for the animation.
+        mode: Which objects the plot options below apply to: ``dynamic``, ``static`` or ``all``.
+        **kwargs: Plot options of objects that hold for this frame only.
     """
     if env._world.sampling and not env.headless:
         plot = env_plot(env)
@@ -96,17 +96,17 @@ def save_figure(
     save_gif: bool = False,
     **kwargs: Any,
 ) -> Path | None:
-    """Save the present picture.
+    """Save the figure as an image file.
 
     Args:
-        save_name: File name with format (default ``<world>.png``), in the folder ``figure`` beside the script
-            unless it is an absolute path.
-        include_index: Append ``_<step, 4 digits>``.
-        save_gif: Save into the animation buffer folder instead.
+        save_name: File name with suffix, by default ``<world>.png``; a relative name lies in the folder ``figure``
+            beside the script.
+        include_index: Append the step number to the name, as ``_0042``.
+        save_gif: Save to the folder of animation frames instead.
         **kwargs: Options of Matplotlib's ``savefig``: ``dpi``, ``bbox_inches``, ``transparent``, …
 
     Returns:
-        The file written; None in headless mode.
+        Path of the file; None in headless mode.
     """
     if env.headless:
         return None
@@ -120,50 +120,50 @@ def show(env: EnvState) -> None:
 
 
 def set_title(env: EnvState, title: str) -> None:
-    """Fixed title, until the next reset."""
+    """Set the title of the figure, which stays until the next reset."""
     env._title = title
     if env._plot is not None:
         env._plot.set_title(title)
 
 
 def reset_plot(env: EnvState) -> None:
-    """Draw everything anew."""
+    """Draw the whole figure again."""
     if env._plot is not None:
         env._plot.reset()
 
 
 def draw_trajectory(env: EnvState, traj: Any, traj_type: str = "-", **kwargs: Any) -> None:
-    """Draw a path: a list of columns or (2 or more, N) [m]; ``refresh=True`` removes it with the next frame."""
+    """Draw a path, a list of columns or an array (2 or more, N) [m]; ``refresh=True`` removes it at the next frame."""
     if not env.headless:
         env_plot(env).draw_trajectory(traj, traj_type, **kwargs)
 
 
 def draw_points(env: EnvState, points: Any, s: float = 30, c: Any = None, refresh: bool = True, **kwargs: Any) -> None:
-    """Draw points: a list of points or (2, N) [m]; ``s`` in points squared."""
+    """Draw points, a list of points or an array (2, N) [m]; ``s`` is their area [typographic points squared]."""
     if not env.headless:
         env_plot(env).draw_points(points, s, c, refresh, **kwargs)
 
 
 def draw_box(env: EnvState, vertex: Any, refresh: bool = False, color: str = "-") -> None:
-    """Draw a closed outline (2, N) [m]."""
+    """Draw a closed outline with the vertices (2, N) [m]."""
     if not env.headless:
         env_plot(env).draw_box(vertex, refresh, color)
 
 
 def draw_quiver(env: EnvState, point: Any, refresh: bool = False, **kwargs: Any) -> None:
-    """Draw an arrow (x, y, u, v) [m]."""
+    """Draw an arrow at (x, y) with the components (u, v), given as (x, y, u, v) [m]."""
     if not env.headless:
         env_plot(env).draw_quiver(point, refresh, **kwargs)
 
 
 def draw_quivers(env: EnvState, points: Any, refresh: bool = False, **kwargs: Any) -> None:
-    """Draw arrows (x, y, u, v) [m]."""
+    """Draw arrows, each given as (x, y, u, v) [m]."""
     if not env.headless:
         env_plot(env).draw_quivers(points, refresh, **kwargs)
 
 
 def redraw(env: EnvState) -> None:
-    """Draw everything again, without title and zoom, as at a beginning."""
+    """Draw the whole figure again with the default title and zoom."""
     env._title = None
     if env._plot is not None:
         env._plot.reset()
@@ -172,7 +172,7 @@ def redraw(env: EnvState) -> None:
 
 
 def finish_drawing(env: EnvState, ending_time: float, **kwargs: Any) -> None:
-    """Write the animation if there is one, and close the figure."""
+    """Write the animation if frames were kept, and close the figure."""
     detach_live(env)
     if env.headless:
         return
@@ -186,7 +186,7 @@ def finish_drawing(env: EnvState, ending_time: float, **kwargs: Any) -> None:
 
 
 def mouse(env: EnvState) -> MouseControl | None:
-    """The mouse over the figure (made if need be); None in headless mode."""
+    """Return the mouse control of the figure, which the call makes if necessary; None in headless mode."""
     if env._mouse is None and not env.headless:
         _ = env_plot(env).ax
     return env._mouse

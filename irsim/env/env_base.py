@@ -1,4 +1,4 @@
-"""The environment that ``irsim.make`` returns: every method, and the file of this folder that does its work."""
+"""The environment that ``irsim.make`` returns: a list of its methods, each with the file that implements it."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ class Env(EnvState):
     """One world, stepped from Python.
 
     Args:
-        world_name: YAML file (None: named like the running script), or an already resolved scenario.
-        step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller does).
-        display: Show a window where there is a screen.
-        headless: No drawing at all; ``disable_all_plot`` is the same.
+        world_name: YAML file or resolved scenario; None is the YAML file with the name of the running script.
+        step_mode: ``internal`` (irsim moves the objects) or ``external`` (the caller moves them).
+        display: Show a window if there is a screen.
+        headless: Draw nothing at all; ``disable_all_plot`` has the same effect.
         save_ani: Keep a frame at each sampled ``render`` and write the animation in ``end``.
-        ani_kwargs: Defaults of the animation writer.
-        full: Full-screen window.
-        log_file, log_level: Where and how much to log.
-        seed: Overrides ``world.seed``; without either, fresh entropy (``env.seed`` tells which).
+        ani_kwargs: Default options of the animation.
+        full: Show the window full-screen.
+        log_file, log_level: File to log to, and lowest level that is logged.
+        seed: Seed in place of ``world.seed``; without both it is drawn from fresh entropy. ``env.seed`` returns it.
         strict: Treat what IR-SIM would ignore (misspelt keys, unknown behaviors) as errors.
     """
 
@@ -138,7 +138,7 @@ class Env(EnvState):
     get_lidar_scan = queries.get_lidar_scan
     get_lidar_offset = queries.get_lidar_offset
 
-    # objects that come and go: objects.py, random_obstacles.py
+    # adding and deleting objects: objects.py, random_obstacles.py
     create_robot = coming_and_going.create_robot
     create_obstacle = coming_and_going.create_obstacle
     add_object = coming_and_going.add_object
@@ -183,7 +183,7 @@ class Env(EnvState):
 
     @property
     def step_mode(self) -> str:
-        """``internal`` (irsim moves the objects) or ``external`` (the caller does); may be set."""
+        """``internal`` (irsim moves the objects) or ``external`` (the caller moves them); may be set."""
         return self.world_param.step_mode
 
     @step_mode.setter
@@ -192,14 +192,14 @@ class Env(EnvState):
 
     @property
     def env_config(self) -> EnvConfig:
-        """The scenario as parsed, and what loads it: factory.py."""
+        """The scenario as parsed, with methods that load it again: factory.py."""
         from irsim.env.factory import EnvConfig
 
         return EnvConfig(self)
 
     @property
     def object_factory(self) -> ObjectFactory:
-        """What makes objects from scenario entries: factory.py."""
+        """The factory that makes objects from scenario entries: factory.py."""
         return self.env_config.object_factory
 
     def _make_plot(self, attach: Any) -> EnvPlot:

@@ -1,4 +1,4 @@
-"""The environment seen in three dimensions: the same flat simulation, drawn in space."""
+"""The environment with a three-dimensional view: the same flat simulation, drawn in space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["EnvBase3D", "World3D"]
 
-_DEPTH = 10.0
+DEFAULT_DEPTH = 10.0
+"""Extent [m] along z of a world whose scenario gives no ``depth``."""
 
 
 class World3D(WorldView):
@@ -24,7 +25,9 @@ class World3D(WorldView):
 
     def __init__(self, simulation: Simulation) -> None:
         super().__init__(simulation)
-        self.__dict__.update(depth=float(simulation.scenario.world.depth or _DEPTH), offset=[*self.offset[:2], 0.0])
+        self.__dict__.update(
+            depth=float(simulation.scenario.world.depth or DEFAULT_DEPTH), offset=[*self.offset[:2], 0.0]
+        )
 
     @property
     def z_range(self) -> list[float]:
@@ -33,7 +36,7 @@ class World3D(WorldView):
 
 
 class EnvBase3D(Env):
-    """An environment with ``projection="3d"``: objects stand on the ground of a view in space."""
+    """An environment with ``projection="3d"``: it is drawn in space, with the objects on the ground."""
 
     _world: World3D
     _world_class = World3D

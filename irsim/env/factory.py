@@ -1,4 +1,4 @@
-"""Objects from the entries of a scenario, and the configuration of an environment, under the names of IR-SIM."""
+"""A factory of objects from scenario entries, and the configuration of an environment, with the names of IR-SIM."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ Role = Literal["robot", "obstacle"]
 
 
 class ObjectFactory:
-    """Makes objects that are in no world yet.
+    """Makes objects that do not belong to a world yet.
 
     Args:
-        world: The world they are for; default: that of the environment used last.
+        world: The world for which objects are made; by default that of the environment used last.
     """
 
     def __init__(self, world: Any = None) -> None:
         self.world = world
 
     def create_robot(self, kinematics: Any = None, **keys: Any) -> ObjectView:
-        """A robot with the keys of a scenario entry."""
+        """Make a robot from the keys of a scenario entry."""
         return ObjectBase(kinematics=kinematics, role="robot", **{"color": None, **keys})
 
     def create_obstacle(self, kinematics: Any = None, **keys: Any) -> ObjectView:
-        """An obstacle with the keys of a scenario entry."""
+        """Make an obstacle from the keys of a scenario entry."""
         return ObjectBase(kinematics=kinematics, role="obstacle", **{"color": None, **keys})
 
     def create_object(self, obj_type: str = "robot", number: int = 1, **keys: Any) -> list[ObjectView]:
-        """The objects that one entry makes, with ``number``, ``distribution`` and spreading as in a file."""
+        """Make the objects of one entry; ``number`` and ``distribution`` work as in a file."""
         return self.create_from_parse({"number": number, **keys}, obj_type)
 
     def create_from_parse(
@@ -52,15 +52,15 @@ class ObjectFactory:
         obj_type: str = "robot",
         group_start_index: int = 0,
     ) -> list[ObjectView]:
-        """The objects that an entry, or a list of entries, makes.
+        """Make the objects of an entry or of a list of entries.
 
         Args:
-            parse: As in a file.
+            parse: The entry or entries, with the keys of a scenario file.
             obj_type: ``robot`` or ``obstacle``.
             group_start_index: Number of the group of the first entry.
 
         Raises:
-            ScenarioError: The entries cannot be used.
+            ScenarioError: A key or value of an entry is not valid.
         """
         entries = [dict(parse)] if isinstance(parse, Mapping) else [dict(entry) for entry in parse]
         env = last_used()
@@ -86,7 +86,7 @@ class ObjectFactory:
         state: Sequence[Any] | None = None,
         goal: Sequence[Any] | None = None,
     ) -> tuple[list[list[float]], list[list[float]]]:
-        """States and goals of ``number`` objects by a distribution."""
+        """Return the states and the goals that a distribution gives ``number`` objects."""
         entry = {"number": number, "distribution": distribution, "state": state, "goal": goal}
         given = {key: value for key, value in entry.items() if value is not None}
         made = self.create_from_parse({**given, "shape": {"name": "circle", "radius": 0.01}}, "robot")
@@ -96,16 +96,16 @@ class ObjectFactory:
     def create_from_map(
         self, points: Any, reso: Any, grid_map: Any = None, world_offset: Sequence[float] | None = None
     ) -> list[ObjectView]:
-        """The obstacle that the occupied cells of a map make together.
+        """Make one obstacle of all occupied cells of a map.
 
         Args:
-            points: (2, M) centres of the occupied cells [m]; without any there is no obstacle.
+            points: (2, M) centres of the occupied cells [m]; without points no obstacle is made.
             reso: Extent of a cell along x and y [m].
-            grid_map: (nx, ny) occupancies; default: ``points`` on a grid over the world.
-            world_offset: Lower left corner [m]; default: that of the world.
+            grid_map: (nx, ny) occupancies; by default ``points`` are entered into a grid over the world.
+            world_offset: Lower left corner of the map [m]; by default that of the world.
 
         Returns:
-            One :class:`irsim.objects.obstacle_map.ObstacleMap`, or nothing.
+            A list of one :class:`irsim.objects.obstacle_map.ObstacleMap`, or an empty list.
         """
         centres = np.empty((2, 0)) if points is None else np.asarray(points, dtype=np.float64)
         if not centres.size:
@@ -141,7 +141,7 @@ class EnvConfig:
     """The scenario of an environment as parsed.
 
     Args:
-        env: Whose.
+        env: The environment.
     """
 
     def __init__(self, env: Any) -> None:
@@ -155,13 +155,13 @@ class EnvConfig:
 
     @property
     def world_name(self) -> str:
-        """Name of the file as it was given, or of the world."""
+        """Name of the file as the caller wrote it, or else name of the scenario."""
         given = self._env.world_name
         return self._env.scenario.name if given is None else str(given)
 
     @property
     def world_file_path(self) -> str | None:
-        """Path of the file."""
+        """Path of the scenario file; None for a scenario without a file."""
         source: str | None = self._env.scenario.source
         return source
 
@@ -171,13 +171,13 @@ class EnvConfig:
         return self._env.logger
 
     def load_yaml(self, world_name: str | None = None) -> None:
-        """Read the scenario again, or another one, from the next ``reload`` on."""
+        """Check that a scenario file can be read, and use it from the next ``reload`` on."""
         name = self.world_name if world_name is None else world_name
         open_scenario(name)
         self._env.world_name = name
 
     def initialize_objects(self) -> tuple[Any, ...]:
-        """Begin the next scene with the objects of the file.
+        """Start the next scene with the objects of the file.
 
         Returns:
             (world, objects, plot or None in headless mode, robots, obstacles, maps, groups).
@@ -195,11 +195,11 @@ class EnvConfig:
         return env._world, env.objects, plot, env.robot_list, obstacles, maps, groups
 
     def reload_objects(self) -> list[ObjectView]:
-        """Begin the next scene with the objects of the file; returns them."""
+        """Start the next scene with the objects of the file, and return them."""
         self._env.reset(random=True)
         return queries.objects(self._env)
 
     def reload_yaml_objects(self, world_name: str | None = None) -> list[ObjectView]:
-        """Read the scenario again, or another one, and begin it; returns its objects."""
+        """Read the scenario again, or another one, start it, and return its objects."""
         self._env.reload(world_name)
         return queries.objects(self._env)

@@ -1,4 +1,4 @@
-"""Beginnings and ends of an environment: reading the file, reset, reload, seeds, end."""
+"""Methods of an environment that start and end it: reading the file, reset, reload, seeds, end."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ def open_world(env: EnvState, world_name: str | Path | ResolvedScenario | None) 
 
 
 def reset(env: EnvState, random: bool = False) -> None:
-    """Back to the start.
+    """Start a new episode at time 0, with every object in its initial state.
 
     Args:
-        random: Draw the next scene (random shapes, poses, goals) instead of repeating this one.
+        random: Draw the next scene, with new random shapes, poses and goals, instead of repeating the present one.
 
     Raises:
-        PlacementError: The next scene has no room for a random object.
+        PlacementError: No free space was found for a random object of the next scene.
     """
     env._ended = False
     use(env)
@@ -76,12 +76,12 @@ def reset(env: EnvState, random: bool = False) -> None:
 
 
 def reload(env: EnvState, world_name: str | Path | None = None) -> None:
-    """Read the scenario again, or another one, and begin it as ``make`` does with this environment's seed.
+    """Read the scenario file again, or another one, and start it as ``make`` does, with the present seed.
 
-    Objects are new ones; views kept from before show what they last showed. The figure stays.
+    All objects are new; variables that still hold an old object show its last state. The figure stays open.
 
     Args:
-        world_name: Another file; default: the present one.
+        world_name: Another file; by default the present one.
     """
     env._ended = False
     name = env.world_name if world_name is None else world_name
@@ -102,11 +102,11 @@ def _start_over(env: EnvState, label: str | None) -> None:
 
 
 def set_random_seed(env: Any, seed: int | None = None, reload: bool = False) -> None:
-    """Change the seed; the next ``reset`` starts again from its first scene.
+    """Set the seed; the next ``reset`` starts the first scene of this seed.
 
     Args:
-        seed: 0 to 2**64 - 1; None draws a fresh one.
-        reload: Also read the scenario again and begin it with this seed.
+        seed: Integer from 0 to 2**64 - 1; None draws it from fresh entropy.
+        reload: Also read the scenario file again and start it with this seed.
     """
     env._seed = fresh_seed() if seed is None else check_seed(seed)
     env._simulation.reseed([env._seed])
@@ -116,13 +116,13 @@ def set_random_seed(env: Any, seed: int | None = None, reload: bool = False) -> 
 
 
 def end(env: EnvState, ending_time: float = 3.0, **kwargs: Any) -> None:
-    """Write the animation if there is one, and close the figure.
+    """Write the animation if frames were kept, and close the figure.
 
-    A script may go on: what is stepped, reset or drawn after that has a figure and an animation of its own. Ending
-    twice in a row does nothing more.
+    The environment remains usable: drawing after ``end`` starts a new figure and a new animation. A second call right
+    after the first has no effect.
 
     Args:
-        ending_time: Seconds a window stays open.
+        ending_time: Time for which a window stays open before it closes [s].
         **kwargs: Options of the animation: ``ani_name``, ``suffix``, ``last_frame_duration``, ``fps``, …
     """
     if env._ended and env._plot is None:
@@ -133,7 +133,7 @@ def end(env: EnvState, ending_time: float = 3.0, **kwargs: Any) -> None:
 
 
 def quit_program(env: EnvState) -> NoReturn:
-    """End and leave the program."""
+    """End the environment and exit the program."""
     end(env, ending_time=1.0)
     raise SystemExit(0)
 

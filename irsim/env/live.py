@@ -1,4 +1,4 @@
-"""Live control of an environment: keyboard, mouse, and what keys have asked for."""
+"""Live control of an environment: keyboard, mouse, and the requests that keys make."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def start_live(env: Any) -> None:
-    """Begin to listen to keys, unless nothing is drawn."""
+    """Start to listen to the keyboard, except in headless mode."""
     env._mouse = None
     env._keyboard = None
     if not env.headless:
@@ -27,7 +27,7 @@ def start_live(env: Any) -> None:
 
 
 def attach_live(env: EnvState, ax: Any) -> None:
-    """The figure was made: listen to it."""
+    """Start to listen to the mouse and the keyboard of a new figure."""
     from irsim.gui.mouse_control import MouseControl
 
     env._mouse = MouseControl(ax, env.scenario.gui.mouse.zoom_factor)
@@ -44,37 +44,37 @@ def detach_live(env: EnvState) -> None:
 
 
 def keyboard(env: EnvState) -> KeyboardControl | None:
-    """The keys; None in headless mode."""
+    """Return the keyboard control; None in headless mode."""
     return env._keyboard
 
 
 def key_vel(env: EnvState) -> NDArray[np.float64]:
-    """(3, 1) linear, turn (or lateral) and yaw command of the keyboard."""
+    """Return the command of the keyboard, (3, 1): forward speed [m/s], turn or lateral command, yaw rate [rad/s]."""
     return np.zeros((3, 1)) if env._keyboard is None else env._keyboard.key_vel.copy()
 
 
 def key_id(env: EnvState) -> int:
-    """Index of the robot that the keyboard drives."""
+    """Return the index, among the robots, of the robot that the keyboard drives."""
     return env.scenario.gui.keyboard.key_id if env._keyboard is None else env._keyboard.key_id
 
 
 def mouse_pos(env: EnvState) -> tuple[float, float] | None:
-    """(x, y) under the mouse [m]; None outside the axes."""
+    """Return the position (x, y) of the mouse in the world [m]; None outside the axes."""
     return None if env._mouse is None else env._mouse.mouse_pos
 
 
 def mouse_left_pos(env: EnvState) -> NDArray[np.float64] | None:
-    """(2,) where the left button is held down [m], else None."""
+    """Return the position (2,) at which the left mouse button is held down [m]; None otherwise."""
     return None if env._mouse is None else env._mouse.left_click_pos
 
 
 def mouse_right_pos(env: EnvState) -> NDArray[np.float64] | None:
-    """(2,) where the right button is held down [m], else None."""
+    """Return the position (2,) at which the right mouse button is held down [m]; None otherwise."""
     return None if env._mouse is None else env._mouse.right_click_pos
 
 
 def drive_by_keyboard(env: EnvState) -> None:
-    """The command of the keyboard becomes that of its robot, over whatever else it was given."""
+    """Give the command of the keyboard to the robot it drives, in place of any other action."""
     robots = robot_list(env)
     if env._keyboard is None or not 0 <= env._keyboard.key_id < len(robots):
         return
@@ -83,7 +83,7 @@ def drive_by_keyboard(env: EnvState) -> None:
 
 
 def carry_out_requests(env: Any) -> None:
-    """What keys have asked for since the last frame."""
+    """Carry out what keys have requested since the last frame."""
     if env.save_figure_flag:
         env.save_figure_flag = False
         env.save_figure(include_index=True)

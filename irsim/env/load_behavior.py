@@ -1,4 +1,4 @@
-"""Behaviors that a module of a script registers."""
+"""The method of an environment that loads a module of user behaviors."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ __all__ = ["load_behavior"]
 
 
 def load_behavior(env: EnvState, behaviors: str = "behavior_methods") -> None:
-    """Import a module for the behaviors it registers; those that are classes are then constructed anew.
+    """Import a module that registers behaviors, and construct behaviors that are classes again.
 
-    A module is executed once per process, however often it is loaded. One that cannot be found is logged.
+    Python executes a module once per process, however often it is loaded. If the import fails, an error is logged.
 
     Args:
-        behaviors: Name of a module beside the running script, or anywhere Python finds it.
+        behaviors: Name of a module beside the running script, or anywhere on the path of Python.
     """
     folder = str(Path(sys.argv[0]).resolve().parent) if sys.argv and sys.argv[0] else str(Path.cwd())
     if folder not in sys.path:

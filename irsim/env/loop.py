@@ -1,4 +1,4 @@
-"""The loop of an environment: step, rollout, advance, and what stands in the way of a step."""
+"""Methods of an environment that advance time: step, rollout, advance, pause."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ __all__ = ["advance", "done", "log_collisions", "pause", "refresh", "resume", "r
 
 
 def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
-    """Advance by one period.
+    """Advance the simulation by one period, ``step_time`` [s].
 
     Args:
-        action: None lets behaviors drive. One control vector, a list of them (None inside = behavior), or a mapping
-            ``{name or id: vector}``; vectors are in the command frame of the drive.
-        action_id: Id or name of the target, or a list of them; default: the first robot, and on from there.
+        action: One control vector, a list of control vectors, or a mapping ``{name or id: vector}``. Vectors are in the
+            command frame of the drive: for ``diff`` forward speed [m/s] and yaw rate [rad/s]. None, also as an entry of
+            the list, leaves objects to their behaviors.
+        action_id: Id or name of the target, or a list of them; by default actions go to the objects in order, from the
+            first one.
 
     Raises:
-        ValueError: Unknown target, wrong number of numbers, or an action in external mode.
+        ValueError: A target does not exist, a vector has the wrong size, or an action is given in external mode.
     """
     use(env)
     if (env.pause_flag or env.quit_flag or env.debug_flag or env._ended) and _held(env):
@@ -50,7 +52,7 @@ def step(env: EnvState, action: Any = None, action_id: Any = None) -> None:
 
 
 def _report_limits(env: EnvState, view: SimObject, control: list[float]) -> None:
-    """Say, once per object, that its limits cut an action."""
+    """Log, once per object, that its limits cut an action."""
     if view.static or not beyond_limits(view, control):
         return
     env._limit_warnings.add(view.id)
@@ -69,7 +71,7 @@ def _after_step(env: EnvState) -> None:
 
 
 def _held(env: Any) -> bool:
-    """What stands in the way of a step; True when the step is left out."""
+    """Return whether the step must be skipped because of a pause or of debugging; quit if that was requested."""
     env._ended = False
     if env.quit_flag:
         env.quit()
@@ -83,13 +85,13 @@ def _held(env: Any) -> bool:
 
 
 def rollout(env: EnvState, steps: int, *, until_done: bool = True) -> Rollout:
-    """Let behaviors drive for up to ``steps`` periods, in one go, and return everything that happened.
+    """Advance the simulation by up to ``steps`` periods in one call, driven by behaviors, and return the whole record.
 
-    The result is bit for bit what as many calls of :func:`step` give.
+    The result equals that of the same number of calls of :func:`step`, bit for bit.
 
     Args:
-        steps: Periods at most.
-        until_done: End as soon as every robot has arrived or stopped.
+        steps: Largest number of periods.
+        until_done: Stop as soon as every robot has arrived or stopped.
     """
     if env.world_param.step_mode == "external":
         raise ValueError("rollout needs step_mode 'internal'")
@@ -100,15 +102,15 @@ def rollout(env: EnvState, steps: int, *, until_done: bool = True) -> Rollout:
 
 
 def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: EpisodeRecorder | None = None) -> int:
-    """Like :func:`rollout`, keeping nothing here.
+    """Advance the simulation by up to ``steps`` periods in one call, driven by behaviors, without keeping a record.
 
     Args:
-        steps: Periods at most.
-        until_done: End as soon as every robot has arrived or stopped.
-        recorder: Keeps what happens.
+        steps: Largest number of periods.
+        until_done: Stop as soon as every robot has arrived or stopped.
+        recorder: Recorder that writes the episode to a file.
 
     Returns:
-        Periods executed.
+        Number of executed periods.
     """
     env._ended = False
     if env.world_param.step_mode == "external":
@@ -120,7 +122,7 @@ def advance(env: EnvState, steps: int, *, until_done: bool = True, recorder: Epi
 
 
 def _wait(env: EnvState, steps: int, until_done: bool, recorder: EpisodeRecorder | None) -> int:
-    """Periods in which the caller, who alone could, moves nothing."""
+    """Advance time in external mode, in which only the caller moves objects; return the number of periods."""
     for done in range(steps):
         if until_done and env._simulation.state.done(0):
             return done
@@ -131,10 +133,10 @@ def _wait(env: EnvState, steps: int, until_done: bool, recorder: EpisodeRecorder
 
 
 def done(env: EnvState, mode: str = "all") -> bool | None:
-    """Whether the robots are through: arrived, or stopped by a collision.
+    """Return whether the robots have arrived or have been stopped by a collision.
 
     Args:
-        mode: ``all`` robots or ``any`` of them; another word gives None.
+        mode: ``all`` asks for all robots, ``any`` for at least one; any other word returns None.
     """
     simulation = env._simulation
     if mode == "all":
@@ -144,17 +146,17 @@ def done(env: EnvState, mode: str = "all") -> bool | None:
 
 
 def refresh(env: EnvState) -> None:
-    """Evaluate collisions and sensors anew after objects were moved; time does not advance."""
+    """Update collisions and sensors after objects were moved; time does not advance."""
     env._simulation.refresh()
 
 
 def pause(env: EnvState) -> None:
-    """Let ``step`` do nothing until ``resume``."""
+    """Pause the simulation: ``step`` has no effect until ``resume`` is called."""
     env.pause_flag = True
 
 
 def resume(env: EnvState) -> None:
-    """Go on after ``pause`` or debugging."""
+    """Continue after ``pause`` or debugging."""
     env.pause_flag = env.debug_flag = False
     env._label = None
 

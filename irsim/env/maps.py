@@ -1,4 +1,4 @@
-"""Maps that planners get from an environment."""
+"""The method of an environment that returns a map for planners."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ __all__ = ["get_map"]
 
 
 def get_map(env: EnvState, resolution: float = 0.1) -> Any:
-    """The world as a map to plan on: its extent, its grid, its obstacles; for the footprint of the first robot.
+    """Return the world as a map for planners: its extent, grid and obstacles, and the footprint of the first robot.
 
     Args:
-        resolution: Size of the cells [m]. Of a world with a grid, cells may be joined to coarser ones (occupied
-            where one of them is) but not divided; not positive: those of the grid.
+        resolution: Size of the cells [m]. If the world has a grid, its cells may be merged into coarser ones (occupied
+            if one of them is) but not divided, and a value of 0 or less keeps its cells.
 
     Returns:
         A :class:`irsim.navigation.map.Map`.
@@ -34,5 +34,5 @@ def get_map(env: EnvState, resolution: float = 0.1) -> Any:
 
 
 def _canvas(env: EnvState) -> Any:
-    """The axes, if something has been drawn."""
+    """Return the axes of the figure; None before the first drawing."""
     return None if env._plot is None or not env._plot.made else env._plot.ax

@@ -1,4 +1,4 @@
-"""Messages out of an environment, and odometry into it."""
+"""Methods of an environment that return its state as a message, and set states from messages."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ __all__ = ["get_msg", "receive_msg", "resolve_message_targets"]
 
 
 def get_msg(env: EnvState, use_inf: bool = False) -> msg.WorldState:
-    """Everything as it is now.
+    """Return a message with the present state of every object.
 
     Args:
-        use_inf: Ranges of beams that hit nothing are +inf, of hits nearer than ``range_min`` -inf.
+        use_inf: Report +inf as the range of beams that hit nothing, and -inf for hits nearer than ``range_min``.
     """
     return msg.WorldState.from_env(env, use_inf=use_inf)
 
@@ -25,21 +25,21 @@ def get_msg(env: EnvState, use_inf: bool = False) -> msg.WorldState:
 def receive_msg(
     env: EnvState, msg: Any, *, object_name: str | None = None, object_id: int | None = None, refresh: bool = True
 ) -> int:
-    """Put objects where a message says they are, moving as it says.
+    """Set the poses and velocities of objects from a message.
 
     Args:
-        msg: A ``WorldState``, an ``ObjectState``, or odometry: anything with ``pose.pose`` and ``twist.twist``, a
-            native ROS message too.
-        object_name: Whose state it is; default: the name and id in the message, for odometry the first robot.
-        object_id: The same by id.
-        refresh: Then evaluate collisions and sensors anew.
+        msg: A ``WorldState``, an ``ObjectState``, or odometry, which is any object with ``pose.pose`` and
+            ``twist.twist``, such as a native ROS message.
+        object_name: Name of the object to set; by default the name and id in the message, for odometry the first robot.
+        object_id: Id of the object to set, instead of its name.
+        refresh: Also update collisions and sensors.
 
     Returns:
-        How many objects were put.
+        Number of objects that were set.
 
     Raises:
-        ValueError: No such object, or numbers that are not finite; nothing has been changed then.
-        TypeError: Not such a message.
+        ValueError: An object does not exist, or a number is not finite; then no object has been changed.
+        TypeError: ``msg`` is not a valid message.
     """
     pairs = resolve_message_targets(env._objects, msg, object_name, object_id, default_target=lambda: robot(env))
     changes = [(view, *state_and_control(view, odometry)) for view, odometry in pairs]
@@ -60,20 +60,21 @@ def resolve_message_targets(
     *,
     default_target: Any,
 ) -> list[tuple[Any, Any]]:
-    """Pairs of object and odometry that a message means.
+    """Find the objects that a message refers to.
 
     Args:
-        objects: The objects there are.
+        objects: All objects of the environment.
         msg: ``WorldState``, ``ObjectState`` or odometry.
-        object_name: Over the name in the message.
-        object_id: Over the id in the message.
-        default_target: Called for the object of odometry that names none.
+        object_name: Name of the object, in place of the name in the message.
+        object_id: Id of the object, in place of the id in the message.
+        default_target: Function that returns the object for odometry without a name.
 
     Returns:
-        Every object that is meant, once.
+        A pair of object and odometry for each object in the message.
 
     Raises:
-        ValueError: No object of that name and id.
+        ValueError: No object has that name or id.
+        TypeError: ``msg`` is not a valid message.
     """
     if hasattr(msg, "objects"):
         return [(_named(objects, state.name, state.id), state.odom) for state in msg.objects]

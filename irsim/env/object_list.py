@@ -1,4 +1,4 @@
-"""The objects of an environment as a list whose changes are those of the world."""
+"""The objects of an environment as a list; changes of the list change the world."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ __all__ = ["ObjectList"]
 
 
 class ObjectList(list[ObjectView]):
-    """All objects of an environment now; ``append`` and ``remove`` are ``env.add_object`` and ``env.delete_object``.
+    """The present objects of an environment.
+
+    ``append`` calls ``env.add_object``, and ``remove`` calls ``env.delete_object``.
 
     Args:
         env: The environment.
@@ -23,7 +25,7 @@ class ObjectList(list[ObjectView]):
         super().__init__(env._objects)
         self._env = env
 
-    def _look(self) -> None:
+    def _reread(self) -> None:
         super().__init__(self._env._objects)
 
     def append(self, obj: ObjectView) -> None:
@@ -31,9 +33,9 @@ class ObjectList(list[ObjectView]):
         self.extend([obj])
 
     def extend(self, objs: Iterable[ObjectView]) -> None:
-        """Put objects into the world; all or none."""
+        """Put objects into the world; if one is not valid, none is added."""
         add_objects(self._env, objs)
-        self._look()
+        self._reread()
 
     def __iadd__(self, objs: Iterable[ObjectView]) -> ObjectList:  # type: ignore[misc,override]
         self.extend(objs)
@@ -43,12 +45,12 @@ class ObjectList(list[ObjectView]):
         """Take an object out of the world.
 
         Raises:
-            ValueError: It is not in it.
+            ValueError: The object is not in the world.
         """
         del self[self.index(obj)]
 
     def pop(self, index: Any = -1) -> ObjectView:
-        """Take the object at a place out of the world; it stays usable."""
+        """Take the object at an index out of the world and return it; it remains usable."""
         found: ObjectView = self[index]
         del self[index]
         return found
@@ -60,7 +62,7 @@ class ObjectList(list[ObjectView]):
     def __delitem__(self, index: Any) -> None:
         chosen = self[index] if isinstance(index, slice) else [self[index]]
         delete_objects(self._env, [view.id for view in chosen])
-        self._look()
+        self._reread()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:
         raise TypeError("the order of `env.objects` is that of the world: append and remove are all it takes")

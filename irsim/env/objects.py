@@ -1,4 +1,4 @@
-"""Objects of an environment while it runs: how scripts make them, add them and take them out."""
+"""Methods of an environment that make, add and delete objects while it runs."""
 
 from __future__ import annotations
 
@@ -7,34 +7,29 @@ from dataclasses import replace
 from itertools import count
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import admit, alone, dismiss, restore
 from irsim.objects.view import ObjectView
 from irsim.objects.views import views
 from irsim.scenario.single_object import read_object
 
-Floats = NDArray[np.float64]
-
 
 def create_robot(env: EnvState, kinematics: Any = None, **keys: Any) -> ObjectView:
-    """Make a robot without adding it.
+    """Make a robot and return it; :func:`add_object` puts it into the world.
 
     Args:
-        kinematics: As in a scenario entry, ``{"name": "diff"}``.
-        **keys: The other keys of a scenario entry. Without ``state`` it stands at the origin, without ``goal`` it
-            has none.
+        kinematics: Drive as in a scenario entry, such as ``{"name": "diff"}``.
+        **keys: The other keys of a scenario entry. Without ``state`` the robot stands at the origin; without ``goal``
+            it has no goal.
 
     Raises:
-        ScenarioError: The keys cannot be used; what IR-SIM would ignore is a warning.
+        ScenarioError: A key or value is not valid. What IR-SIM would ignore is logged as a warning instead.
     """
     return _create(env, "robot", kinematics, keys)
 
 
 def create_obstacle(env: EnvState, kinematics: Any = None, **keys: Any) -> ObjectView:
-    """Make an obstacle without adding it; see :func:`create_robot`."""
+    """Make an obstacle and return it; the arguments are those of :func:`create_robot`."""
     return _create(env, "obstacle", kinematics, keys)
 
 
@@ -50,16 +45,16 @@ def _create(env: EnvState, role: Literal["robot", "obstacle"], kinematics: Any, 
 
 
 def add_object(env: EnvState, obj: ObjectView) -> None:
-    """Put an object into the world, as its last one; it takes part from the next step on.
+    """Add an object to the world, as the last one; it takes part from the next step on.
 
     Raises:
-        ValueError: Its name is taken, or it is in a world already.
+        ValueError: The name of the object is taken, or it is already in a world.
     """
     add_objects(env, [obj])
 
 
 def add_objects(env: EnvState, objs: Iterable[ObjectView]) -> None:
-    """Put several objects into the world; all or none."""
+    """Add several objects to the world; if one of them is not valid, none is added."""
     newcomers = list(objs)
     names = {view.name for view in env._objects}
     for view in newcomers:
@@ -81,12 +76,12 @@ def add_objects(env: EnvState, objs: Iterable[ObjectView]) -> None:
 
 
 def delete_object(env: EnvState, target_id: int | str) -> None:
-    """Take the object with this id (or name) out of the world; it stays usable. Unknown ones are ignored."""
+    """Delete the object with this id or name from the world; it remains usable. An unknown id is ignored."""
     delete_objects(env, [target_id])
 
 
 def delete_objects(env: EnvState, target_ids: Iterable[int | str]) -> None:
-    """Take several objects out of the world."""
+    """Delete the objects with these ids or names from the world; unknown ones are ignored."""
     targets = set(target_ids)
     leaving = [view for view in env._objects if view.id in targets or view.name in targets]
     if leaving:
@@ -102,7 +97,7 @@ def _note_exchange(env: EnvState) -> None:
 
 
 def restore_objects(env: EnvState) -> None:
-    """The objects of the file again, in its next scene."""
+    """Start the next scene with the objects of the file, without added objects and with the deleted ones."""
     restore(env._simulation, replace(env.scenario, world=env._simulation.scenario.world), env._originals)
     env._objects[:] = env._originals
     env._exchanged = False
@@ -110,15 +105,15 @@ def restore_objects(env: EnvState) -> None:
 
 
 def count_ids(env: EnvState) -> None:
-    """New objects get the ids after those of the file."""
+    """Give new objects the ids that follow those of the file."""
     env.env_param.id_iter = count(len(env.scenario.objects))
 
 
 def validate_unique_names(env: EnvState) -> None:
-    """Check that no two objects share a name.
+    """Check that no two objects have the same name.
 
     Raises:
-        ValueError: Some do.
+        ValueError: Two objects have the same name.
     """
     names = [view.name for view in env._objects]
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -127,4 +122,4 @@ def validate_unique_names(env: EnvState) -> None:
 
 
 def build_tree(env: EnvState) -> None:
-    """Nothing to do: where objects are is always known."""
+    """Do nothing; kept for compatibility, because the engine keeps its spatial index up to date."""

@@ -1,4 +1,4 @@
-"""``irsim.make``: a scenario file as an environment, flat or in space."""
+"""``irsim.make``: opens a scenario file as an environment with a two- or three-dimensional view."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ def make(
     """Open a scenario file as an environment.
 
     Args:
-        world_name: YAML file; searched as given, beside the script, in the current directory. Default: the name of the
-            running script with ``.yaml``.
-        projection: ``"2d"`` (default) or ``"3d"``: the same simulation, drawn in space.
-        step_mode: ``"internal"`` or ``"external"``, over the file's.
-        **kwargs: Those of :class:`Env`: display, headless, save_ani, seed, strict, log_level, …
+        world_name: YAML file; it is searched as given, beside the script, and in the current directory. By default it
+            has the name of the running script with the suffix ``.yaml``.
+        projection: ``"2d"`` (default) or ``"3d"``, which draws the same simulation in space.
+        step_mode: ``"internal"`` or ``"external"``, in place of the value in the file.
+        **kwargs: Other arguments of :class:`Env`: display, headless, save_ani, seed, strict, log_level, …
 
     Raises:
-        ScenarioNotFoundError: No such file; names the places searched and near matches.
-        ScenarioError: The file cannot be used; holds every problem with its line and fix.
-        TypeError: Unknown keyword.
+        ScenarioNotFoundError: The file does not exist; the error lists the folders searched and similar names.
+        ScenarioError: The file is not valid; the error holds every problem with its line and fix.
+        TypeError: A keyword is not known.
     """
     chosen = (projection or "2d").lower()
     if chosen == "3d":

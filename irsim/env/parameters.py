@@ -1,4 +1,4 @@
-"""Parameter objects that belong to one environment: world, engine and paths, under the names scripts know."""
+"""Parameter objects of one environment, for its world, its objects and its paths, with the names of IR-SIM."""
 
 from __future__ import annotations
 
@@ -27,18 +27,19 @@ if TYPE_CHECKING:
 
 __all__ = ["EnvParam", "PathParam", "WorldParam", "WorldView"]
 
-_OCCUPIED = 50
+OCCUPIED_ABOVE = 50
+"""Cells with an occupancy [%] above this count as occupied."""
 _CONTROL_MODES = ("auto", "keyboard")
-_OF_CONTACT = ("gravity", "friction", "restitution", "drive_tau")
-_OF_SCENARIO = ("name", "width", "height", "offset", "plot_parse", "depth")
+_CONTACT_SETTINGS = ("gravity", "friction", "restitution", "drive_tau")
+_SCENARIO_SETTINGS = ("name", "width", "height", "offset", "plot_parse", "depth")
 _IN_SCENARIO = "set it in the section `world` of the scenario"
 
 
 def checked_step_mode(mode: str) -> str:
-    """``internal`` or ``external``, of any case.
+    """Return ``internal`` or ``external`` in lower case.
 
     Raises:
-        ValueError: Neither.
+        ValueError: ``mode`` is neither of the two.
     """
     chosen = str(mode).strip().lower()
     if chosen not in ("internal", "external"):
@@ -47,11 +48,11 @@ def checked_step_mode(mode: str) -> str:
 
 
 def set_step_time(simulation: Simulation, seconds: float) -> None:
-    """Another period of a step.
+    """Change the period of a step.
 
     Raises:
-        ValueError: Not positive.
-        AttributeError: Steps have been executed: the clock counts them.
+        ValueError: The period is not positive.
+        AttributeError: Steps have been executed in this episode; the clock, a count of steps, would be wrong.
     """
     value = float(seconds)
     if value == simulation.scenario.world.step_time:
@@ -69,7 +70,7 @@ class WorldParam:
     """Time and modes of one environment.
 
     ``control_mode``, ``collision_mode``, ``step_mode`` and ``count`` may be changed at run time, ``step_time`` before
-    the first step of an episode; the rest is what the scenario says.
+    the first step of an episode; all others are fixed by the scenario.
     """
 
     gravity: float
@@ -83,16 +84,16 @@ class WorldParam:
         self._step_mode = checked_step_mode(step_mode)
         self._control_mode: str = world.control_mode
         self._collision_mode: str = world.collision_mode
-        self.__dict__.update({name: getattr(world, name) for name in _OF_CONTACT})
+        self.__dict__.update({name: getattr(world, name) for name in _CONTACT_SETTINGS})
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name in (*_OF_CONTACT, "time"):
+        if name in (*_CONTACT_SETTINGS, "time"):
             refuse("the world", name, _IN_SCENARIO)
         object.__setattr__(self, name, value)
 
     @property
     def step_mode(self) -> str:
-        """``internal`` (irsim moves the objects) or ``external`` (the caller does)."""
+        """``internal`` (irsim moves the objects) or ``external`` (the caller moves them)."""
         return self._step_mode
 
     @step_mode.setter
@@ -121,7 +122,7 @@ class WorldParam:
 
     @property
     def count(self) -> int:
-        """Executed steps; the clock is this times ``step_time``."""
+        """Number of executed steps; the simulated time is this number times ``step_time``."""
         return int(self._simulation.count[0])
 
     @count.setter
@@ -135,7 +136,7 @@ class WorldParam:
 
     @property
     def collision_mode(self) -> str:
-        """What happens to objects that touch."""
+        """How objects react to a collision: the value of ``collision_mode``."""
         return self._collision_mode
 
     @collision_mode.setter
@@ -147,11 +148,11 @@ class WorldParam:
 
 
 class EnvParam:
-    """What belongs to the environment as a whole.
+    """Objects, logger and id counter of one environment.
 
     Args:
-        objects: Gives its objects.
-        logger: Its logger.
+        objects: Function that returns the objects of the environment.
+        logger: Logger of the environment.
     """
 
     def __init__(self, objects: Callable[[], list[ObjectView]], logger: Logger) -> None:
@@ -166,7 +167,7 @@ class EnvParam:
 
 
 class PathParam:
-    """Where files go: folders beside the running script."""
+    """Folders beside the running script, to which figures and animations are written."""
 
     def __init__(self) -> None:
         self.root_path = sys.path[0] or str(Path.cwd())
@@ -178,7 +179,8 @@ class PathParam:
 class WorldView:
     """The world of one environment: extent, time, sampling.
 
-    ``count`` and ``sample_time`` may be set, ``step_time`` before the first step; the rest is what the scenario says.
+    ``count`` and ``sample_time`` may be set at any time, ``step_time`` before the first step; all others are fixed by
+    the scenario.
     """
 
     name: str
@@ -206,7 +208,7 @@ class WorldView:
 
     def __setattr__(self, name: str, value: Any) -> None:
         kind = getattr(type(self), name, None)
-        if name in _OF_SCENARIO or (isinstance(kind, property) and kind.fset is None):
+        if name in _SCENARIO_SETTINGS or (isinstance(kind, property) and kind.fset is None):
             refuse("the world", name, _IN_SCENARIO)
         object.__setattr__(self, name, value)
 
@@ -221,7 +223,7 @@ class WorldView:
 
     @property
     def sample_time(self) -> float:
-        """Period of the drawn frames [s]; that of the steps unless it is given."""
+        """Period of the drawn frames [s]; by default the period of a step."""
         return self.step_time if self._sample_time is None else self._sample_time
 
     @sample_time.setter
@@ -233,7 +235,7 @@ class WorldView:
 
     @property
     def steps_per_sample(self) -> int:
-        """Steps from one drawn frame to the next."""
+        """Number of steps from one drawn frame to the next."""
         return max(1, int(round(self.sample_time / self.step_time, 9)))
 
     @property
@@ -248,7 +250,7 @@ class WorldView:
 
     @property
     def count(self) -> int:
-        """Executed steps; the clock is this times ``step_time``."""
+        """Number of executed steps; the simulated time is this number times ``step_time``."""
         return int(self._simulation.count[0])
 
     @count.setter
@@ -262,33 +264,34 @@ class WorldView:
 
     @property
     def sampling(self) -> bool:
-        """Whether this step is one that is drawn."""
+        """Whether the present step is drawn."""
         return self.count % self.steps_per_sample == 0
 
-    # a world by itself -----------------------------------------------------------------------------------------------
+    # a world without an environment ----------------------------------------------------------------------------------
     def step(self, objects: Any = None) -> None:
-        """Let one period pass in which nothing moves by itself; environments do this in their own ``step``.
+        """Advance time by one period in which no object moves; an environment uses its own ``step`` instead.
 
         Args:
-            objects: Accepted as it was before; the world knows what is in it.
+            objects: Ignored, accepted for compatibility.
         """
         self._simulation.step_external()
 
     def reset(self) -> None:
-        """Time 0, and fog everywhere; objects stay where they are."""
+        """Set the time to 0 and cover the whole fog map; objects stay where they are."""
         self._simulation.count[0] = 0
         if self._fog is not None:
             self._simulation.state.explored[0] = 0
 
     def gen_grid_map(self, obstacle_map: Any, mdownsample: int = 1) -> tuple[Any, Any, Any]:
-        """The grid that a value of ``obstacle_map`` stands for in this world.
+        """Make the grid that a value of ``obstacle_map`` describes, for the extent of this world.
 
         Args:
             obstacle_map: None, an array, a picture file name, or a mapping with the name of a generator.
-            mdownsample: Keep every so many rows and columns.
+            mdownsample: Keep every Nth row and column.
 
         Returns:
-            (nx, ny) occupancies, (2, M) indices of the occupied cells, (2, M) their centres [m]; None each for None.
+            Occupancies (nx, ny), indices of the occupied cells (2, M), and centres of these cells (2, M) [m]; three
+            times None without a map.
         """
         from irsim.components.maps._generators import resolve_obstacle_map
 
@@ -296,16 +299,16 @@ class WorldView:
         if values is None:
             return None, None, None
         values = values[::mdownsample, ::mdownsample]
-        index = np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+        index = np.array(np.nonzero(values > OCCUPIED_ABOVE), dtype=np.int64)
         cell = np.array([[self.width / values.shape[0]], [self.height / values.shape[1]]])
         return values, index, np.array(self.offset)[:2, None] + (index + 0.5) * cell
 
     def get_map(self, resolution: float = 0.1, obstacle_list: Sequence[Any] | None = None) -> Any:
-        """The world as a map to plan on; see :meth:`irsim.env.env_base.Env.get_map`.
+        """Return the world as a map for planners; see :meth:`irsim.env.env_base.Env.get_map`.
 
         Args:
             resolution: Size of the cells [m].
-            obstacle_list: What stands in it besides the grid.
+            obstacle_list: Obstacles to enter besides the grid.
         """
         from irsim.navigation.map import world_map
 
@@ -314,7 +317,7 @@ class WorldView:
 
     @property
     def logger(self) -> Logger:
-        """The logger of its environment, or of the one used last, or one of its own."""
+        """The logger of the environment; without one, that of the environment used last, or a new logger."""
         owner = self._simulation.owner() or last_used()
         if owner is not None:
             found: Logger = owner.logger
@@ -327,30 +330,30 @@ class WorldView:
 
     @property
     def fog_map(self) -> FogMap | None:
-        """Cells that robots have seen; None without ``world.fog_map``."""
+        """The map of the cells that robots have seen; None without ``world.fog_map``."""
         if self._fog is not None:
             self._fog.cells = self._simulation.state.explored[0]
         return self._fog
 
     @property
     def grid_map(self) -> NDArray[np.float64] | None:
-        """(nx, ny) occupancy 0 to 100, None without a map."""
+        """Occupancies from 0 to 100, (nx, ny); None without a map."""
         return grid_values(self._simulation)
 
     @property
     def reso(self) -> NDArray[np.float64]:
-        """(2, 1) extent of a map cell along x and y [m]; zero without a map."""
+        """Extent of a map cell along x and y [m], (2, 1); zeros without a map."""
         grid = self._simulation.scenario.grid
         return column(grid.cell if grid is not None else (0.0, 0.0))
 
     @property
     def obstacle_index(self) -> NDArray[np.int64] | None:
-        """(2, M) indices i, j of the occupied cells, None without a map."""
+        """Indices i, j of the occupied cells, (2, M); None without a map."""
         values = self.grid_map
-        return None if values is None else np.array(np.nonzero(values > _OCCUPIED), dtype=np.int64)
+        return None if values is None else np.array(np.nonzero(values > OCCUPIED_ABOVE), dtype=np.int64)
 
     @property
     def obstacle_positions(self) -> NDArray[np.float64] | None:
-        """(2, M) centres of the occupied cells [m], None without a map."""
+        """Centres of the occupied cells [m], (2, M); None without a map."""
         index = self.obstacle_index
         return None if index is None else np.array(self.offset)[:2, None] + (index + 0.5) * self.reso

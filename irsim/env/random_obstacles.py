@@ -1,22 +1,21 @@
-"""New random places and outlines for the obstacles of an environment."""
+"""Methods of an environment that give its obstacles random poses and outlines."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.env.queries import obstacle_list
 from irsim.env.state import EnvState
 from irsim.objects.shapely_geometry import touching
 
 __all__ = ["random_obstacle_position", "random_polygon_shape"]
 
-Floats = NDArray[np.float64]
 MAX_DRAWS = 100
-"""Draws per obstacle before a place where it overlaps is accepted."""
+"""Largest number of draws per obstacle; after that, a pose that overlaps another object is accepted."""
 
 
 def random_obstacle_position(
@@ -26,14 +25,13 @@ def random_obstacle_position(
     ids: Iterable[int] | None = None,
     non_overlapping: bool = False,
 ) -> None:
-    """Put obstacles somewhere else, at random; resets return to these places.
+    """Move obstacles to random poses, to which later resets return.
 
     Args:
-        range_low: Lower bounds of x, y [m] and heading [rad]; default [0, 0, -3.14].
-        range_high: Upper bounds; default [10, 10, 3.14].
-        ids: Ids of the obstacles; default: all. The map and the walls round the world stay.
-        non_overlapping: Draw up to 100 times until an obstacle touches neither those that stay nor those that have
-            been placed.
+        range_low: Lower bounds of x, y [m] and heading [rad]; by default [0, 0, -3.14].
+        range_high: Upper bounds of x, y [m] and heading [rad]; by default [10, 10, 3.14].
+        ids: Ids of the obstacles to move; by default all. The map and the walls round the world never move.
+        non_overlapping: Draw the pose of an obstacle up to 100 times, until it touches no other object.
     """
     low = np.array([0.0, 0.0, -3.14] if range_low is None else range_low, dtype=np.float64).reshape(3)
     high = np.array([10.0, 10.0, 3.14] if range_high is None else range_high, dtype=np.float64).reshape(3)
@@ -61,14 +59,14 @@ def random_polygon_shape(
     spikeyness_range: Sequence[float] | None = None,
     num_vertices_range: Sequence[int] | None = None,
 ) -> None:
-    """Give every polygon obstacle a new random outline; poses stay.
+    """Give every polygon obstacle a new random outline, without moving it.
 
     Args:
-        center_range: [xmin, ymin, xmax, ymax] of the centre in the body frame [m], default [0, 0, 10, 10].
-        avg_radius_range: Of the mean radius [m], default [0.1, 1].
-        irregularity_range: Of the unevenness of the angles between vertices, default [0, 1].
-        spikeyness_range: Of the spread of the radii, default [0, 1].
-        num_vertices_range: Of the number of vertices, default [4, 10].
+        center_range: [xmin, ymin, xmax, ymax] of the centre in the body frame [m]; by default [0, 0, 10, 10].
+        avg_radius_range: Bounds of the mean radius [m]; by default [0.1, 1].
+        irregularity_range: Bounds of the unevenness of the angles between vertices; by default [0, 1].
+        spikeyness_range: Bounds of the spread of the radii; by default [0, 1].
+        num_vertices_range: Bounds of the number of vertices; by default [4, 10].
     """
     part = core.RandomPolygon(
         center_range=[float(v) for v in center_range or (0, 0, 10, 10)],

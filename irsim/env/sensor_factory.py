@@ -1,4 +1,4 @@
-"""Sensors by themselves, as IR-SIM's factory makes them."""
+"""A factory of sensors without an environment, with the names of IR-SIM."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ __all__ = ["SensorFactory"]
 
 
 class SensorFactory:
-    """Makes sensors that no object of an environment carries."""
+    """Makes sensors that do not belong to an object of an environment."""
 
     def create_sensor(self, state: Any, obj_id: int, **kwargs: Any) -> Any:
-        """A sensor with a carrier of its own in an otherwise empty world.
+        """Make a sensor whose carrier is the only object of an empty world.
 
         Args:
-            state: x, y [m] and heading [rad] of the carrier, in any shape.
-            obj_id: Its id.
-            **kwargs: Keys of a sensor in a scenario; without ``name`` and ``type`` it is a ``lidar2d``.
+            state: Pose of the carrier, x, y [m] and heading [rad], in any shape.
+            obj_id: Id of the carrier.
+            **kwargs: Keys of a sensor in a scenario; without ``name`` and ``type`` the sensor is a ``lidar2d``.
 
         Raises:
             NotImplementedError: No sensor has that name.
-            ScenarioError: A key or value is wrong.
+            ScenarioError: A key or value is not valid.
         """
         name = str(kwargs.get("name", kwargs.get("type", "lidar2d")))
         if SENSORS.get(name) is None:

@@ -1,4 +1,4 @@
-"""What an environment holds; the functions of this room work on it, and :class:`irsim.env.Env` lists them."""
+"""The attributes of an environment; the functions of this folder use them, and :class:`irsim.env.Env` lists these."""
 
 from __future__ import annotations
 
@@ -21,32 +21,33 @@ __all__ = ["EnvState"]
 
 
 class EnvState:
-    """The parts of an environment, and what was asked of it.
+    """The parts of an environment, and the requests that were made to it.
 
     Attributes:
         id: Number of the environment in this process.
-        world_name: The file that it was made from, as it was given.
-        scenario: The scenario, resolved.
-        logger: Where its warnings go.
-        world_param, env_param, path_param, palette_param: Parameter objects under the names that scripts know.
-        display, headless, save_ani, ani_kwargs, full: How it is drawn; see :class:`irsim.env.Env`.
+        world_name: Name of the scenario file as the caller wrote it.
+        scenario: The resolved scenario.
+        logger: Logger of the environment.
+        world_param, env_param, path_param, palette_param: Parameter objects with the names of IR-SIM.
+        display, headless, save_ani, ani_kwargs, full: Settings of the figure; see :class:`irsim.env.Env`.
         pause_flag, quit_flag, debug_flag, reset_flag, reload_flag, save_figure_flag: Requests by keys or scripts, which
             the next step or frame carries out.
-        debug_count: Number of single steps that were asked for in debugging.
-        _simulation: The simulation behind it.
-        _objects: Its objects now, in the order of their rows.
-        _originals: The objects of the file.
-        _exchanged: Whether objects have come or gone since the file was read.
-        _world: The world under the names that scripts know.
+        debug_count: Number of single steps that were requested in debugging.
+        _simulation: The simulation behind the environment.
+        _objects: The present objects, in the order of their rows.
+        _originals: The objects of the scenario file.
+        _exchanged: Whether objects have been added or deleted since the file was read.
+        _world: The world with the names of IR-SIM.
         _plot: The figure; None before something is drawn.
         _title: Title set by a script; None shows the status.
         _label: Status set by a script, until the next step.
-        _keyboard, _mouse: Live control of its figure.
+        _keyboard, _mouse: Live control of the figure.
         _seed: Seed of the present scenes.
         _wanted_seed, _wanted_mode, _strict: Arguments of ``make``.
-        _ended: Whether ``end`` was called, and no step since.
-        _limit_warnings: Ids of the objects whose cut actions were reported.
-        _events_seen, _events_logged: Number of events that exist, and that were logged.
+        _ended: Whether ``end`` was called, without a step after it.
+        _limit_warnings: Ids of the objects for which the cut of an action has been logged.
+        _events_seen, _events_logged: Number of events at the last look at them, and number of events checked for
+            logging.
     """
 
     id: int

@@ -1,4 +1,4 @@
-"""Small worlds in which the kernels of the engine answer for arrays or for chosen objects."""
+"""Evaluates built-in behaviors for arrays, in small worlds made for one call."""
 
 from __future__ import annotations
 
@@ -22,11 +22,15 @@ from irsim.simulation.build import build_world
 __all__ = ["Agent", "behavior_options", "dash", "decide"]
 
 PADDING = 0.1
-"""What IR-SIM adds to radii that avoidance laws see [m]."""
-_FAR = 100.0
-_SMALLEST = 1e-9
+"""Margin [m] that IR-SIM adds to the radii that avoidance laws use."""
+GOAL_DISTANCE = 100.0
+"""Distance [m] at which a goal is placed in the direction of a desired velocity."""
+MIN_RADIUS = 1e-9
+"""Smallest radius [m] of a circle that stands for an agent."""
 _STEP_TIME = 0.1
-_TOLERANCE = 0.1
+"""Default period [s]."""
+ANGLE_TOLERANCE = 0.1
+"""Default heading error [rad] below which ``dash`` does not correct the heading."""
 
 
 @cache
@@ -38,10 +42,11 @@ def _base() -> ResolvedScenario:
 
 
 def behavior_options(name: str, keys: Mapping[str, Any]) -> BaseModel:
-    """Options of a built-in behavior from those of ``keys`` that it knows.
+    """Return the options of a built-in behavior from the keys that it takes; other keys are ignored.
 
     Raises:
-        ValidationError: A value does not fit.
+        LookupError: The name is not that of a built-in behavior.
+        ValidationError: A value is not valid.
     """
     feature = BEHAVIORS.get(name)
     if feature is None or feature.kernel is None:
@@ -51,10 +56,10 @@ def behavior_options(name: str, keys: Mapping[str, Any]) -> BaseModel:
 
 
 class Agent:
-    """What avoidance laws know of an object, world frame.
+    """An object as avoidance laws see it, in the world frame.
 
     Args:
-        numbers: x, y [m], vx, vy [m/s], padded radius [m], and of one that decides the wanted vx, vy [m/s].
+        numbers: x, y [m], vx, vy [m/s], padded radius [m]; for an agent that decides also its desired vx, vy [m/s].
     """
 
     def __init__(self, numbers: Sequence[float]) -> None:
@@ -63,11 +68,17 @@ class Agent:
         self.wanted = values[5:7]
 
     def record(self, number: int, options: BaseModel | None, *, grouped: bool) -> ObjectRecord:
-        """The same as an object that moves as it likes."""
+        """Return the scenario record of the agent as an object with a holonomic drive.
+
+        Args:
+            number: Id of the object.
+            options: Behavior of an agent that decides; None for other agents.
+            grouped: Whether the behavior is that of the group.
+        """
         speed = math.hypot(*self.wanted) if self.wanted else 0.0
         goals = []
         if speed > 0:
-            goals = [[self.x + _FAR * self.wanted[0] / speed, self.y + _FAR * self.wanted[1] / speed]]
+            goals = [[self.x + GOAL_DISTANCE * self.wanted[0] / speed, self.y + GOAL_DISTANCE * self.wanted[1] / speed]]
         circle = SHAPES.get("circle")
         assert circle is not None
         return replace(
@@ -80,7 +91,7 @@ class Agent:
             vel_min=[-speed, -speed],
             vel_max=[speed, speed],
             goals=goals,
-            shape=circle.options.model_validate({"radius": max(self.radius - PADDING, _SMALLEST)}),
+            shape=circle.options.model_validate({"radius": max(self.radius - PADDING, MIN_RADIUS)}),
             behavior=None if grouped else options,
             group_behavior=options if grouped else None,
         )
@@ -95,14 +106,14 @@ def decide(
     grouped: bool = False,
     step_time: float = _STEP_TIME,
 ) -> Floats:
-    """(K, 2) world-frame velocities [m/s] that a behavior chooses for agents.
+    """Return the world-frame velocities that a behavior chooses for agents, (K, 2) [m/s].
 
     Args:
-        options: Of the behavior.
-        agents: [x, y, vx, vy, padded radius, wanted vx, wanted vy, …] of each that decides.
-        discs: [x, y, vx, vy, padded radius] of others.
-        lines: [x1, y1, x2, y2] of segments.
-        grouped: The agents are one group.
+        options: Options of the behavior.
+        agents: [x, y, vx, vy, padded radius, desired vx, desired vy, …] of each agent that decides.
+        discs: [x, y, vx, vy, padded radius] of each other object.
+        lines: [x1, y1, x2, y2] of each line segment.
+        grouped: Whether the agents are one group.
         step_time: Period [s].
     """
     records = [Agent(numbers).record(k, options, grouped=grouped) for k, numbers in enumerate(agents)]
@@ -133,21 +144,21 @@ def dash(
     vel_max: Floats,
     *,
     goal_threshold: float,
-    angle_tolerance: float = _TOLERANCE,
+    angle_tolerance: float = ANGLE_TOLERANCE,
     turning_acce: float = math.inf,
     dt: float = 0.0,
 ) -> Floats:
-    """(n, 1) control that drives one object with a built-in drive straight to its goal.
+    """Return the control that drives an object with a built-in drive straight to its goal, (n, 1).
 
     Args:
         drive: Name of the kinematics.
-        state: (3 or more, 1).
-        goal: (2 or 3, 1).
-        vel_max: (n, 1) limits.
-        goal_threshold: Arrived when nearer than this [m].
-        angle_tolerance: Smaller heading errors are left alone [rad].
+        state: State (3 or more, 1): x, y [m], heading [rad], extra rows.
+        goal: Goal (2 or 3, 1): x, y [m], heading [rad].
+        vel_max: Upper limits of the control, (n, 1).
+        goal_threshold: Distance to the goal below which the object has arrived [m].
+        angle_tolerance: Heading error below which the heading is not corrected [rad].
         turning_acce: Limit on the change of the turning control [rad/s^2].
-        dt: Period [s], needed with a finite ``turning_acce``.
+        dt: Period [s], which a finite ``turning_acce`` requires.
     """
     numbers = np.asarray(state, dtype=np.float64).reshape(-1).tolist()
     top = np.asarray(vel_max, dtype=np.float64).reshape(-1).tolist()

@@ -1,4 +1,4 @@
-"""Turns the name of a topic into an :class:`Answer`: parts of the language here, the rest in `index` and `search`."""
+"""Turns the name of a topic into an :class:`Answer`: parts of the language here, others in `index` and `search`."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _PLACES = {
 
 
 def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
-    """Answer what is known about a topic.
+    """Return the answer to a topic.
 
     Args:
         topic: A path (``robot.sensors.lidar2d.range_max``), a component (``behavior rvo``, ``rvo``), a kind of

@@ -1,4 +1,4 @@
-"""Actions as scripts write them → controls of objects."""
+"""Converts actions as scripts write them into controls of objects."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from irsim.objects.base import SimObject
 
 __all__ = ["assign_actions", "beyond_limits"]
 
-_SLACK = 1e-9
-"""What rounding may add to a limit."""
+TOLERANCE = 1e-9
+"""Excess over a limit that counts as a rounding error."""
 Assignments = list[tuple[SimObject, list[float]]]
 
 
@@ -28,7 +28,7 @@ def _find(objects: Sequence[SimObject], key: Any) -> SimObject:
     if isinstance(key, (int, np.integer)) and not isinstance(key, bool):
         index = int(key)
         if 0 <= index < len(objects) and objects[index].id == index:
-            return objects[index]  # nobody was taken out before it
+            return objects[index]  # no earlier object was deleted
         found = [view for view in objects if view.id == index]
     else:
         found = [view for view in objects if view.name == key]
@@ -54,36 +54,38 @@ def _control(view: SimObject, action: Any) -> list[float]:
 
 
 def beyond_limits(view: SimObject, control: Sequence[float]) -> bool:
-    """Whether limits of speed or acceleration will cut a control."""
+    """Return whether the limits of speed or acceleration cut a control."""
     record = view.record
     limits = zip(control, record.vel_min, record.vel_max, strict=True)
-    if any(not low - _SLACK <= value <= high + _SLACK for value, low, high in limits):
+    if any(not low - TOLERANCE <= value <= high + TOLERANCE for value, low, high in limits):
         return True
     if all(rate == math.inf for rate in record.acce):
         return False
     lowest, highest = view.get_vel_range()
-    return bool((np.array(control) < lowest[:, 0] - _SLACK).any() or (np.array(control) > highest[:, 0] + _SLACK).any())
+    return bool(
+        (np.array(control) < lowest[:, 0] - TOLERANCE).any() or (np.array(control) > highest[:, 0] + TOLERANCE).any()
+    )
 
 
 def assign_actions(
     objects: Sequence[SimObject], action: Any, action_id: Any, warn: Callable[[str], None]
 ) -> Assignments:
-    """Which object gets which control.
+    """Assign the controls of an action to objects.
 
     Args:
-        objects: In the order of their rows; positions count from the first one.
+        objects: All objects, in the order of their rows.
         action: One control vector (list, tuple, 1-D array or column), a list of them (None inside leaves that object to
             its behavior), or a mapping from id or name to vectors.
-        action_id: Id or name of the target, or a list of them. A list of actions given with one id goes to that object
-            and the following ones. None: the first object, and on from there.
-        warn: Told about surplus actions.
+        action_id: Id or name of the target, or a list of them. With one id, a list of actions goes to that object and
+            the objects after it. None stands for the first object.
+        warn: Function that is called with a message about surplus actions.
 
     Returns:
         Pairs of object and its control in the command frame.
 
     Raises:
-        TypeError: Not an action at all.
-        ValueError: Unknown target, wrong number of numbers, not finite.
+        TypeError: ``action`` is not a valid type of action.
+        ValueError: A target does not exist, or a control has the wrong size or is not finite.
     """
     if isinstance(action, Mapping):
         pairs = [(_find(objects, key), value) for key, value in action.items()]

@@ -1,4 +1,4 @@
-"""What avoidance laws ask of an object: wanted velocities, discs of neighbours, segments of lines."""
+"""The part of an object that avoidance laws use: desired velocity, discs of neighbours, segments of lines."""
 
 from __future__ import annotations
 
@@ -7,39 +7,38 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.geometry import ObjectBody
 from irsim.objects.neighbors import discs
 
 __all__ = ["ObjectAvoidance"]
 
-Floats = NDArray[np.float64]
-_THRESHOLD = 0.1
-"""Nearer than this to the goal [m] nobody wants to move."""
+MIN_GOAL_DISTANCE = 0.1
+"""Distance [m] to the goal below which the desired velocity is zero."""
 _PER_AXIS = ("omni", "omni_angular", None)
 
 
 class ObjectAvoidance(ObjectBody):
-    """What avoidance laws ask of an object; part of :class:`irsim.objects.view.ObjectView`."""
+    """Properties that avoidance laws use; part of :class:`irsim.objects.view.ObjectView`."""
 
     @property
     def desired_omni_vel(self) -> Floats:
-        """(2, 1) world velocity straight to the goal at full speed [m/s]; zero at the goal or without one."""
+        """World-frame velocity straight to the goal at full speed, (2, 1) [m/s]; zero at the goal or without one."""
         return self.get_desired_omni_vel()
 
-    def get_desired_omni_vel(self, goal_threshold: float = _THRESHOLD, normalized: bool = False) -> Floats:
-        """The world velocity straight to the goal.
+    def get_desired_omni_vel(self, goal_threshold: float = MIN_GOAL_DISTANCE, normalized: bool = False) -> Floats:
+        """Return the world-frame velocity straight to the goal.
 
         Args:
-            goal_threshold: Nearer than this [m] the answer is zero.
-            normalized: With length 1 at most.
+            goal_threshold: Distance to the goal below which the velocity is zero [m].
+            normalized: Limit the length of the velocity to 1 m/s.
 
         Returns:
-            (2, 1) [m/s]: full speed of each axis times the direction, ``vel_max`` of the first component on both axes
-            for ``diff`` and ``acker``.
+            Velocity (2, 1) [m/s]: the direction to the goal times the largest speed of each axis. For ``diff`` and
+            ``acker`` the first component of ``vel_max`` holds for both axes.
         """
         goal = self.goal
         if goal is None:
@@ -56,24 +55,24 @@ class ObjectAvoidance(ObjectBody):
 
     @property
     def rvo_state(self) -> list[float]:
-        """[x, y, vx, vy, radius + 0.1, wanted vx, wanted vy, theta], world frame."""
+        """[x, y, vx, vy, radius + 0.1, desired vx, desired vy, theta], world frame."""
         x, y, theta = self._simulation.pose[self.row].tolist()
         return [x, y, *self._world_velocity(), self.radius_extend, *self.desired_omni_vel[:, 0].tolist(), theta]
 
     @property
     def rvo_neighbor_state(self) -> list[float]:
-        """[x, y, vx, vy, radius + 0.1] of the centre of its area, world frame."""
+        """[x, y, vx, vy, radius + 0.1], world frame; x and y are the centre of the body's area."""
         return [*self.centroid[:, 0].tolist(), *self._world_velocity(), self.radius_extend]
 
     @property
     def rvo_neighbors(self) -> list[list[float]]:
-        """``rvo_neighbor_state`` of all others that are not ``unobstructed``."""
+        """``rvo_neighbor_state`` of all other objects that are not ``unobstructed``."""
         others = [other for other in self.external_objects if not other.unobstructed]
         kinds: set[Any] = set(map(type, others))
         if not others or any(kind.rvo_neighbor_state is not _NEIGHBOR_STATE for kind in kinds):
             return [other.rvo_neighbor_state for other in others]
-        everybody: list[list[float]] = discs(others[0]._simulation, others[0].world).tolist()
-        return [everybody[other.index] for other in others]
+        all_discs: list[list[float]] = discs(others[0]._simulation, others[0].world).tolist()
+        return [all_discs[other.index] for other in others]
 
     @property
     def rvo_line_segments(self) -> list[list[float]]:
@@ -84,16 +83,16 @@ class ObjectAvoidance(ObjectBody):
         return [[*a, *b] for a, b in pairwise(outline.T.tolist())]
 
     def vel_world2body(self, velocity_xy: Any) -> Floats:
-        """The control with which its drive follows a world velocity.
+        """Return the control with which the drive follows a world-frame velocity.
 
         Args:
             velocity_xy: vx, vy [m/s] in any shape.
 
         Returns:
-            (vel_dim, 1) control in the command frame; of the limits only the yaw rate of ``diff`` is kept.
+            Control (vel_dim, 1) in the command frame. Limits are not applied, except that on the yaw rate of ``diff``.
 
         Raises:
-            NotImplementedError: It has no drive.
+            NotImplementedError: The object has no drive.
         """
         if self.kinematics is None:
             raise NotImplementedError(f"{self.name!r} has no drive that could follow a velocity")

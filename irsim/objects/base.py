@@ -1,4 +1,4 @@
-"""What every object has: its row of the simulation, and the state, goals, flags and limits in that row."""
+"""The base of every object: its row of the simulation, with the state, goals, flags and limits in that row."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.components.kinematics._handler import KinematicsHandler
@@ -16,26 +17,25 @@ if TYPE_CHECKING:
 
 __all__ = ["SimObject", "column"]
 
-Floats = NDArray[np.float64]
-
 
 def column(values: Any) -> Floats:
-    """(n, 1) read-only copy."""
+    """Return a read-only copy of numbers as a column (n, 1)."""
     copied = np.array(values, dtype=np.float64).reshape(-1, 1)
     copied.setflags(write=False)
     return copied
 
 
 class SimObject:
-    """One row of a simulation: what the other parts of an object build on.
+    """One row of a simulation, the base class of the other parts of an object.
 
     Attributes:
         record: The resolved scenario entry of the object.
-        id: Number in its environment; it never changes.
-        world: World index in a batch.
-        index: Place among the objects of its world, which changes when earlier ones are taken out.
-        row: Row in the simulation's arrays.
-        surroundings: Objects of the environment that the object was made for, until it is added there; else None.
+        id: Number of the object in its environment; it never changes.
+        world: Index of the world in a batch.
+        index: Index among the objects of the world; it changes when an object with a lower index is deleted.
+        row: Row in the arrays of the simulation.
+        surroundings: Until the object is added to the environment for which it was made, the objects of that
+            environment; otherwise None.
     """
 
     record: ObjectRecord
@@ -82,12 +82,12 @@ class SimObject:
 
     @property
     def kinematics(self) -> str | None:
-        """Name of the drive; None for objects that have none."""
+        """Name of the drive; None without one."""
         return None if self.record.kinematics is None else str(getattr(self.record.kinematics, "name", ""))
 
     @property
     def _handler(self) -> KinematicsHandler | None:
-        """The drive, where a user wrote it."""
+        """The handler of a drive of user code; None for other drives."""
         drives = self._simulation.drives
         return None if drives is None else drives.handler(self.row)
 
@@ -102,13 +102,13 @@ class SimObject:
         return f"G-{self.abbr}"
 
     def amend(self, record: ObjectRecord) -> None:
-        """Go on with another record of the same id; :class:`irsim.objects.view.ObjectView` knows how."""
+        """Replace the record by another one with the same id; :class:`irsim.objects.view.ObjectView` implements it."""
         raise NotImplementedError
 
     # state -----------------------------------------------------------------------------------------------------------
     @property
     def state(self) -> Floats:
-        """(3 or more, 1) x, y [m], heading [rad], then extra rows (steering angle of Ackermann drives)."""
+        """State (3 or more, 1): x, y [m], heading [rad], then extra rows such as the steering angle of a car [rad]."""
         if self._plain:
             state = self._pose_column.copy()
         else:
@@ -119,7 +119,7 @@ class SimObject:
 
     @property
     def _state(self) -> Floats:
-        """The state; setting it is ``set_state``."""
+        """The state; assigning to it calls ``set_state``."""
         return self.state
 
     @_state.setter
@@ -128,7 +128,7 @@ class SimObject:
 
     @property
     def _velocity(self) -> Floats:
-        """The control; setting it is ``set_velocity``."""
+        """The control; assigning to it calls ``set_velocity``."""
         return self.velocity
 
     @_velocity.setter
@@ -137,7 +137,7 @@ class SimObject:
 
     @property
     def _goal(self) -> list[Floats]:
-        """The goals; setting them is ``set_goal``."""
+        """The goals; assigning to them calls ``set_goal``."""
         return self.goals
 
     @_goal.setter
@@ -146,12 +146,12 @@ class SimObject:
 
     @property
     def init_state(self) -> Floats:
-        """(state_dim, 1) the state that ``reset`` returns to."""
+        """The state to which ``reset`` returns, (state_dim, 1)."""
         return column(self._simulation.state.initial_state(self.row)[: self.state_dim])
 
     @property
     def position(self) -> Floats:
-        """(2, 1) x, y [m], world frame."""
+        """Position x, y [m] in the world frame, (2, 1)."""
         return column(self._pose[:2])
 
     @property
@@ -161,7 +161,7 @@ class SimObject:
 
     @property
     def heading(self) -> float:
-        """Direction of travel of an ``omni`` drive, of the body otherwise [rad]."""
+        """Direction of travel for an ``omni`` drive, heading of the body for others [rad]."""
         if (handler := self._handler) is not None:
             return float(handler.compute_heading(self.state, self.velocity))
         if self.kinematics == "omni":
@@ -171,19 +171,19 @@ class SimObject:
 
     @property
     def velocity(self) -> Floats:
-        """(vel_dim, 1) executed control, in the command frame of the drive."""
+        """Executed control in the command frame of the drive, (vel_dim, 1)."""
         return column(self._simulation.control_of(self.row, self.vel_dim))
 
     @property
     def velocity_xy(self) -> Floats:
-        """(2, 1) velocity in the world frame [m/s] that the present control gives."""
+        """Velocity in the world frame that follows from the present control, (2, 1) [m/s]."""
         if (handler := self._handler) is not None:
             return column(handler.velocity_to_xy(self.state, self.velocity))
         return column(self._simulation.state.velocity_world(self.row))
 
     @property
     def max_speed(self) -> float:
-        """Highest speed the limits allow [m/s]; 0 for objects that never move."""
+        """Largest speed that the limits allow [m/s]; 0 for objects without a drive."""
         top = self.record.vel_max
         if self.kinematics is None:
             return 0.0
@@ -194,14 +194,15 @@ class SimObject:
         return float(top[0])
 
     def set_state(self, state: Any = None, init: bool = False) -> None:
-        """Put the object somewhere else.
+        """Set the state of the object.
 
         Args:
-            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows; None: zeros.
-            init: Also what ``reset`` returns to.
+            state: ``state_dim`` numbers in any shape: x, y [m], heading [rad] (not wrapped), extra rows; None sets
+                zeros.
+            init: Also make it the state to which ``reset`` returns.
 
         Raises:
-            ValueError: Wrong number of numbers, or not finite.
+            ValueError: The state does not have ``state_dim`` finite numbers.
         """
         values = np.zeros(self.state_dim) if state is None else np.asarray(state, dtype=np.float64).reshape(-1)
         if values.size != self.state_dim or not np.isfinite(values).all():
@@ -213,14 +214,14 @@ class SimObject:
         self._simulation.state.moved(self.row)
 
     def set_velocity(self, velocity: Any = None, init: bool = False) -> None:
-        """Overwrite the present control (acceleration limits start from it).
+        """Set the present control, from which acceleration limits are counted.
 
         Args:
-            velocity: ``vel_dim`` numbers in the command frame; None: zeros.
-            init: Also what ``reset`` returns to.
+            velocity: ``vel_dim`` numbers in the command frame; None sets zeros.
+            init: Also make it the control to which ``reset`` returns.
 
         Raises:
-            ValueError: Wrong number of numbers.
+            ValueError: The control does not have ``vel_dim`` numbers.
         """
         values = np.zeros(self.vel_dim) if velocity is None else np.asarray(velocity, dtype=np.float64).reshape(-1)
         if values.size != self.vel_dim:
@@ -234,36 +235,36 @@ class SimObject:
     # goals -----------------------------------------------------------------------------------------------------------
     @property
     def goal(self) -> Floats | None:
-        """(2 or 3, 1) the present goal, None without one."""
+        """The present goal x, y [m] and possibly heading [rad], (2 or 3, 1); None without one."""
         goals = self._simulation.state.goals(self.row)
         return column(goals[0]) if goals else None
 
     @property
     def goals(self) -> list[Floats]:
-        """The present goal and those still to come, (2 or 3, 1) each."""
+        """The present goal and the goals after it, (2 or 3, 1) each."""
         return [column(goal) for goal in self._simulation.state.goals(self.row)]
 
     def set_goal(self, goal: Any = None, init: bool = False) -> None:
-        """Give a new goal.
+        """Set the goal, or several goals that are visited in order.
 
         Args:
-            goal: None for no goal; 2 or 3 numbers in any shape; or a list of such for waypoints.
-            init: Also what ``reset`` returns to.
+            goal: 2 or 3 numbers in any shape (x, y [m], heading [rad]), a list of such goals, or None for no goal.
+            init: Also make it the goal to which ``reset`` returns.
 
         Raises:
-            ValueError: Not goals of 2 or 3 numbers.
+            ValueError: A goal does not have 2 or 3 finite numbers.
         """
         self._simulation.state.set_goals(self.row, _goal_list(goal), init)
 
     def append_goal(self, goal: Any) -> None:
-        """Add a goal behind those already there."""
+        """Add a goal after the present ones."""
         goals = [list(map(float, g)) for g in self._simulation.state.goals(self.row)]
         self._simulation.state.set_goals(self.row, goals + _goal_list(goal), False)
 
     # flags -----------------------------------------------------------------------------------------------------------
     @property
     def arrive(self) -> bool:
-        """Whether the last goal is reached."""
+        """Whether the object has reached its last goal."""
         return bool(self._simulation.arrived[self.row])
 
     @property
@@ -273,7 +274,7 @@ class SimObject:
 
     @property
     def stop_flag(self) -> bool:
-        """Whether the collision mode holds the object; may be set, and is evaluated anew in each step, as are these."""
+        """Whether the collision mode has stopped the object; may be set, until the next step evaluates it again."""
         return bool(self._simulation.stopped[self.row])
 
     @stop_flag.setter
@@ -282,7 +283,7 @@ class SimObject:
 
     @property
     def arrive_flag(self) -> bool:
-        """The same as ``arrive``; may be set."""
+        """Whether the object has reached its last goal; may be set, until the next step evaluates it again."""
         return self.arrive
 
     @arrive_flag.setter
@@ -291,7 +292,7 @@ class SimObject:
 
     @property
     def collision_flag(self) -> bool:
-        """The same as ``collision``; may be set."""
+        """Whether the object touches something; may be set, until the next step evaluates it again."""
         return self.collision
 
     @collision_flag.setter
@@ -300,68 +301,68 @@ class SimObject:
 
     @property
     def collision_obj(self) -> list[Any]:
-        """The objects it touches, ``unobstructed`` ones left out."""
+        """The objects that it touches, without ``unobstructed`` ones."""
         pairs = self._simulation.state.collision_pairs(self.world)
         others = [int(b if a == self.index else a) for a, b in pairs if self.index in (a, b)]
         objects = self.environment_objects
         return [objects[i] for i in others if not objects[i].unobstructed]
 
     def done(self) -> bool:
-        """Whether the object has arrived or stopped."""
+        """Return whether the object has arrived or has been stopped."""
         return self.arrive or self.stop_flag
 
     # others ----------------------------------------------------------------------------------------------------------
     @property
     def environment_objects(self) -> list[Any]:
-        """All objects of its world, in the order of their rows."""
+        """All objects of the world, in the order of their rows."""
         return self._simulation.views(self.world) if self.surroundings is None else list(self.surroundings)
 
     @property
     def external_objects(self) -> list[Any]:
-        """All objects of its world but itself."""
+        """All other objects of the world."""
         return [other for other in self.environment_objects if other is not self]
 
     @property
     def ego_object(self) -> Any:
-        """Itself."""
+        """The object itself."""
         return self
 
     # limits and description ------------------------------------------------------------------------------------------
     @property
     def vel_min(self) -> Floats:
-        """(vel_dim, 1) lower control limits."""
+        """Lower limits of the control, (vel_dim, 1)."""
         return column(self.record.vel_min)
 
     @property
     def vel_max(self) -> Floats:
-        """(vel_dim, 1) upper control limits."""
+        """Upper limits of the control, (vel_dim, 1)."""
         return column(self.record.vel_max)
 
     @property
     def acce(self) -> Floats:
-        """(vel_dim, 1) limits on the change of each control per second."""
+        """Limits on the change of each control per second, (vel_dim, 1)."""
         return column(self.record.acce)
 
     def get_vel_range(self) -> tuple[Floats, Floats]:
-        """(lower, upper) controls that the limits allow in the next step, (vel_dim, 1) each."""
+        """Return the lowest and highest controls that all limits allow in the next step, (vel_dim, 1) each."""
         change = np.asarray(self.acce) * self._simulation.scenario.world.step_time
         now = self.velocity
         return column(np.maximum(self.vel_min, now - change)), column(np.minimum(self.vel_max, now + change))
 
-    # what it belongs to ----------------------------------------------------------------------------------------------
+    # environment -----------------------------------------------------------------------------------------------------
     @property
     def env_param(self) -> Any:
-        """``env_param`` of its environment; None for an object that is in none."""
+        """``env_param`` of the environment; None for an object without an environment."""
         return getattr(self._simulation.owner(), "env_param", None)
 
     @property
     def world_param(self) -> Any:
-        """``world_param`` of its environment; None for an object that is in none."""
+        """``world_param`` of the environment; None for an object without an environment."""
         return getattr(self._simulation.owner(), "world_param", None)
 
     @property
     def logger(self) -> Any:
-        """The logger of its environment; None for an object that is in none."""
+        """The logger of the environment; None for an object without an environment."""
         return getattr(self._simulation.owner(), "logger", None)
 
 

@@ -1,4 +1,4 @@
-"""An object as a rigid body: mass, friction, inertia, and what contacts do to it."""
+"""The part of an object that is a rigid body: mass, friction, inertia, and reactions to contacts."""
 
 from __future__ import annotations
 
@@ -6,25 +6,23 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject, column
 from irsim.objects.sensors.contact import Contact2D
 
 __all__ = ["ObjectDynamics"]
 
-Floats = NDArray[np.float64]
-
 
 class ObjectDynamics(SimObject):
-    """Physics of one row of a simulation, for ``collision_mode: contact``."""
+    """Physics of one object, for ``collision_mode: contact``; part of :class:`irsim.objects.view.ObjectView`."""
 
     contact: Contact2D
 
     @property
     def mass(self) -> float:
-        """Mass [kg]; infinite for what nothing can push."""
+        """Mass [kg]; infinite for objects that contacts cannot push."""
         return self.record.mass
 
     @property
@@ -46,32 +44,32 @@ class ObjectDynamics(SimObject):
 
     @property
     def inv_mass(self) -> float:
-        """1 / mass; 0 for what cannot be pushed."""
+        """1 / mass [1/kg]; 0 for objects that contacts cannot push."""
         return self._simulation.state.body(self.row)[0]
 
     @property
     def inv_inertia(self) -> float:
-        """1 / inertia; 0 for what cannot be pushed."""
+        """1 / inertia [1/(kg m^2)]; 0 for objects that contacts cannot push."""
         return self._simulation.state.body(self.row)[1]
 
     @property
     def gyration(self) -> float:
-        """Radius of gyration [m]: root of inertia over mass; 0 for infinite masses."""
+        """Radius of gyration [m], the square root of inertia over mass; 0 for an infinite mass."""
         return math.sqrt(self.inertia / self.mass) if math.isfinite(self.mass) else 0.0
 
     @property
     def pushable(self) -> bool:
-        """Whether contacts can move it: not static, finite mass."""
+        """Whether contacts can move the object, which requires a finite mass and that it is not static."""
         return not self.static and math.isfinite(self.mass)
 
     @property
     def passive(self) -> bool:
-        """Whether it has no drive."""
+        """Whether the object has no drive."""
         return self.record.kinematics is None
 
     @property
     def friction_force(self) -> float:
-        """Greatest force that friction with the ground gives: traction of drives, resistance of passive bodies [N]."""
+        """Largest friction force of the ground [N]: traction of a drive, or resistance of a passive body."""
         gravity = self._simulation.scenario.world.gravity
         return self.friction * self.mass * gravity if self.friction > 0.0 else 0.0
 
@@ -82,7 +80,7 @@ class ObjectDynamics(SimObject):
 
     @property
     def drive_velocity_xy(self) -> Floats:
-        """(2, 1) world-frame velocity that the drive aims at, before contacts interfere [m/s]."""
+        """World-frame velocity of the drive before contacts change it, (2, 1) [m/s]."""
         simulation, row = self._simulation, self.row
         handler = None if simulation.drives is None else simulation.drives.handler(row)
         if simulation.drives is None or handler is None:
@@ -92,18 +90,18 @@ class ObjectDynamics(SimObject):
         return column(np.asarray(handler.velocity_to_xy(state, control), dtype=np.float64).reshape(-1)[:2])
 
     def apply_contact_displacement(self, dxy: Any, dtheta: float = 0.0) -> None:
-        """Move the object as a contact would, within one period; its velocity changes accordingly.
+        """Move the object as a contact does within one period, and change its velocity accordingly.
 
         Args:
-            dxy: 2 numbers, displacement in the world frame [m].
-            dtheta: Turn about the centroid [rad].
+            dxy: Displacement in the world frame, 2 numbers [m].
+            dtheta: Rotation about the centroid [rad].
         """
         dx, dy = np.asarray(dxy, dtype=np.float64).reshape(-1)[:2].tolist()
         with self._simulation.feeling():
             core.shift(self._simulation.world, self._simulation.state, self.row, (dx, dy), float(dtheta))
 
     def apply_contact_velocity(self, dv: Any) -> None:
-        """Change the velocity by ``dv``: 2 numbers, world frame [m/s]."""
+        """Add ``dv``, 2 numbers in the world frame [m/s], to the velocity."""
         dx, dy = np.asarray(dv, dtype=np.float64).reshape(-1)[:2].tolist()
         with self._simulation.feeling():
             core.push(self._simulation.world, self._simulation.state, self.row, (dx, dy))

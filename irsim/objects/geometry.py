@@ -1,4 +1,4 @@
-"""The body of an object: shape, outline, extent, in the body frame or where it stands."""
+"""The body of an object: shape, outline and extent, in the body frame or in the world frame."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.functions.inequalities import polygon_inequality
 from irsim.objects.base import SimObject, column
 from irsim.objects.neighbors import AVOIDANCE_MARGIN, centres
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 
 __all__ = ["ObjectBody", "convex_inequality"]
 
-Floats = NDArray[np.float64]
 Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _CIRCLE_POINTS = 64
-_STRAIGHT = 1e-12
-"""A corner that turns less than this [m2] counts as straight."""
+"""Number of vertices of the polygon that stands for a circle."""
+MAX_STRAIGHT_CORNER = 1e-12
+"""Largest cross product [m^2] of the two edges at a corner that counts as straight."""
 
 
 def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) -> Inequality:
-    """A body as ``G p <= h``, for convex optimisation.
+    """Return a body as the inequality ``G p <= h``, for convex optimisation.
 
     Returns:
-        (G, h, cone, convex). Convex polygons: one row per edge, outward normals (not normalised), cone
-        ``"Rpositive"``. Circles: ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]``, cone ``"norm2"``. Other areas:
-        None, None, None, False; lines and maps: four times None.
+        (G, h, cone, convex). A convex polygon has one row per edge with its outward normal, not normalised, and the
+        cone ``"Rpositive"``. A circle has ``G = [[1, 0], [0, 1], [0, 0]]``, ``h = [cx, cy, -r]`` and the cone
+        ``"norm2"``. Other areas give None, None, None, False; lines and maps give four times None.
     """
     state = simulation.state
     kinds = state.parts(row)
@@ -40,12 +40,12 @@ def convex_inequality(simulation: Simulation, row: int, *, world_frame: bool) ->
     if kinds != ["polygon"]:
         return None, None, None, None if len(kinds) == 1 else False
     points = state.vertices(row, 0, world_frame)
-    found = polygon_inequality(points, _STRAIGHT)
+    found = polygon_inequality(points, MAX_STRAIGHT_CORNER)
     return (None, None, None, False) if found is None else (*found, "Rpositive", True)
 
 
 class ObjectBody(SimObject):
-    """Geometry of one row of a simulation."""
+    """Geometry of one object; part of :class:`irsim.objects.view.ObjectView`."""
 
     @property
     def radius(self) -> float:
@@ -54,17 +54,17 @@ class ObjectBody(SimObject):
 
     @property
     def radius_extend(self) -> float:
-        """``radius`` plus the margin that avoidance methods keep."""
+        """``radius`` plus the margin that avoidance laws add [m]."""
         return self.radius + AVOIDANCE_MARGIN
 
     @property
     def vertices(self) -> Floats | None:
-        """(2, M) outline in the world frame: 64 points for a circle, None for a compound."""
+        """Outline in the world frame, (2, M) [m]: 64 points for a circle, None for a compound or a map."""
         return self._outline(world_frame=True)
 
     @property
     def original_vertices(self) -> Floats | None:
-        """(2, M) outline in the body frame."""
+        """Outline in the body frame, (2, M) [m]; None for a compound or a map."""
         return self._outline(world_frame=False)
 
     @property
@@ -100,7 +100,7 @@ class ObjectBody(SimObject):
 
     @property
     def centroid(self) -> Floats:
-        """(2, 1) centre of the body's area, world frame."""
+        """Centre of the body's area in the world frame, (2, 1) [m]."""
         x, y, theta = self._simulation.pose[self.row].tolist()
         a, b = self._centre()
         c, s = math.cos(theta), math.sin(theta)
@@ -108,12 +108,12 @@ class ObjectBody(SimObject):
 
     @property
     def original_centroid(self) -> Floats:
-        """(2, 1) centre of the body's area, body frame."""
+        """Centre of the body's area in the body frame, (2, 1) [m]."""
         return column(self._centre())
 
     @property
     def original_state(self) -> Floats:
-        """(3, 1) centre of the body's area and heading 0, body frame."""
+        """Centre of the body's area [m] and heading 0 [rad] in the body frame, (3, 1)."""
         return column([*self.original_centroid[:, 0], 0.0])
 
     @property
@@ -125,7 +125,7 @@ class ObjectBody(SimObject):
 
     @property
     def goal_vertices(self) -> Floats | None:
-        """(2, M) outline at the present goal; None without a goal or for a compound."""
+        """Outline at the present goal in the world frame, (2, M) [m]; None without a goal, or for a compound or map."""
         x, y, theta = self._simulation.goal[self.row].tolist()
         outline = self.original_vertices
         if outline is None or math.isnan(x):
@@ -157,11 +157,11 @@ class ObjectBody(SimObject):
         return self.get_init_Gh()[3]
 
     def get_init_Gh(self) -> Inequality:
-        """(G, h, cone_type, convex_flag) of the body in its own frame."""
+        """Return (G, h, cone_type, convex_flag) of the body in the body frame."""
         return convex_inequality(self._simulation, self.row, world_frame=False)
 
     def get_Gh(self) -> Inequality:
-        """(G, h, cone_type, convex_flag) of the body where it is now, world frame."""
+        """Return (G, h, cone_type, convex_flag) of the body at its present pose in the world frame."""
         return convex_inequality(self._simulation, self.row, world_frame=True)
 
     def _centre(self) -> list[float]:

@@ -6,23 +6,22 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 __all__ = ["ObjectInfo", "ObstacleInfo"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass
 class _Extensible:
     def add_property(self, key: str, value: Any) -> None:
-        """Attach another attribute."""
+        """Add an attribute."""
         setattr(self, key, value)
 
 
 @dataclass
 class ObjectInfo(_Extensible):
-    """What an object is; arrays are columns."""
+    """Description of an object; arrays are columns."""
 
     id: int
     shape: str
@@ -49,7 +48,7 @@ class ObjectInfo(_Extensible):
 
     @classmethod
     def of(cls, view: Any) -> ObjectInfo:
-        """The description of ``view`` now."""
+        """Return the description of an object at the present time."""
         record = view.record
         normals, right_side, cone, convex = view.get_init_Gh()
         return cls(
@@ -80,7 +79,7 @@ class ObjectInfo(_Extensible):
 
 @dataclass
 class ObstacleInfo(_Extensible):
-    """Where an obstacle is and how big; ``G`` and ``h`` are in its body frame."""
+    """Position and size of an obstacle, in the world frame; ``G`` and ``h`` are in the body frame."""
 
     center: Floats
     vertex: Floats | None
@@ -93,5 +92,5 @@ class ObstacleInfo(_Extensible):
 
     @classmethod
     def of(cls, view: Any) -> ObstacleInfo:
-        """The description of ``view`` now."""
+        """Return the description of an object at the present time."""
         return cls(view.position, view.vertices, view.velocity, view.radius, *view.get_init_Gh())

@@ -1,7 +1,8 @@
-"""Objects that come and go while a world is running.
+"""Adding objects to a running world, deleting them, and changing their records.
 
-An object is always a row of some simulation: that of its environment, or, before it is added and after it is taken out,
-one of its own. Exchanging rows between simulations keeps its state, goals, history and random draws.
+An object is always a row of a simulation. Before it is added to an environment, and after it is deleted from it, the
+object has a simulation of its own. Moving its row from one simulation to another keeps its state, goals, history and
+random draws.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ __all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore", "set_
 
 
 def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
-    """Let these objects show the rows of a simulation of one world, in this order."""
+    """Attach objects to the rows of a simulation of one world, in this order."""
     for index, (view, record) in enumerate(zip(shown, simulation.scenario.objects, strict=True)):
         if view.record is not record:
             view.describe(record)
@@ -32,7 +33,7 @@ def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
 
 
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
-    """A simulation of one object in an otherwise empty world like that of ``scenario``."""
+    """Return a simulation of one object in an otherwise empty world with the settings of ``scenario``."""
     world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none"})
     simulation = Simulation(
         replace(scenario, world=world, objects=[record], placements=[], grid=None), [seed], history=True
@@ -43,14 +44,14 @@ def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simula
 
 
 def admit(simulation: Simulation, newcomers: Sequence[SimObject]) -> None:
-    """Move objects, each alone so far, into a simulation of one world; they become its last rows."""
+    """Move objects from simulations of their own into a simulation of one world; they become its last rows."""
     present = simulation.views()
     records = [_as_it_starts(view) for view in newcomers]
     _exchange(simulation, [*present, *newcomers], [*simulation.scenario.objects, *records])
 
 
 def dismiss(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
-    """Take objects out of a simulation of one world; each is alone from then on."""
+    """Move objects from a simulation of one world into simulations of their own."""
     gone = set(leaving)
     staying = [view for view in simulation.views() if view not in gone]
     seed = simulation.key()[0]
@@ -62,10 +63,10 @@ def dismiss(simulation: Simulation, leaving: Iterable[SimObject]) -> None:
 
 
 def amend(view: SimObject, record: ObjectRecord) -> None:
-    """Give an object another record, of the same id; it and all others go on where they are.
+    """Replace the record of an object by another one with the same id; all objects keep their states.
 
     Raises:
-        AttributeError: It is one of a batch, whose worlds share their records.
+        AttributeError: The object belongs to a batch, whose worlds share their records.
     """
     simulation = view._simulation
     if simulation.copies != 1:
@@ -79,7 +80,7 @@ def amend(view: SimObject, record: ObjectRecord) -> None:
 
 
 def amend_world(simulation: Simulation, **changed: Any) -> None:
-    """Go on with other values in the section ``world`` of the scenario."""
+    """Change values in the section ``world`` of the scenario; all objects keep their states."""
     world = simulation.scenario.world.model_copy(update=changed)
     shown = simulation.views()
     origins = [(simulation, view.row) for view in shown]
@@ -88,7 +89,10 @@ def amend_world(simulation: Simulation, **changed: Any) -> None:
 
 
 def restore(simulation: Simulation, scenario: ResolvedScenario, originals: Sequence[SimObject]) -> None:
-    """Start the next scene with the objects of ``scenario``, shown by ``originals``; all others are alone then."""
+    """Start the next scene with the objects of ``scenario``, attached to ``originals``.
+
+    All other objects get simulations of their own.
+    """
     seed = simulation.key()[0]
     for view in simulation.views():
         if view not in originals:
@@ -106,7 +110,7 @@ def _exchange(simulation: Simulation, shown: Sequence[SimObject], records: Seque
 
 
 def _settle(simulation: Simulation, shown: Sequence[SimObject], *, anew: bool = False) -> None:
-    """After other rows: who is where, and where code of users takes part."""
+    """Attach objects and user code to a simulation after its rows have changed."""
     set_views(simulation, shown)
     attach_python(simulation, anew=anew)
 
@@ -116,13 +120,13 @@ def _keep(view: SimObject, own: Simulation) -> None:
 
 
 def _as_it_starts(view: SimObject) -> ObjectRecord:
-    """Its record with the present initial values, from which a redrawn scene starts it."""
+    """Return the record of an object with its present initial values, from which later scenes start."""
     state = view.init_state[:, 0].tolist()
     return replace(view.record, state=state, goals=[goal[:, 0].tolist() for goal in view.goals])
 
 
 def _with_leaders(before: Sequence[ObjectRecord], after: Sequence[ObjectRecord]) -> list[ObjectRecord]:
-    """The records that stay; a group whose first member has gone keeps that one's group behavior."""
+    """Return the records that stay, such that a group keeps its behavior even if its first member has left."""
     leaders: dict[int, ObjectRecord] = {}
     for record in before:
         if record.joined:

@@ -1,26 +1,26 @@
-"""All objects of a world at once, as arrays: what avoidance laws ask of neighbours."""
+"""The centres and discs of all objects of a world as arrays, which avoidance laws use."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["AVOIDANCE_MARGIN", "centres", "discs"]
 
-Floats = NDArray[np.float64]
 AVOIDANCE_MARGIN = 0.1
-"""What avoidance methods of IR-SIM add to a body's radius [m]."""
+"""Margin [m] that the avoidance laws of IR-SIM add to the radius of a body."""
 
 
 def centres(simulation: Simulation, world: int) -> Floats:
-    """(N, 2) centre of the area of every body of a world [m], body frame; worked out once per scene and set of bodies.
+    """Return the centre of the area of every body of a world in its body frame, (N, 2) [m].
 
-    Maps have theirs in the world frame, which is where they stand.
+    The body frame of a map is the world frame. Centres are computed once per scene and set of bodies.
     """
     key = simulation.revision, *simulation.key(world)[:2]
     known: dict[int, tuple[tuple[int, int, int], Floats]] = simulation.__dict__.setdefault("_centres", {})
@@ -32,7 +32,7 @@ def centres(simulation: Simulation, world: int) -> Floats:
 
 
 def discs(simulation: Simulation, world: int) -> Floats:
-    """(N, 5) x, y [m], vx, vy [m/s] and padded radius [m] of every object of a world where it is now, world frame."""
+    """Return x, y [m], vx, vy [m/s] and padded radius [m] of every object of a world, (N, 5), in the world frame."""
     size = simulation.objects
     rows = slice(world * size, (world + 1) * size)
     pose, centre = simulation.pose[rows], centres(simulation, world)

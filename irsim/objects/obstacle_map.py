@@ -1,4 +1,4 @@
-"""The map as scripts see it: one more static obstacle, with its grid."""
+"""The map of a world as an object of scripts: a static obstacle with a grid."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.view import ObjectView
 from irsim.simulation.occupancy import grid_collision_geometry
@@ -18,11 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ObstacleMap", "grid_values"]
 
-Floats = NDArray[np.float64]
-
 
 def grid_values(simulation: Simulation, world: int = 0) -> Floats | None:
-    """(nx, ny) occupancies, 0 to 100, of the map of one world; None without a map."""
+    """Return the occupancies of the map of one world, (nx, ny), from 0 to 100; None without a map."""
     scenario = simulation.scenario
     if scenario.grid is None:
         return None
@@ -41,21 +39,21 @@ class ObstacleMap(ObjectView):
 
     @property
     def cells(self) -> core.OccupancyGrid:
-        """The grid as the engine has it."""
+        """The grid of the engine."""
         cells = self._simulation.state.cells(self.row)
         assert cells is not None
         return cells
 
     @property
     def grid_map(self) -> Floats:
-        """(nx, ny) occupancies, 0 to 100; i counts along +x, j along +y."""
+        """Occupancies (nx, ny), from 0 to 100; the first index counts along +x, the second along +y."""
         values = grid_values(self._simulation, self.world)
         assert values is not None
         return values
 
     @property
     def grid_reso(self) -> Floats:
-        """(2, 1) extent of a cell along x and y [m]."""
+        """Extent of a cell along x and y, (2, 1) [m]."""
         return column(self.cells.cell)
 
     @property
@@ -65,7 +63,7 @@ class ObstacleMap(ObjectView):
 
     @property
     def linestrings(self) -> list[Any]:
-        """The outline of the occupied cells: closed shapely LineStrings, straight runs in one piece."""
+        """Outline of the occupied cells as closed shapely LineStrings without vertices on straight edges."""
         import shapely
 
         return [shapely.LineString(np.concatenate([ring, ring[:1]])) for ring in self.cells.outline()]
@@ -78,14 +76,14 @@ class ObstacleMap(ObjectView):
         return shapely.STRtree(self.linestrings)
 
     def check_grid_collision(self, geometry: Any) -> bool:
-        """Whether a shapely geometry meets an occupied cell; touching counts.
+        """Return whether a shapely geometry intersects or touches an occupied cell.
 
         Args:
-            geometry: In the world frame [m].
+            geometry: The geometry in the world frame [m].
         """
         grid = self.cells
         return grid_collision_geometry(grid.occupied * 100, grid.cell, geometry, grid.origin)
 
     def is_collision(self, geometry: Any) -> bool:
-        """The same: cells are closed squares, so their outline adds nothing."""
+        """Return whether a shapely geometry intersects or touches an occupied cell."""
         return self.check_grid_collision(geometry)

@@ -1,9 +1,8 @@
-"""What scripts may write to objects and their sensors while a world is there, and what becomes of it.
+"""Attributes of objects and sensors that scripts may write at run time, and the effect of a write.
 
-A write takes effect in the engine at once, or it is an error that says what to call instead; none is only kept. The
-settings of an object are those of its record: changing one hands the engine the changed record in exchange for the
-present one, everything else stays. They survive ``reset``; ``reload``, or a next scene with other objects than the
-present ones, brings back those of the file.
+A write either takes effect in the engine at once or raises an error that says what to call instead. Writing a setting
+of an object replaces the record of the object in the engine and changes nothing else. Settings survive ``reset``.
+``reload`` restores those of the file, as does the next scene if objects have been added or deleted.
 """
 
 from __future__ import annotations
@@ -98,7 +97,7 @@ SETTINGS: dict[str, Callable[[Any, str, Any], Any]] = {
     "color": _color,
     "description": _picture,
 }
-"""Attributes of an object that may be written, and what makes a value of the record of what is given."""
+"""Attributes of an object that may be written, each with the function that converts a value for the record."""
 
 HINTS: dict[str, str] = {
     "name": "names stay; give `name` in the scenario, or to `env.create_robot`",
@@ -141,11 +140,11 @@ HINTS: dict[str, str] = {
     "inertia": "give `inertia` in the scenario",
     "external_objects": "call `env.add_object` or `env.delete_object`",
 }
-"""Attributes of an object that cannot be written, and what to do instead."""
+"""Attributes of an object that cannot be written, each with advice on what to do instead."""
 
 
 def refuse(owner: str, name: str, hint: str) -> NoReturn:
-    """Tell that an attribute cannot be written.
+    """Raise the error that an attribute cannot be written.
 
     Raises:
         AttributeError: Always.
@@ -157,8 +156,8 @@ def change(view: SimObject, name: str, value: Any) -> None:
     """Set an attribute of :data:`SETTINGS`.
 
     Raises:
-        TypeError, ValueError: Not such a value.
-        AttributeError: The object is one of a batch.
+        TypeError, ValueError: The value is not valid.
+        AttributeError: The object belongs to a batch.
     """
     given = SETTINGS[name](view, name, value)
     if name in ("wander", "loop") and view.record.kinematics is None:
@@ -171,11 +170,12 @@ def change(view: SimObject, name: str, value: Any) -> None:
 
 # behaviors -----------------------------------------------------------------------------------------------------------
 class BehaviorKeys(dict[str, Any]):
-    """Keys of a behavior; what is written into it holds from the next decision on.
+    """Keys of a behavior as a dictionary; a change takes effect at the next decision.
 
     Args:
         keys: The keys.
-        apply: Takes the keys after a change and gives those that hold; or raises and leaves everything as it was.
+        apply: Function that applies the keys after a change and returns the keys in force. If it raises, nothing is
+            changed.
     """
 
     def __init__(self, keys: Mapping[str, Any], apply: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
@@ -183,7 +183,7 @@ class BehaviorKeys(dict[str, Any]):
         self._apply = apply
 
     def assign(self, keys: Mapping[str, Any] | None) -> None:
-        """Other keys in place of all these."""
+        """Replace all keys."""
         held = self._apply(dict(keys or {}))
         super().clear()
         super().update(held)
@@ -206,28 +206,28 @@ class BehaviorKeys(dict[str, Any]):
         return self
 
     def update(self, *args: Any, **kwargs: Any) -> None:
-        """As of a dict."""
+        """Do what the method of ``dict`` does, and apply the change."""
         self._changed("update", *args, **kwargs)
 
     def pop(self, *args: Any) -> Any:
-        """As of a dict."""
+        """Do what the method of ``dict`` does, and apply the change."""
         return self._changed("pop", *args)
 
     def popitem(self) -> tuple[str, Any]:
-        """As of a dict."""
+        """Do what the method of ``dict`` does, and apply the change."""
         item: tuple[str, Any] = self._changed("popitem")
         return item
 
     def clear(self) -> None:
-        """As of a dict."""
+        """Do what the method of ``dict`` does, and apply the change."""
         self._changed("clear")
 
     def setdefault(self, *args: Any) -> Any:
-        """As of a dict."""
+        """Do what the method of ``dict`` does, and apply the change."""
         return self._changed("setdefault", *args)
 
     def copy(self) -> dict[str, Any]:
-        """The keys alone."""
+        """Return the keys as a plain dictionary."""
         return dict(self)
 
     def __reduce__(self) -> Any:
@@ -235,7 +235,7 @@ class BehaviorKeys(dict[str, Any]):
 
 
 def behavior_keys(view: SimObject) -> BehaviorKeys:
-    """The keys of its behavior, or of that of its group; to be written where it is its own."""
+    """Return the keys of the behavior of an object, which may be written, or else those of its group behavior."""
 
     def present() -> dict[str, Any]:
         options = view.record.behavior or view.record.group_behavior
@@ -251,10 +251,10 @@ def behavior_keys(view: SimObject) -> BehaviorKeys:
 
 
 def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
-    """Another behavior, as a file could have it.
+    """Replace the behavior of an object by one with the keys of a scenario.
 
     Raises:
-        ScenarioError: The keys cannot be used; what IR-SIM would ignore is a warning.
+        ScenarioError: A key or value is not valid. What IR-SIM would ignore is logged as a warning instead.
     """
     from irsim.scenario.single_object import read_object
 
@@ -272,10 +272,10 @@ def _set_behavior(view: SimObject, keys: dict[str, Any]) -> None:
 
 # sensors -------------------------------------------------------------------------------------------------------------
 def sensor_options(options: Any, owner: str, **changed: Any) -> Any:
-    """Options of a sensor with some changed.
+    """Return a copy of the options of a sensor with changed values.
 
     Raises:
-        ValueError: A value does not fit.
+        ValueError: A value is not valid.
     """
     given = {key: np.asarray(v).reshape(-1).tolist() if key == "offset" else v for key, v in changed.items()}
     given = {key: v.item() if isinstance(v, np.generic) else v for key, v in given.items()}
@@ -290,9 +290,9 @@ class FixedList(list[Any]):
     """A list that can only be read.
 
     Args:
-        items: What is in it.
-        what: What it is, for messages.
-        hint: What to do instead of writing into it.
+        items: Elements of the list.
+        what: Name of the list in messages.
+        hint: Advice, in messages, on what to do instead of changing the list.
     """
 
     def __init__(self, items: Any = (), what: str = "this list", hint: str = "it can only be read") -> None:

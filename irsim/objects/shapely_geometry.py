@@ -1,4 +1,4 @@
-"""Bodies as shapely geometries, for scripts that ask; the engine never uses them."""
+"""Converts bodies to shapely geometries and back, for scripts; the engine never uses shapely."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ if TYPE_CHECKING:
 __all__ = ["core_parts", "from_shapely", "shapely_geometry", "touching", "touching_circle"]
 
 _QUADRANT_SEGMENTS = 16
+"""Number of segments of a quarter circle in the polygon that stands for a circle."""
 
 
 def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> Any:
-    """The body of a row: Polygon, LineString or the union of the parts of a compound.
+    """Return the body of a row as a shapely Polygon or LineString, or as the union of the parts of a compound.
 
-    Circles become polygons of 64 vertices, as users of IR-SIM know them.
+    Circles become polygons with 64 vertices, as in IR-SIM.
     """
     import shapely
 
@@ -42,7 +43,7 @@ def shapely_geometry(simulation: Simulation, row: int, *, world_frame: bool) -> 
 
 
 def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
-    """The body of a row for the core, body frame."""
+    """Return the parts of the body of a row for the core, in the body frame."""
     shape = simulation.scenario.objects[row % simulation.objects].shape
     if isinstance(shape, (MapCells, Walls)):
         return shape.parts()
@@ -63,22 +64,22 @@ def core_parts(simulation: Simulation, row: int) -> list[core.Part]:
 
 
 def touching(a: SimObject, b: SimObject) -> bool:
-    """Whether two bodies meet where they are now, exactly."""
+    """Return whether two bodies intersect or touch at their present poses, computed on the exact shapes."""
     first, second = core_parts(a._simulation, a.row), core_parts(b._simulation, b.row)
     return core.intersects(first, a.state[:3, 0].tolist(), second, b.state[:3, 0].tolist())
 
 
 def touching_circle(a: SimObject, x: float, y: float, radius: float) -> bool:
-    """Whether a body where it is now meets a circle."""
+    """Return whether a body at its present pose intersects or touches a circle, in the world frame [m]."""
     circle = core.Circle(radius=radius, center=[x, y])
     return core.intersects(core_parts(a._simulation, a.row), a.state[:3, 0].tolist(), [circle], [0.0, 0.0, 0.0])
 
 
 def from_shapely(geometry: Any) -> list[core.Part]:
-    """Polygons, lines and collections of them as parts for the core; holes are filled.
+    """Convert polygons, lines and collections of them to parts for the core; holes are filled.
 
     Raises:
-        ValueError: Empty, or of points.
+        ValueError: The geometry is empty or contains points.
     """
     parts: list[core.Part] = []
     for piece in getattr(geometry, "geoms", [geometry]):

@@ -8,17 +8,16 @@ from itertools import count
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject
 from irsim.objects.shapely_geometry import from_shapely, touching, touching_circle
 from irsim.simulation.active_env import last_used
 
 __all__ = ["ObjectStatus"]
 
-Floats = NDArray[np.float64]
 _STOPS = {0: ("robot", "obstacle"), 2: ("robot",)}
-"""Who stops when it touches something, by collision mode of the core."""
+"""Roles of the objects that a contact stops, by collision mode of the core."""
 
 
 class ObjectStatus(SimObject):
@@ -26,11 +25,11 @@ class ObjectStatus(SimObject):
 
     # arrival and contact ---------------------------------------------------------------------------------------------
     def check_arrive(self, goal: Any, threshold: float | None = None) -> bool:
-        """Whether the object is at a goal.
+        """Return whether the object is at a goal.
 
         Args:
-            goal: x, y [m] and, for ``arrive_mode: state``, theta [rad]; None is never reached.
-            threshold: Distance at which it counts as reached [m]; default: ``goal_threshold``.
+            goal: x, y [m] and, for ``arrive_mode: state``, heading [rad]; None is never reached.
+            threshold: Distance below which the goal counts as reached [m]; by default ``goal_threshold``.
         """
         if goal is None:
             return False
@@ -43,7 +42,7 @@ class ObjectStatus(SimObject):
         return away < (self.goal_threshold if threshold is None else threshold)
 
     def check_arrive_status(self) -> None:
-        """Set the arrival flag; at a goal with others behind it, go on to the next one instead."""
+        """Update the arrival flag; at a goal that is not the last one, switch to the next goal instead."""
         goals = self.goals
         arrived = bool(goals) and self.check_arrive(goals[0])
         if arrived and len(goals) > 1:
@@ -53,24 +52,24 @@ class ObjectStatus(SimObject):
         self._simulation.arrived[self.row] = arrived
 
     def check_collision(self, obj: SimObject) -> bool:
-        """Whether it touches another object now, exactly."""
+        """Return whether the object touches another one now, computed on the exact shapes."""
         return touching(self, obj)
 
     def check_collision_status(self) -> None:
-        """Set the flags of collision and stop from where everything is now."""
+        """Update the collision flag and the stop flag for the present poses."""
         simulation = self._simulation
         collided = any(self.check_collision(other) for other in self.possible_collision_objects)
         simulation.collided[self.row] = collided
         simulation.stopped[self.row] = collided and self.role in _STOPS.get(simulation.world.collision_mode, ())
 
     def check_status(self) -> None:
-        """Arrival, then collision and stop, as at the end of a step."""
+        """Update the flags of arrival, then those of collision and stop, as at the end of a step."""
         self.check_arrive_status()
         self.check_collision_status()
 
     @property
     def possible_collision_objects(self) -> list[SimObject]:
-        """The others, ``unobstructed`` ones left out, whose bounding boxes meet its own."""
+        """The other objects whose bounding boxes overlap that of this one, without ``unobstructed`` objects."""
         if self.surroundings is None:
             objects = self.environment_objects
             near = [objects[i] for i in self._simulation.state.near_row(self.row)]
@@ -86,25 +85,25 @@ class ObjectStatus(SimObject):
 
     # evaluation and reset --------------------------------------------------------------------------------------------
     def sensor_step(self) -> None:
-        """Read the sensors anew from where everything is now."""
+        """Update the sensors for the present poses."""
         self._simulation.state.look()
         self._simulation.measure()
 
     def refresh(self, sensor_step: bool = True) -> None:
-        """Take over a state that was written; geometry always does.
+        """Update the object after its state was set; the geometry needs no update.
 
         Args:
-            sensor_step: Also read the sensors anew.
+            sensor_step: Update the sensors.
         """
         if sensor_step:
             self.sensor_step()
 
     def reset(self) -> None:
-        """Back to the initial state, control and goals; flags and trajectory are cleared."""
+        """Reset the object to its initial state, control and goals, and clear its flags and trajectory."""
         self._simulation.state.reset_row(self.row)
 
     def remove(self) -> None:
-        """Nothing: objects are taken out by ``env.delete_object``."""
+        """Do nothing; kept for compatibility. ``env.delete_object`` deletes objects."""
 
     # goals and bodies ------------------------------------------------------------------------------------------------
     def set_random_goal(
@@ -116,15 +115,16 @@ class ObjectStatus(SimObject):
         range_limits: Sequence[Sequence[float]] | None = None,
         max_attempts: int = 100,
     ) -> None:
-        """Draw new goals, as many as there are now (one, if there is none).
+        """Replace every present goal by a random one; an object without a goal gets one.
 
         Args:
-            obstacle_list: What goals must keep away from.
-            init: Also what ``reset`` returns to.
-            free: Draw until the circle about a goal touches no obstacle.
+            obstacle_list: Obstacles from which goals keep away.
+            init: Also make them the goals to which ``reset`` returns.
+            free: Draw each goal until the circle round it touches no obstacle.
             goal_check_radius: Radius of that circle [m].
-            range_limits: [low, high] of x, y [m] and heading [rad]; default: the range of the behavior (the world).
-            max_attempts: Draws per goal; the last one is taken in any case.
+            range_limits: [low, high] bounds of x, y [m] and heading [rad]; by default the range of the behavior, which
+                is by default the world.
+            max_attempts: Largest number of draws per goal; the last draw is accepted in any case.
         """
         low, high = (self.rl, self.rh) if range_limits is None else range_limits
         bounds = np.asarray(low, dtype=np.float64).reshape(-1), np.asarray(high, dtype=np.float64).reshape(-1)
@@ -140,50 +140,50 @@ class ObjectStatus(SimObject):
         self.set_goal(goals, init)
 
     def set_original_geometry(self, geometry: Any) -> None:
-        """Give it another body until the next scene is drawn.
+        """Replace the body of the object until the next scene.
 
         Args:
-            geometry: shapely polygon or line, or a collection of them, in the body frame.
+            geometry: shapely polygon, line, or collection of them, in the body frame [m].
         """
         self._simulation.reshape(self.row, from_shapely(geometry))
 
     # ids -----------------------------------------------------------------------------------------------------------
     @staticmethod
     def reset_id_iter(start: int = 0, step: int = 1) -> None:
-        """Let the ids of new objects of the environment used last begin anew."""
+        """Restart the ids of new objects in the environment used last."""
         if (env := last_used()) is not None:
             env.env_param.id_iter = count(start, step)
 
-    # what behaviors are given ----------------------------------------------------------------------------------------
+    # settings of behaviors -------------------------------------------------------------------------------------------
     @property
     def rl(self) -> list[float]:
-        """Lower bounds of wander goals: x, y [m], heading [rad]."""
+        """Lower bounds of random goals: x, y [m], heading [rad]."""
         return list(self.record.range_low)
 
     @property
     def rh(self) -> list[float]:
-        """Upper bounds of wander goals."""
+        """Upper bounds of random goals: x, y [m], heading [rad]."""
         return list(self.record.range_high)
 
     @property
     def group_behavior_dict(self) -> dict[str, Any]:
-        """Keys of its group behavior as the scenario has them; empty without one."""
+        """Keys of the group behavior as written in the scenario; empty without one."""
         options = self.record.group_behavior
         return {} if options is None else options.model_dump(exclude_unset=True)
 
     @property
     def z(self) -> float:
-        """Height above the ground [m]: 0, the world is flat."""
+        """Height above the ground [m]; always 0, because the world is flat."""
         return 0.0
 
     def input_state_check(self, state: Sequence[float], dim: int = 3) -> list[float]:
-        """``state`` cut, or filled up with zeros, to ``dim`` numbers."""
+        """Return ``state`` cut to ``dim`` numbers, or filled with zeros to ``dim`` numbers."""
         values = list(state)[:dim]
         return values + [0] * (dim - len(values))
 
 
 def _box(view: Any) -> tuple[Floats, Floats]:
-    """Corners of the bounding box of a body where it is now, (2,) each."""
+    """Return the lower and the upper corner of the bounding box of a body in the world frame, (2,) each [m]."""
     state = view._simulation.state
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     for part, kind in enumerate(state.parts(view.row)):

@@ -1,4 +1,4 @@
-"""Objects as scripts see them: a view holds the simulation and an id; every read is a fresh copy of its row."""
+"""The objects that scripts use; each is a view of one row of a simulation, and every read returns a copy."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from irsim.common.arrays import Floats
 from irsim.objects.avoidance import ObjectAvoidance
 from irsim.objects.base import column
 from irsim.objects.drawing.by_hand import ObjectDrawing
@@ -29,22 +27,21 @@ if TYPE_CHECKING:
 
 __all__ = ["ObjectView"]
 
-Floats = NDArray[np.float64]
-
 
 class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, ObjectDrawing):
     """One robot or obstacle.
 
-    Arrays are columns, (n, 1), read-only snapshots: a kept one never changes. Write through ``set_state``,
-    ``set_velocity`` and ``set_goal``.
+    Arrays are columns (n, 1) and read-only copies, which never change. ``set_state``, ``set_velocity`` and
+    ``set_goal`` change the object.
 
     Attributes:
-        id: Number in its environment; it never changes.
-        record: Its resolved scenario entry.
-        world: World index in a batch.
-        index: Place among the objects of its world, which changes when earlier ones are taken out.
-        row: Row in the simulation's arrays.
-        surroundings: Objects of the environment that the object was made for, until it is added there; else None.
+        id: Number of the object in its environment; it never changes.
+        record: The resolved scenario entry of the object.
+        world: Index of the world in a batch.
+        index: Index among the objects of the world; it changes when an object with a lower index is deleted.
+        row: Row in the arrays of the simulation.
+        surroundings: Until the object is added to the environment for which it was made, the objects of that
+            environment; otherwise None.
     """
 
     lidar: Lidar2D | None
@@ -64,7 +61,7 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         own["lidar"] = next((s for s in self.sensors if isinstance(s, Lidar2D)), None)
 
     def describe(self, record: ObjectRecord) -> None:
-        """Show this record from now on; what scripts may set of it goes through :mod:`irsim.objects.setters`."""
+        """Take the attributes of the object from a record; scripts set them through :mod:`irsim.objects.setters`."""
         self.record = record
         own = self.__dict__
         for name in _SHOWN:
@@ -81,11 +78,11 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
             object.__setattr__(self, name, value)
 
     def amend(self, record: ObjectRecord) -> None:
-        """Go on with another record; see :func:`irsim.objects.lifecycle.amend`."""
+        """Replace the record of the object; see :func:`irsim.objects.lifecycle.amend`."""
         amend(self, record)
 
     def renumber(self, number: int) -> None:
-        """Another id, for an object that is alone; an automatic name follows."""
+        """Change the id of an object in a simulation of its own, and its name if that was generated from the id."""
         record = self.record
         name = f"{record.role}_{number}" if record.name == f"{record.role}_{record.id}" else record.name
         scenario = replace(self._simulation.scenario, objects=[replace(record, id=number, name=name)])
@@ -94,7 +91,7 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         set_views(self._simulation, [self])
 
     def attach(self, simulation: Simulation, index: int, world: int = 0) -> None:
-        """Look at another place from now on: rows move when objects come and go."""
+        """Attach the object to a row of a simulation; its row changes when objects are added or deleted."""
         own, row = self.__dict__, world * simulation.objects + index  # without __setattr__: many do this at once
         own["_simulation"], own["index"], own["world"], own["row"] = simulation, index, world, row
         own["_pose"], own["_pose_column"] = simulation.pose[row], simulation.pose[row, :, None]
@@ -104,7 +101,7 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
 
     @property
     def kf(self) -> KinematicsHandler:
-        """The drive: constructed by the engine where a user wrote it, else one that computes the same."""
+        """Handler of the drive: for a drive of user code the one in use, otherwise one with the same results."""
         if (handler := self._handler) is not None:
             return handler
         from irsim.objects.handlers.kinematics import KinematicsFactory
@@ -118,14 +115,14 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
 
     @property
     def gf(self) -> Any:
-        """The shape as a handler, where it stands now."""
+        """Handler of the shape, placed at the present pose."""
         from irsim.objects.handlers.geometry import handler_of
 
         return handler_of(self)
 
     @property
     def obj_behavior(self) -> Any:
-        """Its behavior as an object that can be asked."""
+        """The behavior as an object with the method ``gen_vel``."""
         from irsim.objects.handlers.behavior import Behavior
 
         if "_behavior" not in self.__dict__:
@@ -135,14 +132,14 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
 
     @property
     def trajectory(self) -> list[Floats]:
-        """States after each executed step, (state_dim, 1) each, without the initial one."""
+        """States after each executed step, (state_dim, 1) each, without the initial state."""
         states = [column(row[: self.state_dim]) for row in self._simulation.state.trajectory(self.row)]
         return FixedList(states, f"`trajectory` of {self.name!r}", HINTS["trajectory"])
 
     # description ---------------------------------------------------------------------------------------------------
     @property
     def beh_config(self) -> BehaviorKeys:
-        """The behavior's keys as written, or those of the group behavior; what is set of its own holds at once."""
+        """Keys of the behavior as written, which may be set, or else keys of the group behavior."""
         if "_keys" not in self.__dict__:
             self.__dict__["_keys"] = behavior_keys(self)
         keys: BehaviorKeys = self.__dict__["_keys"]
@@ -154,27 +151,27 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
 
     @property
     def info(self) -> ObjectInfo:
-        """A snapshot of what the object is."""
+        """Description of the object at the present time."""
         return ObjectInfo.of(self)
 
     def get_info(self) -> ObjectInfo:
-        """Same as ``info``."""
+        """Return the description of the object at the present time."""
         return self.info
 
     def get_obstacle_info(self) -> ObstacleInfo:
-        """Where the object is and how big."""
+        """Return the position and the size of the object."""
         return ObstacleInfo.of(self)
 
     def get_lidar_scan(self) -> dict[str, Any]:
-        """Scan of the first lidar; see :meth:`irsim.objects.sensors.lidar.Lidar2D.get_scan`."""
+        """Return the scan of the first lidar; see :meth:`irsim.objects.sensors.lidar.Lidar2D.get_scan`."""
         return self._first_lidar().get_scan()
 
     def get_lidar_points(self) -> Floats | None:
-        """(2, K) points of the first lidar, sensor frame."""
+        """Return the points of the first lidar in the sensor frame, (2, K) [m]; None without a hit."""
         return self._first_lidar().get_points()
 
     def get_lidar_offset(self) -> list[float]:
-        """[x, y, theta] of the first lidar, body frame."""
+        """Return the pose [x, y, theta] of the first lidar in the body frame [m, m, rad]."""
         return self._first_lidar().get_offset()
 
     def set_laser_color(self, laser_indices: Any, laser_color: str = "cyan", alpha: float = 0.3) -> None:
@@ -182,10 +179,11 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         self._first_lidar().set_laser_color(laser_indices, laser_color, alpha)
 
     def get_fov_detected_objects(self) -> list[ObjectView]:
-        """The other objects of which some part lies in the field of view, in id order; empty without one.
+        """Return the other objects of which a part lies in the field of view, ordered by id; empty without one.
 
-        The field of view is the sector of ``fov`` [rad] about the heading, ``fov_radius`` [m] from the object's origin.
-        With ``fov_occlusion`` parts hidden behind what is not ``unobstructed`` do not count.
+        The field of view is a sector of the angle ``fov`` [rad] about the heading and of the radius ``fov_radius`` [m]
+        about the origin of the object. With ``fov_occlusion``, parts behind objects that are not ``unobstructed`` are
+        hidden and do not count.
         """
         if self.fov is None or self.fov_radius is None:
             return []
@@ -193,15 +191,15 @@ class ObjectView(ObjectHooks, ObjectDynamics, ObjectStatus, ObjectAvoidance, Obj
         return [self.environment_objects[i] for i in seen]
 
     def fov_detect_object(self, detected_object: ObjectView) -> bool:
-        """Whether some part of another object lies in the field of view."""
+        """Return whether a part of another object lies in the field of view."""
         return any(other.id == detected_object.id for other in self.get_fov_detected_objects())
 
     def set_text(self, text: str | None) -> None:
-        """Label to draw instead of ``abbr``; None restores it."""
+        """Set the label that is drawn in place of ``abbr``; None restores ``abbr``."""
         self.text = text
 
     def set_goal_text(self, text: str | None) -> None:
-        """Label of the goal; None restores it."""
+        """Set the label that is drawn in place of ``goal_abbr``; None restores ``goal_abbr``."""
         self.goal_text = text
 
     def __repr__(self) -> str:

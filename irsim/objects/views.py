@@ -1,4 +1,4 @@
-"""The objects of a world as scripts see them, made once and kept with their simulation."""
+"""Returns the objects of a world for scripts; they are made once and kept with their simulation."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ __all__ = ["make_view", "views"]
 
 
 def views(simulation: Simulation, world: int = 0) -> list[ObjectView]:
-    """The objects of one world, in the order of their rows."""
+    """Return the objects of one world, in the order of their rows."""
     simulation.make_view = make_view
     return simulation.views(world)
 
 
 def make_view(simulation: Simulation, index: int, world: int) -> ObjectView:
-    """The object at a place of a world: an :class:`ObstacleMap` for the map, else an :class:`ObjectView`."""
+    """Make the object at an index of a world: an :class:`ObstacleMap` for the map, otherwise an :class:`ObjectView`."""
     is_map = simulation.scenario.objects[index].shape.name == "map"
     return (ObstacleMap if is_map else ObjectView)(simulation, index, world)

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
+from irsim.common.arrays import Floats
 
 __all__ = ["ExternalDrives", "StepHooks", "WideControls"]
-
-Floats = NDArray[np.float64]
 
 
 class WideControls(Protocol):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.scenario.resolve.body_size import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.fog import fog_resolution
@@ -55,8 +56,6 @@ _WANDER_REPLAN_STEPS = 100
 """Number of steps after which a wandering robot replans, on average."""
 MAX_SMALL_BODY_CORNERS = 16
 """A body with more corners is possibly large, so it counts as in range everywhere."""
-
-Floats = NDArray[np.float64]
 
 
 def step_work(scenario: ResolvedScenario, simulation: Simulation) -> float:

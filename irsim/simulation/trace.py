@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["Rollout", "Trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 

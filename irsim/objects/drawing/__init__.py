@@ -1,1 +1,1 @@
-"""What objects draw: the scene of an environment, and what scripts plot by hand."""
+"""Drawing of objects: the scene of an environment, and single objects that scripts plot by hand."""

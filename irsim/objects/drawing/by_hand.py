@@ -1,4 +1,4 @@
-"""Drawing one object by hand; environments draw all of theirs together, by themselves."""
+"""Methods that draw one object into given axes; environments draw all of their objects without them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["ObjectDrawing"]
 
 
 class PlotKeys(dict[str, Any]):
-    """The plot keys of one object as written; setting one changes how the object is drawn from then on.
+    """The plot keys of one object as written; setting a key changes how the object is drawn.
 
     Args:
         view: The object.
@@ -31,33 +31,33 @@ class PlotKeys(dict[str, Any]):
 
     def __setitem__(self, key: str, value: Any) -> None:
         super().__setitem__(key, value)
-        self._tell()
+        self._apply()
 
     def __delitem__(self, key: str) -> None:
         super().__delitem__(key)
-        self._tell()
+        self._apply()
 
     def update(self, *args: Any, **kwargs: Any) -> None:
-        """Set several."""
+        """Set several keys."""
         super().update(*args, **kwargs)
-        self._tell()
+        self._apply()
 
-    def _tell(self) -> None:
+    def _apply(self) -> None:
         record = self._view.record
         self._view.record = replace(record, plot=type(record.plot).model_validate(dict(self)))
 
 
 class ObjectDrawing(SimObject):
-    """Part of :class:`irsim.objects.view.ObjectView`.
+    """Drawing of one object; part of :class:`irsim.objects.view.ObjectView`.
 
-    Every ``plot_*`` adds what it draws to some axes, by default those of the environment, and lists it here until
-    ``plot_clear``. ``state`` is the pose to draw it at, x, y [m] and heading [rad] in any shape, by default where the
-    object is; other keywords are plot keys that hold for this drawing.
+    Every ``plot_*`` method draws into axes, by default those of the environment, and lists its artists here until
+    ``plot_clear``. ``state`` is the pose at which to draw, x, y [m] and heading [rad] in any shape, by default the
+    present one. Other keywords are plot keys that hold for this drawing only.
 
     Attributes:
-        ax: The axes drawn on last; before that those of its environment, None without one.
+        ax: The axes used last; before the first drawing those of the environment, None without one.
         plot_patch_list, plot_line_list, plot_text_list, plot_trail_list: Artists by kind.
-        object_patch, object_img, goal_patch, arrow_patch, fov_patch, trajectory_line: What was drawn last, or None.
+        object_patch, object_img, goal_patch, arrow_patch, fov_patch, trajectory_line: Artist drawn last, or None.
     """
 
     object_patch: Any = None
@@ -69,7 +69,7 @@ class ObjectDrawing(SimObject):
 
     @property
     def plot_kwargs(self) -> PlotKeys:
-        """Its plot keys as written; those that are set count from the next frame on."""
+        """The plot keys as written; a key that is set takes effect at the next frame."""
         return PlotKeys(self)
 
     @property
@@ -94,7 +94,7 @@ class ObjectDrawing(SimObject):
 
     @property
     def ax(self) -> Any:
-        """The axes drawn on last; before that those of its environment, None without one."""
+        """The axes used last; before the first drawing those of the environment, None without one."""
         own = self.__dict__.get("_ax")
         if own is not None:
             return own
@@ -107,13 +107,13 @@ class ObjectDrawing(SimObject):
 
     # parts -----------------------------------------------------------------------------------------------------------
     def plot(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
-        """Draw everything that its plot keys show, ``show_sensor`` included.
+        """Draw everything that the plot keys show, with ``show_sensor`` also the sensors.
 
         Args:
             ax: Matplotlib axes.
-            state: Where.
-            vertices: (2, N) outline to draw in place of the body, world frame [m].
-            **kwargs: Plot keys over its own.
+            state: Pose at which to draw.
+            vertices: Outline to draw in place of the body, (2, N), in the world frame [m].
+            **kwargs: Plot keys in place of those of the object.
         """
         axes = self._on(ax)
         if axes is None:
@@ -143,7 +143,7 @@ class ObjectDrawing(SimObject):
                 sensor.plot(axes, self.state if state is None else state)
 
     def plot_object(self, ax: Any = None, state: Any = None, vertices: Any = None, **kwargs: Any) -> None:
-        """Draw the body; of a map, its cells. ``vertices`` as in :meth:`plot`."""
+        """Draw the body, or the cells of a map; the arguments are those of :meth:`plot`."""
         axes = self._on(ax)
         if axes is None:
             return
@@ -161,10 +161,10 @@ class ObjectDrawing(SimObject):
     def plot_object_image(
         self, ax: Any = None, state: Any = None, vertices: Any = None, description: str | None = None, **kwargs: Any
     ) -> bool:
-        """Draw the image of its ``description``, or another one, in place of the body.
+        """Draw the image that ``description`` names, by default that of the object, in place of the body.
 
         Returns:
-            Whether there is such an image.
+            Whether the image exists.
         """
         from irsim.graphics.figure.artists import add_picture
         from irsim.graphics.scene.bodies import read_body
@@ -194,7 +194,7 @@ class ObjectDrawing(SimObject):
         goal_alpha: float | None = None,
         **kwargs: Any,
     ) -> None:
-        """Draw the body at its goal, or at ``goal_state``; nothing without a goal."""
+        """Draw the outline of the body at ``goal_state``, by default at the present goal if the object has one."""
         axes = self._on(ax)
         if axes is None:
             return
@@ -221,18 +221,18 @@ class ObjectDrawing(SimObject):
         arrow_zorder: float | None = None,
         **kwargs: Any,
     ) -> None:
-        """Draw the arrow of its heading, or of ``arrow_theta`` [rad].
+        """Draw an arrow in the direction of the heading, or of ``arrow_theta`` [rad].
 
         Args:
             ax: Matplotlib axes.
-            state: Where.
+            state: Pose at which to draw.
             velocity: Control whose direction the arrow of an ``omni`` drive shows; by default the present one.
             arrow_theta: Direction [rad].
             arrow_length: Length [m].
             arrow_width: Width [m].
             arrow_color: Colour.
-            arrow_zorder: Layer.
-            **kwargs: Plot keys over its own.
+            arrow_zorder: Drawing layer.
+            **kwargs: Plot keys in place of those of the object.
         """
         axes = self._on(ax)
         if axes is None:
@@ -248,7 +248,7 @@ class ObjectDrawing(SimObject):
         self.arrow_patch = self._add(axes, self._mark("arrow", where, keys))
 
     def plot_fov(self, ax: Any = None, **kwargs: Any) -> None:
-        """Draw the field of view; nothing without one."""
+        """Draw the field of view, if the object has one."""
         axes = self._on(ax)
         if (
             axes is not None
@@ -258,7 +258,7 @@ class ObjectDrawing(SimObject):
             self.fov_patch = self._add(axes, self._mark("fov", None, {**kwargs, "show_fov": True}))
 
     def plot_text(self, ax: Any = None, state: Any = None, **kwargs: Any) -> None:
-        """Write its label, and that of its goal where both are shown."""
+        """Write the label of the object, and the label of the goal if the plot keys show it."""
         from irsim.graphics.figure.artists import add_label
 
         axes = self._on(ax)
@@ -276,7 +276,7 @@ class ObjectDrawing(SimObject):
         keep_traj_length: int | None = None,
         **kwargs: Any,
     ) -> None:
-        """Draw the line of its states, or of a list of states; nothing for fewer than two."""
+        """Draw a line through the states of ``trajectory``, by default of the object; fewer than two draw nothing."""
         axes = self._on(ax)
         states = self._simulation.state.trajectory(self.row) if trajectory is None else trajectory
         rows = np.array([np.asarray(state, dtype=float).reshape(-1)[:3] for state in states])
@@ -295,7 +295,7 @@ class ObjectDrawing(SimObject):
         keep_trail_length: int | None = None,
         **kwargs: Any,
     ) -> None:
-        """Leave a snapshot; those beyond the newest ``keep_trail_length`` are removed (0 keeps all)."""
+        """Draw a snapshot of the body, and remove all but the newest ``keep_trail_length`` snapshots (0 keeps all)."""
         axes = self._on(ax)
         if axes is None:
             return
@@ -312,13 +312,13 @@ class ObjectDrawing(SimObject):
             _remove(trail.pop(0))
 
     def plot_uncertainty(self, ax: Any = None, **kwargs: Any) -> None:
-        """Nothing: there is no uncertainty to draw."""
+        """Do nothing; kept for compatibility."""
 
     def plot_clear(self, all: bool = False) -> None:
-        """Remove what was drawn by hand.
+        """Remove everything that was drawn by hand.
 
         Args:
-            all: The snapshots of the trail, too.
+            all: Also remove the snapshots of the trail.
         """
         for kind in ("patch", "line", "text", *(("trail",) if all else ())):
             artists = self._artists(kind)

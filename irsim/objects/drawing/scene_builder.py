@@ -1,4 +1,4 @@
-"""State of one world → :class:`irsim.graphics.scene.scene.Scene`. Reads the simulation, never writes to it."""
+"""Builds the :class:`irsim.graphics.scene.scene.Scene` of one world; it reads the simulation and never writes to it."""
 
 from __future__ import annotations
 
@@ -39,17 +39,19 @@ if TYPE_CHECKING:
 __all__ = ["MODES", "SceneBuilder"]
 
 MODES = ("dynamic", "static", "all")
-"""Which objects the overrides of a frame apply to."""
+"""Values of ``mode``, which selects the objects to which the overrides of a frame apply."""
 
 _FOG_ZORDER = 2
 _GRID_ZORDER = 0.0
-_FULL_TURN = 2 * math.pi - 0.01
-_MOVING = 1e-9
+MAX_SECTOR_ANGLE = 2 * math.pi - 0.01
+"""Angle [rad] of the field of view from which on it is drawn as a circle."""
+MIN_ARROW_SPEED = 1e-9
+"""Speed [m/s] up to which the arrow of an ``omni`` drive shows the heading of the body."""
 
 
 @dataclass(slots=True)
 class _Trail:
-    """Snapshots made so far: how many states they cover, and of which style and body."""
+    """Snapshots of an object, with their style, their body, and the number of states that they cover."""
 
     style: ObjectStyle
     body: Body
@@ -59,7 +61,7 @@ class _Trail:
 
 @dataclass(slots=True)
 class _Drawn:
-    """What an object showed last, kept as long as nothing about it changes."""
+    """Marks, labels and picture of an object, kept as long as ``key`` does not change."""
 
     key: tuple[Any, ...]
     marks: list[Mark]
@@ -70,14 +72,14 @@ class _Drawn:
 class SceneBuilder:
     """Makes scenes of one world.
 
-    Marks of objects that did not change since the last scene are the same objects again, by which a drawer can tell
-    what it need not touch.
+    An object that has not changed since the last scene is represented by the identical marks, so that the figure need
+    not update them.
 
     Args:
-        simulation: What to show.
-        world: Which of its worlds.
+        simulation: The simulation.
+        world: Index of the world.
         palette: Default colours.
-        has_picture: Tells whether a description image can be drawn; bodies are drawn as shapes where it cannot.
+        has_picture: Function that returns whether a description image exists; otherwise the body is drawn as a shape.
     """
 
     def __init__(
@@ -95,7 +97,7 @@ class SceneBuilder:
         self.reset()
 
     def reset(self) -> None:
-        """Forget shapes, styles and snapshots, after objects were exchanged or reshaped."""
+        """Forget shapes, styles and snapshots after objects were added, deleted or reshaped."""
         self._bodies: dict[int, Body] = {}
         self._styles: dict[int, tuple[Any, ObjectStyle]] = {}
         self._drawn: dict[int, _Drawn] = {}
@@ -111,13 +113,13 @@ class SceneBuilder:
         mode: str = "all",
         overrides: Mapping[str, Any] | None = None,
     ) -> Scene:
-        """The scene as it is now.
+        """Build the scene of the present state.
 
         Args:
-            status: Word for the title.
-            viewpoint: Point, or name of the object, to centre on.
-            mode: Which objects ``overrides`` apply to: ``dynamic``, ``static`` or ``all``.
-            overrides: Plot keys that hold for this scene.
+            status: Status word for the title.
+            viewpoint: Point x, y [m], or name of an object, on which the scene is centred.
+            mode: Objects to which ``overrides`` apply: ``dynamic``, ``static`` or ``all``.
+            overrides: Plot keys that hold for this scene only.
         """
         simulation = self.simulation
         known = int(simulation.state.scene[self.world]), simulation.revision
@@ -155,14 +157,14 @@ class SceneBuilder:
 
     # one object ------------------------------------------------------------------------------------------------------
     def body(self, view: SimObject) -> Body:
-        """Shape of an object in its own frame."""
+        """Return the shape of an object in its body frame."""
         body = self._bodies.get(view.id)
         if body is None:
             body = self._bodies[view.id] = read_body(self.simulation.state, view.row)
         return body
 
     def style(self, view: SimObject, overrides: Mapping[str, Any]) -> ObjectStyle:
-        """Resolved plot keys of an object."""
+        """Return the resolved plot keys of an object."""
         key = (view.record.plot, view.color, overrides)
         cached = self._styles.get(view.id)
         if cached is not None and cached[0][0] is key[0] and cached[0][1:] == key[1:]:
@@ -204,7 +206,7 @@ class SceneBuilder:
                 scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
 
     def _grid(self, view: SimObject) -> GridImage:
-        """The image of a map, made once per scene."""
+        """Return the image of a map, which is made once per scene."""
         if view.id not in self._grids:
             grid = self.simulation.scenario.grid
             cells = self.simulation.state.cells(view.row)
@@ -220,7 +222,7 @@ class SceneBuilder:
         if view.kinematics != "omni":
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
-        return math.atan2(vy, vx) if math.hypot(vx, vy) > _MOVING else pose[2]
+        return math.atan2(vy, vx) if math.hypot(vx, vy) > MIN_ARROW_SPEED else pose[2]
 
     def _trail(self, object_id: int, body: Body, style: ObjectStyle, states: Floats) -> list[Mark]:
         trail = self._trails.get(object_id)
@@ -240,13 +242,13 @@ class SceneBuilder:
         pose: Pose | None = None,
         goal: Sequence[float] | None = None,
     ) -> tuple[list[Mark], list[Label], Picture | None]:
-        """Body, goal, arrow, view sector, labels and image of one object, somewhere else if asked.
+        """Return body, goal, arrow, field of view, labels and image of one object.
 
         Args:
             view: The object.
-            overrides: Plot keys over its own.
-            pose: x, y [m], heading [rad]; default: where it is.
-            goal: x, y [m], heading [rad]; default: its present goal.
+            overrides: Plot keys in place of those of the object.
+            pose: x, y [m], heading [rad]; by default the present pose.
+            goal: x, y [m], heading [rad]; by default the present goal.
         """
         body, style = self.body(view), self.style(view, overrides)
         placed: Pose = tuple(self.simulation.pose[view.row].tolist()) if pose is None else pose
@@ -256,15 +258,15 @@ class SceneBuilder:
         return drawn.marks, drawn.labels, drawn.picture
 
     def path_of(self, view: SimObject, states: Floats, overrides: Mapping[str, Any]) -> Mark:
-        """The line through (N, 3 or more) states of an object."""
+        """Return the line through states (N, 3 or more) of an object."""
         return _trajectory(view.id, self.body(view), self.style(view, overrides), states)
 
     def trail_mark(self, view: SimObject, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
-        """One snapshot of an object at a pose."""
+        """Return a snapshot of an object at a pose."""
         return _trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
 
     def grid(self, view: SimObject) -> GridImage:
-        """The image of a map."""
+        """Return the image of a map."""
         return self._grid(view)
 
     # sensors ---------------------------------------------------------------------------------------------------------
@@ -301,7 +303,7 @@ def _draw(
     key: tuple[Any, ...],
     has_picture: Callable[[str], bool],
 ) -> _Drawn:
-    """Everything about an object that follows from its pose and goal."""
+    """Return all marks, labels and pictures of an object that follow from its pose and goal."""
     drawn = _Drawn(key, [], [], None)
     marks, number = drawn.marks, view.id
     if style.show_fov and view.fov is not None and view.fov_radius is not None:
@@ -332,7 +334,7 @@ def _draw(
         pointer = place(arrow(style.arrow_length, style.arrow_width), (pose[0], pose[1], heading))
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
-    if style.show_text and view.shape != "walls":  # those round the world need no name
+    if style.show_text and view.shape != "walls":  # the walls round the world need no label
         text = view.abbr if view.text is None else view.text
         drawn.labels.append(_label(number, "name", pose[0], pose[1], text, style))
         if style.show_goal and style.show_goal_text and has_goal:
@@ -356,7 +358,7 @@ def _label(number: int, part: str, x: float, y: float, text: str, style: ObjectS
 def _view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:
     x, y, theta = pose
     shape: Geometry = Circle(x, y, radius)
-    if angle < _FULL_TURN:
+    if angle < MAX_SECTOR_ANGLE:
         shape = Sector(x, y, radius, theta - angle / 2, theta + angle / 2)
     return Mark(number, "fov", shape, style.fov_color, Stroke(style.fov_edge_color), style.fov_alpha, style.fov_zorder)
 

@@ -1,4 +1,4 @@
-"""Everything in a simulation that users wrote in Python."""
+"""Attaches all user code of a scenario to a simulation: drives, behaviors and sensors written in Python."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["attach_python"]
 
 
 def attach_python(simulation: Simulation, *, anew: bool = False) -> None:
-    """Let drives, behaviors and sensors of users take part; calling it again looks anew at the objects there are.
+    """Attach drives, behaviors and sensors of user code; call it again after the objects have changed.
 
     Args:
-        simulation: Where.
+        simulation: The simulation.
         anew: Construct drives, and behaviors that are classes, again.
     """
     attach_python_drives(simulation, anew=anew)

@@ -1,4 +1,4 @@
-"""Behaviors written in Python the 2.12 way: what they return is the control of an object, or of each of a group."""
+"""Behaviors written in Python as in IR-SIM 2.12: they return the control of an object, or of each group member."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ __all__ = ["PythonBehaviors", "attach_python_behaviors", "forget_behavior"]
 
 
 class PythonBehaviors:
-    """Asks user code for the controls of objects and groups, in every world; all of it sees the same snapshot.
+    """Calls user code for the controls of objects and groups in every world; all calls see the same state.
 
     Attributes:
-        objects: Places, within a world, of the objects whose `behavior` is of user code, or of nobody yet.
-        groups: Places of the members of each group whose `group_behavior` is; the first one's counts.
+        objects: Indices, within a world, of the objects whose `behavior` is user code or is not registered yet.
+        groups: Indices of the members of each group whose `group_behavior`, that of the first member, is so.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -35,7 +35,7 @@ class PythonBehaviors:
         self.groups: list[list[int]] = []
 
     def find(self) -> bool:
-        """Look for those that take part; True if there are any."""
+        """Find the objects and groups whose behaviors are user code; return whether there are any."""
         from irsim.simulation.build import group_behaviors
 
         records = self._simulation.scenario.objects
@@ -71,8 +71,8 @@ class PythonBehaviors:
         """Construct the behaviors that are classes, once per object or group.
 
         Args:
-            worlds: Where.
-            anew: Also where there are some already.
+            worlds: Indices of the worlds.
+            anew: Construct existing ones again.
         """
         for world in worlds:
             objects = self._simulation.views(world)
@@ -81,17 +81,17 @@ class PythonBehaviors:
                 key = (world, view.id, "behavior")
                 maker = CUSTOM_BEHAVIORS.maker(view.kinematics, _name(view.record.behavior))
                 if maker is not None and (anew or key not in self._instances):
-                    self._construct(key, maker, view.info, _written(view.record.behavior))
+                    self._construct(key, maker, view.info, _keys_as_given(view.record.behavior))
             for group in self.groups:
                 leader = objects[group[0]]
                 key = (world, leader.group, "group")
                 maker = CUSTOM_GROUP_BEHAVIORS.maker(leader.kinematics, _name(leader.record.group_behavior))
                 if maker is not None and (anew or key not in self._instances):
                     chosen = [objects[index] for index in group]
-                    self._construct(key, maker, chosen, _written(leader.record.group_behavior))
+                    self._construct(key, maker, chosen, _keys_as_given(leader.record.group_behavior))
 
     def forget(self, view: SimObject) -> None:
-        """Drop what was constructed for an object."""
+        """Delete the behavior that was constructed for an object."""
         self._instances.pop((view.world, view.id, "behavior"), None)
 
     def _construct(self, key: tuple[int, int, str], maker: Any, given: Any, options: dict[str, Any]) -> None:
@@ -102,7 +102,7 @@ class PythonBehaviors:
             self._simulation.report(f"behavior class {options.get('name')!r} could not be constructed: {error!r}")
 
     def __call__(self, simulation: Simulation) -> None:
-        """Fill ``command`` of the rows that are theirs; a group acts before its members' own behaviors."""
+        """Set the commands of all objects with user behaviors; groups decide before single objects."""
         for world in range(simulation.copies):
             objects = simulation.views(world)
             for group in self.groups:
@@ -115,10 +115,10 @@ class PythonBehaviors:
                 _impose(simulation, view, name, self.control(view))
 
     def control(self, view: SimObject) -> Any:
-        """What user code wants one object to do.
+        """Return the control that user code chooses for an object.
 
         Raises:
-            ScenarioError: Nothing has registered its behavior.
+            ScenarioError: The behavior is not registered.
         """
         options = view.record.behavior
         name = _name(options)
@@ -127,7 +127,7 @@ class PythonBehaviors:
             raise _unknown(self._simulation, view, name)
         roles = view.record.target_roles
         others = [o for o in view.environment_objects if o is not view and roles in ("all", o.role)]
-        return act(ego_object=view, external_objects=others, **_written(options))
+        return act(ego_object=view, external_objects=others, **_keys_as_given(options))
 
     def _decide_group(self, world: int, members: list[SimObject]) -> None:
         leader, simulation = members[0], self._simulation
@@ -140,7 +140,7 @@ class PythonBehaviors:
                 f"group behavior {name!r} is not registered for {leader.kinematics!r}: its members follow their own"
             )
             return
-        controls = act(members, **_written(options))
+        controls = act(members, **_keys_as_given(options))
         for view, control in zip(members, () if controls is None else controls, strict=False):
             if control is None or simulation.given[view.row] or view.static or simulation.stopped[view.row]:
                 continue
@@ -151,14 +151,14 @@ def _name(options: Any) -> str:
     return str(getattr(options, "name", ""))
 
 
-def _written(options: Any) -> dict[str, Any]:
-    """The keys of the mapping, as the file has them."""
+def _keys_as_given(options: Any) -> dict[str, Any]:
+    """Return the keys of the mapping as written in the file."""
     keys: dict[str, Any] = options.model_dump(exclude_unset=True)
     return keys
 
 
 def _is_own(record: ObjectRecord, options: Any, table: CustomBehaviors) -> bool:
-    """Whether a mapping names a behavior of user code, or one that nobody has."""
+    """Return whether the options name a behavior of user code, or one that is not registered."""
     if options is None or record.kinematics is None:
         return False
     name = _name(options)
@@ -170,7 +170,7 @@ def _impose(simulation: Simulation, view: SimObject, name: str, control: Any) ->
 
 
 def _unknown(simulation: Simulation, view: SimObject, name: str) -> ScenarioError:
-    """Nothing has registered the behavior by the time it is needed."""
+    """Return the error that a behavior is not registered at the time it is needed."""
     known = [*BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(view.kinematics)]
     finding = Diagnostic(
         code="unknown-behavior",
@@ -186,7 +186,11 @@ def _unknown(simulation: Simulation, view: SimObject, name: str) -> ScenarioErro
 
 
 def _checked(control: object, name: str, view: SimObject) -> NDArray[np.float64]:
-    """What a behavior returned, as finite control components."""
+    """Return what a behavior returned as an array of finite control components.
+
+    Raises:
+        BehaviorError: It is not ``vel_dim`` finite numbers.
+    """
     problem = f"behavior-failed: behavior {name!r} of {view.name!r} returned"
     if control is None:
         raise BehaviorError(f"{problem} None; return {view.vel_dim} numbers")
@@ -202,12 +206,12 @@ def _checked(control: object, name: str, view: SimObject) -> NDArray[np.float64]
 
 
 def attach_python_behaviors(simulation: Simulation, *, anew: bool = False) -> None:
-    """Let the Python behaviors that the scenario names take part in every step.
+    """Let the Python behaviors that the scenario names decide in every step.
 
-    Calling it again looks anew at what is registered and at the objects there are.
+    Call it again after registrations or objects have changed.
 
     Args:
-        simulation: Where.
+        simulation: The simulation.
         anew: Construct behaviors that are classes again.
     """
     known = [part for part in simulation.decisions if isinstance(part, PythonBehaviors)]
@@ -219,7 +223,7 @@ def attach_python_behaviors(simulation: Simulation, *, anew: bool = False) -> No
 
 
 def forget_behavior(simulation: Simulation, view: SimObject) -> None:
-    """An object gets another behavior: where that is a class, it is constructed anew when user code is attached."""
+    """Delete the constructed behavior of an object, so that attaching user code constructs a new one."""
     for part in simulation.decisions:
         if isinstance(part, PythonBehaviors):
             part.forget(view)

@@ -1,4 +1,4 @@
-"""Drives written in Python: they move the rows that the core leaves alone."""
+"""Drives written in Python, which move the rows that the core does not move."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.kinematics._handler import KinematicsHandler, construct, handler_class
 from irsim.diagnostics.errors import BehaviorError
@@ -23,19 +23,18 @@ if TYPE_CHECKING:
 
 __all__ = ["PythonDrives", "attach_python_drives"]
 
-Floats = NDArray[np.float64]
 _CORE_CONTROLS = 3
 _CONTACT = COLLISION_MODES["contact"]
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 
 
 class Wide:
-    """The controls of a drive that has more than the core keeps.
+    """The controls of a drive with more than three controls, which is all that the core stores.
 
     Attributes:
-        command: (n,) wanted in the next step.
-        control: (n,) executed in the last one.
-        drive: (n,) what the drive does, before contacts interfere.
+        command: Control for the next step, (n,).
+        control: Control executed in the last step, (n,).
+        drive: Control of the drive before contacts change it, (n,).
     """
 
     def __init__(self, record: ObjectRecord) -> None:
@@ -46,12 +45,12 @@ class Wide:
         self.reset()
 
     def reset(self) -> None:
-        """As at the start."""
+        """Set the controls to their initial values."""
         self.command[:] = 0.0
         self.control[:] = self.drive[:] = self.record.velocity
 
     def limit(self, dt: float, *, moves: bool) -> None:
-        """The executed control of the next step."""
+        """Limit the command and make it the executed control; 0 for an object that does not move."""
         record = self.record
         if moves:
             change = np.asarray(record.acce) * dt
@@ -74,7 +73,7 @@ class PythonDrives:
         self.objects: list[int] = []
 
     def find(self) -> bool:
-        """Look for those that take part; True if there are any."""
+        """Find the objects with drives of user code; return whether there are any."""
         records = self._simulation.scenario.objects
         drives = [getattr(record.kinematics, "name", None) for record in records]
         self.objects = [index for index, name in enumerate(drives) if handler_class(name) is not None]
@@ -98,11 +97,11 @@ class PythonDrives:
                     self._wide[key] = Wide(records[index])
 
     def handler(self, row: int) -> KinematicsHandler | None:
-        """The handler of a row, None where the core moves it."""
+        """Return the handler of a row; None if the core moves the row."""
         return self._handlers.get(self._key(row))
 
     def wide(self, row: int) -> Wide | None:
-        """The controls of a row that has more than the core keeps."""
+        """Return the controls of a row with more than three controls; None for other rows."""
         return self._wide.get(self._key(row)) if self._wide else None
 
     def _key(self, row: int) -> tuple[int, int]:
@@ -110,7 +109,7 @@ class PythonDrives:
         return world, int(self._simulation.ids[index])
 
     def reset(self, worlds: Sequence[int]) -> None:
-        """Controls as at the start."""
+        """Set the controls in these worlds to their initial values."""
         for (world, _), wide in self._wide.items():
             if world in worlds:
                 wide.reset()
@@ -124,7 +123,7 @@ class PythonDrives:
         return self._simulation.scenario.objects[row % self._simulation.objects], self._handlers[key]
 
     def follow(self) -> None:
-        """Turn the velocities that native behaviors want into controls."""
+        """Convert the velocities that native behaviors choose into controls."""
         simulation = self._simulation
         for row in self._rows():
             record, _ = self._of(row)
@@ -133,7 +132,7 @@ class PythonDrives:
                 simulation.impose(row, self.control_alone(row, simulation.command[row].copy()))
 
     def control_alone(self, row: int, wanted: Floats) -> Floats:
-        """(n,) controls for what a native behavior wants of a row; what it wants where the drive is native."""
+        """Return the control (n,) that realizes the choice of a native behavior; native drives return the choice."""
         if self._key(row) not in self._handlers:
             return wanted
         record, handler = self._of(row)
@@ -143,26 +142,26 @@ class PythonDrives:
         return control
 
     def state(self, row: int, record: ObjectRecord) -> Floats:
-        """(state_dim, 1) state of a row."""
+        """Return the state of a row, (state_dim, 1)."""
         extra = self._simulation.extra[row, : record.state_dim - 3]
         state: Floats = np.concatenate([self._simulation.pose[row], extra])[:, None]
         return state
 
     def move(self) -> None:
-        """Limit the controls that the core does not keep, and move."""
+        """Move all rows with drives of user code by one period."""
         for row in self._rows():
             self.move_row(row)
 
     @contextmanager
     def feeling(self) -> Iterator[None]:
-        """What contacts change of the velocities meanwhile, the controls of these drives feel."""
+        """Apply velocity changes by contacts within the ``with`` block to the controls of these drives, too."""
         before = self._simulation.twist.copy()
         yield
         for row in self._rows():
             self._feel(row, self._simulation.twist[row] - before[row])
 
     def _feel(self, row: int, change: Floats) -> None:
-        """The control of a row follows a (3,) change of its velocity: world frame [m/s] and yaw rate [rad/s]."""
+        """Adapt the control of a row to a change (3,) of its velocity: world frame [m/s] and yaw rate [rad/s]."""
         if not change.any():
             return
         record, handler = self._of(row)
@@ -176,7 +175,7 @@ class PythonDrives:
         self._simulation.control[row, : kept.size] += kept
 
     def move_row(self, row: int) -> None:
-        """One period of one object; nothing where the core moves it."""
+        """Move one row by one period, unless the core moves it."""
         if self._key(row) not in self._handlers:
             return
         record, handler = self._of(row)
@@ -209,35 +208,35 @@ class PythonDrives:
 def respond(
     command: Floats, drive: Floats, travel: Sequence[int], record: ObjectRecord, dt: float, gravity: float
 ) -> Floats:
-    """(n,) executed control in ``collision_mode: contact``: the lag of the drive, then the grip of its wheels.
+    """Return the executed control in ``collision_mode: contact``, (n,), after the lag and the grip of the drive.
 
     Args:
-        command: (n,) limited control, command frame.
-        drive: (n,) what the drive did in the last period, before contacts interfered.
-        travel: Rows that are speeds [m/s].
-        record: The object, for its lag and friction.
+        command: Limited control in the command frame, (n,).
+        drive: Control of the drive in the last period before contacts changed it, (n,).
+        travel: Indices of the components that are speeds [m/s].
+        record: Record of the object, with its lag and friction.
         dt: Period [s].
-        gravity: [m/s^2].
+        gravity: Gravitational acceleration [m/s^2].
     """
     target: Floats = command.copy()
     if record.drive_tau > 0.0:
         target = drive + min(1.0, dt / record.drive_tau) * (command - drive)
     rows = list(travel)
     change = target[rows] - drive[rows]
-    most, size = record.friction * gravity * dt, float(np.linalg.norm(change))
-    if size > most:
-        target[rows] = drive[rows] + change * (most / size)
+    max_change, size = record.friction * gravity * dt, float(np.linalg.norm(change))
+    if size > max_change:
+        target[rows] = drive[rows] + change * (max_change / size)
     return target
 
 
 def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats, *, turning: bool = True) -> Floats:
-    """(n,) controls of a drive for a wanted world-frame velocity (2, 1) [m/s].
+    """Return the control (n,) with which a drive follows a world-frame velocity (2, 1) [m/s].
 
-    The handler's own ``velocity_from_xy`` where it has one; a drive of two controls without one turns toward the
-    velocity like a differential drive, unless ``turning`` is out of the question.
+    The method ``velocity_from_xy`` of the handler decides. A drive of two controls without that method turns toward the
+    velocity like a differential drive, if ``turning`` is True.
 
     Raises:
-        BehaviorError: It has another number of controls and no ``velocity_from_xy``.
+        BehaviorError: The handler has no ``velocity_from_xy`` and its number of controls is not 2.
     """
     if not turning or type(handler).velocity_from_xy is not KinematicsHandler.velocity_from_xy:
         return np.asarray(handler.velocity_from_xy(state, velocity_xy), dtype=np.float64).reshape(-1)
@@ -249,7 +248,7 @@ def control_from(handler: KinematicsHandler, state: Floats, velocity_xy: Floats,
 
 
 def _twist(handler: KinematicsHandler, before: Floats, after: Floats, velocity: Floats, dt: float) -> Floats:
-    """(3,) world-frame velocity [m/s] and yaw rate [rad/s] of the period."""
+    """Return the world-frame velocity [m/s] and the yaw rate [rad/s] in the period, (3,)."""
     change = (after[:3, 0] - before[:3, 0]) / dt
     yaw = math.remainder(float(after[2, 0] - before[2, 0]), 2 * math.pi) / dt
     known = type(handler).velocity_to_xy is not KinematicsHandler.velocity_to_xy
@@ -278,7 +277,7 @@ def _into(angle: float, low: float, high: float) -> float:
 
 
 def _is_led(record: ObjectRecord, grouped: dict[int, BehaviorOptions]) -> bool:
-    """Whether a behavior of the core decides for an object."""
+    """Return whether a behavior of the core decides for an object."""
     if record.group in grouped:
         return True
     name = str(getattr(record.behavior, "name", ""))
@@ -291,10 +290,10 @@ def _has_own(record: ObjectRecord, name: str) -> bool:
 
 
 def attach_python_drives(simulation: Simulation, *, anew: bool = False) -> None:
-    """Let the drives that users registered move their objects; calling it again looks anew at the objects.
+    """Let drives of user code move their objects; call it again after the objects have changed.
 
     Args:
-        simulation: Where.
+        simulation: The simulation.
         anew: Construct the handlers again.
     """
     drives = simulation.drives

@@ -1,4 +1,4 @@
-"""Moments of a step at which code of users takes part, object by object: overridden in subclasses or on instances."""
+"""Methods of objects that user code may override in subclasses or on instances, and that a step then calls."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject
 
 if TYPE_CHECKING:
@@ -18,13 +19,12 @@ if TYPE_CHECKING:
 
 __all__ = ["HOOKS", "Hooks", "ObjectHooks", "overridable"]
 
-Floats = NDArray[np.float64]
 HOOKS = ("step", "pre_process", "gen_behavior_vel", "mid_process", "post_process")
 Method = TypeVar("Method", bound=Callable[..., Any])
 
 
 class overridable(Generic[Method]):
-    """A method that is called in the steps of an environment once something else is put in its place."""
+    """Descriptor of a method that the steps of an environment call as soon as it is overridden."""
 
     def __init__(self, default: Method) -> None:
         self.default = default
@@ -45,7 +45,7 @@ class overridable(Generic[Method]):
 
 
 class ObjectHooks(SimObject):
-    """What an object does in its step; part of :class:`irsim.objects.view.ObjectView`."""
+    """The stages of a step of one object; part of :class:`irsim.objects.view.ObjectView`."""
 
     _subclassed: ClassVar[frozenset[str]] = frozenset()
 
@@ -55,12 +55,12 @@ class ObjectHooks(SimObject):
         cls._subclassed = frozenset(own)
 
     def overridden(self) -> frozenset[str]:
-        """Names of the moments at which something of a user's takes part."""
+        """Return the names of the methods that user code has overridden."""
         own = self.__dict__
         return self._subclassed | {name for name in HOOKS if name in own}
 
     def _take_part(self) -> None:
-        """Be asked in the steps of the present simulation, if anything is overridden."""
+        """Register the object with the simulation if a method is overridden."""
         if self._subclassed or not self.__dict__.keys().isdisjoint(HOOKS):
             hooks = self._simulation.hooks
             if hooks is None:
@@ -69,19 +69,19 @@ class ObjectHooks(SimObject):
 
     @overridable
     def pre_process(self) -> None:
-        """Before the object decides: a wanderer that has arrived gets its next goal, a looper its goals again."""
+        """Renew the goals of an arrived object with ``wander`` or ``loop``; called before the object decides."""
         if self._simulation.arrived[self.row]:
             core.renew_row(self._simulation.world, self._simulation.state, self.row)
 
     @overridable
     def gen_behavior_vel(self, velocity: Any = None) -> Floats:
-        """The control of the next step.
+        """Return the control of the next step.
 
         Args:
-            velocity: A wanted control; None asks the behavior.
+            velocity: Desired control; None lets the behavior choose.
 
         Returns:
-            (vel_dim, 1), within the limits of speed and acceleration.
+            Control (vel_dim, 1) within the limits of speed and acceleration.
         """
         simulation, row = self._simulation, self.row
         hooks = simulation.hooks
@@ -102,13 +102,13 @@ class ObjectHooks(SimObject):
 
     @overridable
     def mid_process(self, state: Any) -> Floats:
-        """Between the motion and its taking effect: the heading is brought into ``angle_range``.
+        """Wrap the heading into ``angle_range``; called after the motion, before its result takes effect.
 
         Args:
-            state: State that the drive has moved to.
+            state: State that results from the motion.
 
         Returns:
-            (state_dim, 1); rows that ``state`` lacks keep their values.
+            State (state_dim, 1) that takes effect; rows that ``state`` lacks keep their values.
         """
         values = np.asarray(state, dtype=np.float64).reshape(-1)
         out = self._simulation.row_state(self.row, self.state_dim)
@@ -122,18 +122,18 @@ class ObjectHooks(SimObject):
 
     @overridable
     def post_process(self) -> None:
-        """After the object has moved: nothing."""
+        """Do nothing; called after the object has moved."""
 
     @overridable
     def step(self, velocity: Any = None, sensor_step: bool = True, **_: Any) -> Floats:
-        """Move this object alone by one period; the clock of the environment stands still.
+        """Advance this object alone by one period, without advancing the time of the environment.
 
         Args:
-            velocity: Control, ``vel_dim`` numbers in the command frame; None lets its behavior choose.
-            sensor_step: Also read the sensors anew.
+            velocity: Control, ``vel_dim`` numbers in the command frame; None lets the behavior choose.
+            sensor_step: Also update the sensors.
 
         Returns:
-            (state_dim, 1) the new state.
+            The new state, (state_dim, 1).
         """
         simulation, row = self._simulation, self.row
         within = simulation.hooks is not None and row in simulation.hooks.stepping
@@ -158,11 +158,11 @@ class ObjectHooks(SimObject):
 
 
 class Hooks:
-    """Calls the overridden methods of objects at their moments.
+    """Calls the overridden methods of objects in each step.
 
     Attributes:
-        stepping: Rows whose own ``step`` is being called by the environment.
-        decided: The controls that were decided for them.
+        stepping: Rows whose overridden ``step`` the environment is calling.
+        decided: Controls that were decided, by row.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -174,18 +174,18 @@ class Hooks:
         self._before: dict[int, tuple[Floats, Floats, Floats]] = {}
 
     def add(self, view: Any) -> None:
-        """Ask this object, too."""
+        """Call the overridden methods of this object, too."""
         if not any(view is known for known in self._views):
             self._views.append(view)
 
     def _present(self) -> list[Any]:
-        """Those that are still there and have something overridden, in the order of their rows."""
+        """Return the objects of the simulation with overridden methods, in the order of their rows."""
         simulation = self._simulation
         there = [view for view in self._views if view._simulation is simulation and view.overridden()]
         return sorted(there, key=lambda view: view.row)
 
     def decide(self) -> None:
-        """The goals and native behaviors of all, with ``pre_process`` of those who have their own."""
+        """Renew goals and run native behaviors, with the overridden ``pre_process`` of objects that have one."""
         simulation = self._simulation
         self.decided.clear()
         self._slots.clear()
@@ -210,7 +210,7 @@ class Hooks:
         return bool(view.overridden() & {"step", "gen_behavior_vel"})
 
     def before_motion(self) -> None:
-        """Keep what the core is about to change of those who have a say in it."""
+        """Call ``gen_behavior_vel``, and save the state of objects whose ``step`` or ``mid_process`` is overridden."""
         simulation = self._simulation
         self._before.clear()
         for view in self._present():
@@ -226,7 +226,7 @@ class Hooks:
                 self._before[row] = simulation.row_state(row, view.state_dim), control, drive
 
     def after_motion(self) -> None:
-        """Let those who have their own ``step``, ``mid_process`` and ``post_process`` act."""
+        """Call the overridden ``step``, ``mid_process`` and ``post_process``."""
         simulation = self._simulation
         for view in self._present():
             row, own = view.row, view.overridden()
@@ -251,7 +251,7 @@ class Hooks:
 
 
 def _settle(view: Any, before: tuple[Floats, Floats]) -> None:
-    """Let ``mid_process`` see the object where it was, and put it where that says."""
+    """Call ``mid_process`` with the object in its previous state, then set the state that it returns."""
     simulation, row = view._simulation, view.row
     reached = simulation.row_state(row, view.state_dim)
     control = simulation.control[row].copy()

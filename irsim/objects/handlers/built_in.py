@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.functions._decide import behavior_options, dash, decide
 from irsim.functions.frames import WrapToPi, relative_position, vel_world2diff, vel_world2omni
 from irsim.functions.rvo import reciprocal_vel_obs
@@ -43,7 +43,6 @@ __all__ = [
     "vel_world2omni",
 ]
 
-Floats = NDArray[np.float64]
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 _SLOW = 0.02
 """Slower wishes are a stop [m/s]."""

@@ -6,17 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import SimObject
 from irsim.objects.extensions.drives import control_from
 from irsim.simulation.build import build_world
 
 __all__ = ["decide_among"]
 
-Floats = NDArray[np.float64]
 _GROUP = -1
 """Number of a group that no scenario uses."""
 

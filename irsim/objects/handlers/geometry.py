@@ -6,8 +6,8 @@ import math
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.functions.inequalities import polygon_inequality
 from irsim.functions.polygons import random_generate_polygon
 from irsim.simulation.active_env import current_rng
@@ -24,7 +24,6 @@ __all__ = [
     "handler_of",
 ]
 
-Floats = NDArray[np.float64]
 Inequality = tuple[Floats | None, Floats | None, str | None, bool | None]
 _NOT_CONVEX: Inequality = (None, None, None, False)
 _NO_AREA: Inequality = (None, None, None, None)

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from irsim.common.arrays import Floats
 from irsim.functions._decide import behavior_options
 from irsim.objects.handlers.decide import decide_among
 from irsim.options.registry import CUSTOM_GROUP_BEHAVIORS
@@ -20,8 +18,6 @@ __all__ = [
     "beh_omni_orca",
     "beh_omni_sfm_group",
 ]
-
-Floats = NDArray[np.float64]
 
 
 class _NativeGroup:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from irsim.common.arrays import Floats
 from irsim.components.kinematics._handler import KinematicsHandler, handler_class, register_kinematics
 from irsim.functions.drives import (
     ackermann_kinematics,
@@ -29,7 +29,6 @@ __all__ = [
     "register_kinematics",
 ]
 
-Floats = NDArray[np.float64]
 _FRICTION_STOP = 1e-12
 
 

@@ -1,4 +1,4 @@
-"""Contacts of ``collision_mode: contact``: records of the last step, and what an object feels of them."""
+"""Contacts of ``collision_mode: contact``: the contacts of the last step, and the contact sensor of each object."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 
 if TYPE_CHECKING:
     from irsim.objects.base import SimObject
@@ -17,19 +17,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Contact", "Contact2D", "ContactReport", "contact_step", "contacts_of"]
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(eq=False)
 class Contact:
-    """Two objects that were pushed apart, or rested against each other, in the last step.
+    """Contact of two objects that were pushed apart, or rested against each other, in the last step.
 
     Attributes:
         a, b: The objects; ``a`` has the lower id.
-        normal: (2,) unit vector from ``b`` to ``a``, world frame.
-        depth: Deepest overlap that was found [m].
-        point: (2,) middle of what overlapped, world frame [m].
-        force: What pushed them apart [N].
+        normal: Unit vector from ``b`` to ``a`` in the world frame, (2,).
+        depth: Largest overlap in the step [m].
+        point: Centre of the overlap in the world frame, (2,) [m].
+        force: Contact force [N].
     """
 
     a: SimObject
@@ -52,7 +50,7 @@ class ContactReport:
 
 
 class Contact2D:
-    """What an object feels: contacts of the last step. Every object has one as ``contact``.
+    """Contact sensor, which reports the contacts of the last step; every object has one as ``contact``.
 
     Attributes:
         parent: The object.
@@ -84,7 +82,7 @@ class Contact2D:
 
     @property
     def reports(self) -> list[ContactReport]:
-        """The same, seen from the object."""
+        """The contacts of the last step, with normals that point to the object."""
         mine = self.parent
         return [
             ContactReport(c.b, c.point, c.normal, c.depth, c.force)
@@ -95,12 +93,12 @@ class Contact2D:
 
     @property
     def partners(self) -> list[SimObject]:
-        """The objects touched, each once."""
+        """The objects that this one touched, each once."""
         return list(dict.fromkeys(report.other for report in self.reports))
 
     @property
     def force(self) -> Floats:
-        """(2, 1) sum of the contact forces on the object, world frame [N]."""
+        """Sum of the contact forces on the object in the world frame, (2, 1) [N]."""
         total = np.zeros((2, 1))
         for report in self.reports:
             total[:, 0] += report.force * report.normal
@@ -113,35 +111,35 @@ class Contact2D:
 
     @property
     def started(self) -> bool:
-        """Whether the last step began a contact."""
+        """Whether the object touched something in the last step but not in the step before."""
         return self._touching & 3 == 1
 
     @property
     def ended(self) -> bool:
-        """Whether the last step ended all contact."""
+        """Whether the object touched something in the step before the last but not in the last step."""
         return self._touching & 3 == 2
 
     @property
     def contact_time(self) -> float:
-        """How long the object has touched something [s]."""
+        """Time for which the object has touched something without interruption [s]."""
         return float(self.parent._simulation.state.contact_time[self.parent.row])
 
     @property
     def air_time(self) -> float:
-        """How long the object has touched nothing [s]."""
+        """Time since the object last touched something [s]."""
         return float(self.parent._simulation.state.air_time[self.parent.row])
 
     def step(self, state: Any = None) -> None:
-        """Nothing: contacts are found by the step of the world."""
+        """Do nothing; kept for compatibility, because the step of the world finds contacts."""
 
     # drawing by hand: environments draw ``contact2d`` of the scenario by themselves -----------------------------------
     def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
-        """Draw the contact forces into some axes.
+        """Draw the contact forces into axes.
 
         Args:
             ax: Matplotlib axes in world coordinates.
-            state: Accepted as for other sensors; contacts are where they are.
-            **kwargs: ``force_scale``, ``marker_size``, ``linewidth``, ``alpha``, ``color``: kept.
+            state: Ignored, accepted as for other sensors.
+            **kwargs: ``force_scale``, ``marker_size``, ``linewidth``, ``alpha``, ``color``, which later drawings keep.
         """
         from irsim.graphics.figure.artists import add_dots, add_mark
         from irsim.objects.sensors.contact_drawing import draw_forces
@@ -155,7 +153,7 @@ class Contact2D:
         self._drawn += [add_dots(ax, beams.dots) for beams in dots if beams.dots is not None]
 
     def step_plot(self) -> None:
-        """Bring what ``plot`` has drawn up to date."""
+        """Update what ``plot`` has drawn."""
         if self._axes is not None:
             self.plot(self._axes)
 
@@ -171,7 +169,7 @@ class Contact2D:
 
 
 def contacts_of(simulation: Simulation, world: int = 0) -> list[Contact]:
-    """The contacts of the last step of one world, in the order in which they were found."""
+    """Return the contacts of the last step of one world, in the order in which they were found."""
     objects = simulation.views(world)
     return [
         Contact(objects[a], objects[b], np.array([nx, ny]), depth, np.array([x, y]), force)
@@ -189,14 +187,16 @@ def contact_step(
     """Push apart pairs of objects where they overlap, as a step with ``collision_mode: contact`` does.
 
     Args:
-        pairs: Objects of one environment; the order decides among pairs that are as far from what cannot be pushed.
-        iterations: Sweeps over the pairs, at most.
-        slop: Gap that is left between them [m].
-        margin: Not needed here; pairs that are apart cost nothing.
-        step_time: Period in which they are pushed apart [s], from which velocities follow; None is the world's.
+        pairs: Pairs of objects of one environment. Pairs with the same distance, counted in contacts, from an object
+            that cannot be pushed are treated in this order.
+        iterations: Largest number of sweeps over the pairs.
+        slop: Gap that is left between the objects [m].
+        margin: Ignored, accepted for compatibility.
+        step_time: Period in which the objects are pushed apart, which determines their velocities [s]; None is that of
+            the world.
 
     Raises:
-        ValueError: Objects of several environments.
+        ValueError: The objects belong to several environments.
     """
     if not pairs:
         return []

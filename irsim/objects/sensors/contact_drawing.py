@@ -1,4 +1,4 @@
-"""What an object feels as a drawing: a dot where it touches others, a line as long as the force there."""
+"""Draws the contacts of an object: a dot at each contact point, and a line whose length shows the force."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _ZORDER = 5
 
 
 def draw_forces(contact: Any, sensor: int = 0) -> tuple[list[Mark], list[Beams]]:
-    """Lines of the contact forces on an object, and the dots they start from.
+    """Return the lines of the contact forces on an object, and the dots at which they start.
 
     Args:
         contact: The :class:`irsim.objects.sensors.contact.Contact2D` of the object.
-        sensor: Its place among the sensors of its object.
+        sensor: Index among the sensors of the object.
     """
     reports = contact.reports
     if not reports:

@@ -1,4 +1,4 @@
-"""What a script reads from a lidar: a view of its slice of the core's scan arrays."""
+"""Lidars as scripts use them: views of a slice of the scan arrays of the core."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import irsim._core as core
+from irsim.common.arrays import Floats
 from irsim.objects.base import column
 from irsim.objects.setters import refuse, sensor_options
 
@@ -19,9 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["FMCWLidar2D", "Lidar2D"]
 
-Floats = NDArray[np.float64]
-_MISS_MARGIN = 0.02
-"""Beams whose range is within this of ``range_max`` [m] leave no point in the cloud."""
+MISS_MARGIN = 0.02
+"""Distance [m] to ``range_max`` below which a range adds no point to the point cloud."""
 _HIGHLIGHT = "#56B4E9"
 """Colour of beams picked out by ``set_laser_color``."""
 
@@ -60,11 +60,11 @@ class Lidar2D:
         index: Number of the sensor among the native ones of one world.
 
     Attributes:
-        number: Beams; beam 0 is the rightmost (clockwise) one.
-        angle_list: (number,) nominal angles in the sensor frame [rad].
-        angle_min, angle_max, angle_inc: First and last of them, and their distance [rad].
+        number: Number of beams; beam 0 is the rightmost one, and numbers increase counterclockwise.
+        angle_list: Nominal angles of the beams in the sensor frame, (number,) [rad].
+        angle_min, angle_max, angle_inc: First angle, last angle, and increment [rad].
         range_min, range_max: Limits of the ranges [m].
-        offset: (3, 1) x, y [m], heading [rad] of the sensor in the body frame.
+        offset: Pose of the sensor in the body frame, (3, 1): x, y [m], heading [rad].
         alpha, color: How the beams are drawn; may be changed.
         colors: {beam: (colour, alpha)} of beams drawn differently, see :meth:`set_laser_color`.
     """
@@ -117,7 +117,7 @@ class Lidar2D:
         self.attach(simulation, index)
 
     def attach(self, simulation: Simulation, index: int) -> None:
-        """Read the ``index``-th sensor of this simulation from now on."""
+        """Attach the lidar to the native sensor with this index in a simulation."""
         own, world = self.__dict__, self.parent.world  # without __setattr__: many do this at once
         _, first, number = simulation.scans[index]
         first += world * simulation.world.beams_per_world
@@ -135,7 +135,7 @@ class Lidar2D:
             self._describe(number)
 
     def _describe(self, number: int) -> None:
-        """Show the options, and the beams they mean."""
+        """Set the attributes that follow from the options and the beam angles."""
         options, own = self.options, self.__dict__
         own["_described"] = options
         angles: Floats = self._simulation.state.beam_angles[self._beams].copy()
@@ -166,7 +166,7 @@ class Lidar2D:
             object.__setattr__(self, name, value)
 
     def _change(self, name: str, value: Any) -> None:
-        """Another value of an option, for the next scan and all after it; the present scan is taken anew."""
+        """Set an option for all further scans, and repeat the present scan."""
         parent, before = self.parent, self.options
         self.options = sensor_options(before, f"the {self.sensor_type} of {parent.name!r}", **{name: value})
         sensors = [self.options if options is before else options for options in parent.record.sensors]
@@ -178,27 +178,27 @@ class Lidar2D:
 
     @property
     def range_data(self) -> Floats:
-        """(number,) measured ranges [m]; a miss reads ``range_max``. A copy."""
+        """Copy of the measured ranges, (number,) [m]; ``range_max`` for beams that hit nothing."""
         return self._ranges.copy()
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """(number,) whether the beam hit something within ``[range_min, range_max]``. A copy."""
+        """Copy of the flags whether each beam hit something within ``[range_min, range_max]``, (number,)."""
         return self._valid.astype(bool)
 
     @property
     def hits(self) -> NDArray[np.int32]:
-        """(number,) id of the object each beam hit, -1 where it hit nothing. A copy."""
+        """Copy of the ids of the objects that the beams hit, (number,); -1 for beams that hit nothing."""
         return self._simulation.ids[self._hits]
 
     @property
     def velocity(self) -> Floats:
-        """(2, number) world velocity of what each beam hit [m/s]; zeros without ``has_velocity`` or hit. A copy."""
+        """Copy of the world velocities at the hits, (2, number) [m/s]; zeros without ``has_velocity`` or a hit."""
         return self._velocities.copy() if self.has_velocity else np.zeros((2, self.number))
 
     @property
     def lidar_origin(self) -> Floats:
-        """(3, 1) pose of the sensor in the world frame."""
+        """Pose of the sensor in the world frame, (3, 1): x, y [m], heading [rad]."""
         return self._placed(self._simulation.pose[self.parent.row])
 
     @property
@@ -208,28 +208,28 @@ class Lidar2D:
 
     @property
     def state(self) -> Floats:
-        """(3, 1) pose of the carrier in the world frame."""
+        """Pose of the carrier in the world frame, (3, 1): x, y [m], heading [rad]."""
         return column(self._simulation.pose[self.parent.row])
 
     def init_geometry(self, state: Any) -> None:
-        """Nothing: the engine knows the beams, and where they start follows from the carrier.
+        """Do nothing; kept for compatibility, because the engine holds the beams.
 
         Args:
-            state: Accepted as it was before.
+            state: Ignored.
         """
 
     def step(self, state: Any = None) -> None:
-        """Take the scan anew.
+        """Take a new scan.
 
         Args:
-            state: x, y [m] and heading [rad] of the carrier, in any shape; by default where it stands.
+            state: Pose of the carrier, x, y [m] and heading [rad], in any shape; by default the present one.
         """
         pose = self._simulation.pose[self.parent.row] if state is None else np.asarray(state, dtype=np.float64)
         x, y, theta = (float(v) for v in pose.reshape(-1)[:3])
         core.scan(self._simulation.world, self._simulation.state, self.parent.world, self._index, (x, y, theta))
 
     def get_scan(self) -> dict[str, Any]:
-        """The scan as a dictionary; arrays are copies of your own.
+        """Return the scan as a dictionary; its arrays are copies.
 
         Returns:
             ``angle_min``, ``angle_max``, ``angle_increment`` [rad], ``time_increment``, ``scan_time`` [s],
@@ -243,8 +243,8 @@ class Lidar2D:
         return scan
 
     def get_points(self) -> Floats | None:
-        """(2, K) points of the valid hits in the sensor frame [m]; None when there is none."""
-        keep = self._valid.astype(bool) & (self._ranges < self.range_max - _MISS_MARGIN)
+        """Return the points of the valid hits in the sensor frame, (2, K) [m]; None without a hit."""
+        keep = self._valid.astype(bool) & (self._ranges < self.range_max - MISS_MARGIN)
         if not keep.any():
             return None
         ranges, angles = self._ranges[keep], self.angle_list[keep]
@@ -253,7 +253,7 @@ class Lidar2D:
     scan_to_pointcloud = get_points
 
     def get_offset(self) -> list[float]:
-        """[x, y, theta] of the sensor in the body frame."""
+        """Return the pose [x, y, theta] of the sensor in the body frame [m, m, rad]."""
         return [float(v) for v in self.offset[:, 0]]
 
     def set_laser_color(self, laser_indices: Any, laser_color: str | None = None, alpha: float = 0.3) -> None:
@@ -261,7 +261,7 @@ class Lidar2D:
 
         Args:
             laser_indices: Beam numbers.
-            laser_color: Any Matplotlib colour; by default that of picked-out beams.
+            laser_color: Any Matplotlib colour; by default light blue.
             alpha: Opacity, 0 to 1.
         """
         for index in np.atleast_1d(np.asarray(laser_indices, dtype=int)):
@@ -269,11 +269,11 @@ class Lidar2D:
 
     # drawing by hand: environments draw their lidars by themselves --------------------------------------------------
     def plot(self, ax: Any, state: Any = None, **kwargs: Any) -> None:
-        """Draw the beams into some axes.
+        """Draw the beams into axes.
 
         Args:
             ax: Matplotlib axes in world coordinates.
-            state: Pose of the carrier; by default where it stands.
+            state: Pose of the carrier; by default the present one.
             **kwargs: ``alpha`` and ``color`` of the beams.
         """
         from irsim.graphics.figure.layers import BeamLayer
@@ -284,7 +284,7 @@ class Lidar2D:
         self._show(state)
 
     def step_plot(self) -> None:
-        """Bring what ``plot`` has drawn up to date."""
+        """Update what ``plot`` has drawn."""
         if self._drawn is not None:
             self._show(None)
 
@@ -301,7 +301,7 @@ class Lidar2D:
         self._drawn.show(draw_scan(self, origin=origin))
 
     def _placed(self, carrier: Floats) -> Floats:
-        """(3, 1) pose of the sensor on a carrier at this pose."""
+        """Return the pose of the sensor on a carrier at this pose, (3, 1), in the world frame."""
         x, y, theta = carrier
         dx, dy, turn = self.offset[:, 0]
         heading = (theta + turn + math.pi) % (2 * math.pi) - math.pi
@@ -310,13 +310,13 @@ class Lidar2D:
 
 
 class FMCWLidar2D(Lidar2D):
-    """A lidar that measures how fast each hit recedes, too.
+    """A lidar that also measures the radial velocity of each hit.
 
     The drawing options of the scenario (``velocity_color``, ``velocity_color_max``, …) are attributes, too.
 
     Attributes:
-        motion_compensate: The carrier's own motion is left out of the radial velocities.
-        velocity_noise_std: Standard deviation of their noise [m/s].
+        motion_compensate: Whether the motion of the carrier is subtracted from the radial velocities.
+        velocity_noise_std: Standard deviation of the noise of the radial velocities [m/s].
         drawing: Drawing options by name; may be changed.
     """
 
@@ -344,12 +344,12 @@ class FMCWLidar2D(Lidar2D):
 
     @property
     def radial_velocity(self) -> Floats:
-        """(number,) radial velocity of each valid hit [m/s], positive when it recedes; 0 for other beams. A copy."""
+        """Copy of the radial velocities of valid hits, (number,) [m/s], positive when receding; 0 for other beams."""
         velocity: Floats = self._velocities[0].copy()
         return velocity
 
     def get_scan(self) -> dict[str, Any]:
-        """The scan of a lidar, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
+        """Return the scan as a dictionary, with ``radial_velocity`` (number,) [m/s] in place of ``velocity``."""
         scan: dict[str, Any] = dict(self._fixed)
         scan["ranges"] = self._ranges.copy()
         scan["radial_velocity"] = self._velocities[0].copy()

@@ -1,4 +1,4 @@
-"""One scan as a drawing: the beams of a lidar, coloured by radial velocity where it measures one."""
+"""Draws a scan: the beams of a lidar, coloured by radial velocity if the lidar measures it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DOT_ZORDER = 4
 
 
 class Scan(Protocol):
-    """What a drawing needs of a lidar; :class:`irsim.objects.sensors.lidar.Lidar2D` has it.
+    """The attributes of a lidar that a drawing uses; :class:`irsim.objects.sensors.lidar.Lidar2D` has them.
 
     Attributes:
         drawing: How radial velocities are drawn; None for a lidar that does not measure them.
@@ -44,12 +44,12 @@ class Scan(Protocol):
 
 
 def draw_scan(lidar: Scan, sensor: int = 0, origin: Any = None) -> Beams:
-    """The present scan.
+    """Return the beams of the present scan.
 
     Args:
-        lidar: What has measured.
-        sensor: Its place among the sensors of its object.
-        origin: Pose of the sensor, world frame; by default where it is.
+        lidar: The lidar.
+        sensor: Index among the sensors of the object.
+        origin: Pose of the sensor in the world frame; by default the present one.
     """
     x, y, theta = (
         np.asarray(lidar.lidar_origin if origin is None else origin, dtype=np.float64).reshape(-1)[:3].tolist()
@@ -93,10 +93,10 @@ def _add_velocities(beams: Beams, lidar: Any, look: dict[str, Any]) -> None:
 
 
 def velocity_colors(velocity: Floats, look: dict[str, Any]) -> Floats:
-    """(B, 4) RGBA: from the colour of rest to that of receding or approaching, full at ``velocity_color_max``.
+    """Return the RGBA colours of beams, (B, 4), which blend from zero velocity to ``velocity_color_max``.
 
     Args:
-        velocity: (B,) radial velocities [m/s], positive when receding.
+        velocity: Radial velocities, (B,) [m/s], positive when receding.
         look: Drawing options of the sensor.
     """
     from matplotlib.colors import to_rgba

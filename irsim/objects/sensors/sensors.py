@@ -1,4 +1,4 @@
-"""The sensors of an object as scripts see them: lidars of the core, and sensors that user code has registered."""
+"""The sensors of an object as scripts use them: lidars of the core, and sensors that user code has registered."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ class PythonSensor:
     Args:
         parent: The object that carries it.
         options: Validated options.
-        feature: What is registered.
-        index: Place among the sensors of the object.
+        feature: Registry entry of the sensor.
+        index: Index among the sensors of the object.
 
     Attributes:
-        sensor_type: Name in YAML.
-        data: What the sensor measured last; None before.
+        sensor_type: Name of the sensor in YAML.
+        data: Last measurement; None before the first one.
         instance: The object of a registered class, or None.
     """
 
@@ -69,10 +69,10 @@ class PythonSensor:
         return self._rng[1]
 
     def step(self, state: Any = None) -> None:
-        """Measure.
+        """Measure and update ``data``.
 
         Args:
-            state: State of the carrier, handed to ``step`` of a class; by default the present one.
+            state: State of the carrier that is passed to ``step`` of a class; by default the present one.
         """
         self._rng = None  # measuring again repeats the draws
         if self.instance is None:
@@ -97,11 +97,11 @@ class PythonSensor:
 
 
 def _nothing() -> None:
-    """What a sensor without ``reset`` does when an episode begins."""
+    """Stand in for the ``reset`` of a sensor that has none."""
 
 
 def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
-    """The sensors of an object, in the order of its entry; those that nothing computes are left out."""
+    """Return the sensors of an object in the order of its entry, without those that are not implemented."""
     native = _native(simulation, view)
     sensors: list[Any] = []
     for index, options in enumerate(view.record.sensors):
@@ -116,7 +116,7 @@ def sensors_of(simulation: Simulation, view: SimObject) -> list[Any]:
 
 
 def attach_sensors(simulation: Simulation, view: SimObject) -> None:
-    """Let the sensors of an object read its place in another simulation."""
+    """Attach the sensors of an object to its row in another simulation."""
     native = _native(simulation, view)
     for sensor in view.sensors:
         if not isinstance(sensor, (Contact2D, PythonSensor)):
@@ -124,7 +124,7 @@ def attach_sensors(simulation: Simulation, view: SimObject) -> None:
 
 
 def _native(simulation: Simulation, view: SimObject) -> Iterator[int]:
-    """Numbers, one by one, of the sensors of an object among the native ones of its world."""
+    """Return an iterator over the indices that the native sensors of an object have in its world."""
     return count(simulation.first_scan(view.index))
 
 
