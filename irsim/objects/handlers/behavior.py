@@ -14,7 +14,7 @@ __all__ = ["Behavior"]
 
 
 class Behavior:
-    """What drives one object.
+    """The behavior of one object.
 
     Args:
         object_info: Description of the object, ``ObjectInfo``.
@@ -41,7 +41,7 @@ class Behavior:
             self._keys = dict(keys or {})
 
     def follow(self, keys: dict[str, Any]) -> None:
-        """Have these very keys, which somebody may change."""
+        """Use this dictionary of keys itself, so that later changes of it take effect."""
         self._keys = keys
 
     def _construct(self) -> None:
@@ -60,7 +60,7 @@ class Behavior:
 
         Args:
             ego_object: The object.
-            external_objects: What it sees.
+            external_objects: The other objects that it sees.
 
         Returns:
             (vel_dim, 1) in the command frame; zero without a behavior.
@@ -95,7 +95,7 @@ class Behavior:
         """Call the function registered for a drive and a name.
 
         Raises:
-            ValueError: There is none.
+            ValueError: No function is registered for them.
         """
         from irsim.objects.handlers.behavior_maps import behaviors_map
 

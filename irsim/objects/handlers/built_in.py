@@ -45,7 +45,7 @@ __all__ = [
 
 _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 _SLOW = 0.02
-"""Slower wishes are a stop [m/s]."""
+"""Speed [m/s] below which a desired velocity counts as a stop."""
 
 
 def DiffDash(

@@ -1,4 +1,4 @@
-"""What a built-in behavior chooses for some objects, if there were no others but those given."""
+"""Evaluates a built-in behavior for some objects in a world that contains only the given objects."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _GROUP = -1
 def decide_among(
     deciding: Sequence[SimObject], others: Sequence[SimObject], options: BaseModel, *, grouped: bool = False
 ) -> list[Floats]:
-    """Controls, (vel_dim, 1) each, that a behavior chooses for objects if there were no others but these.
+    """Return the controls, (vel_dim, 1) each, that a behavior chooses in a world of only the given objects.
 
     Args:
         deciding: Objects of one simulation.
-        others: What they see besides each other.
-        options: Of the behavior.
-        grouped: They are one group.
+        others: Other objects that they see.
+        options: Options of the behavior.
+        grouped: Whether the deciding objects are one group.
     """
     simulation = deciding[0]._simulation
     own, common = (None, options) if grouped else (options, None)
