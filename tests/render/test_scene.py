@@ -84,6 +84,7 @@ def test_trajectories_and_trails_follow_the_path(make: Callable[..., Any]) -> No
     shown = scene(env)
     (path,) = shown.of(0, "trajectory")
     assert np.allclose(path.geometry.points, np.array([s[:2, 0] for s in env.robot.trajectory]))
+    assert path.stroke.color == env.robot.color
     assert path.stroke.metric
     assert path.stroke.width == pytest.approx(0.6)
     snapshots = [mark.geometry.x for mark in shown.of(0, "trail")]

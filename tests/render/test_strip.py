@@ -13,8 +13,11 @@ from PIL import Image
 from irsim.api import snapshot
 from irsim.api.film_strip import StripError, moments_of
 from irsim.diagnostics.errors import OverLimitError
+from irsim.graphics.scene.scene import Scene
+from irsim.rendering import strip
 from irsim.rendering.strip import tiling
 from irsim.scenario.limits import Limits
+from irsim.simulation.simulation import Simulation
 
 SCENE = """\
 world: {width: 8, height: 4, offset: [-1, 0]}
@@ -95,3 +98,16 @@ def test_limits_hold() -> None:
         snapshot(text=SCENE, strip=3, steps=50, limits=Limits(steps=49))
     with pytest.raises(StripError):
         snapshot(text=SCENE, strip=13)
+
+
+def test_the_first_tile_alone_names_obstacles(monkeypatch: pytest.MonkeyPatch) -> None:
+    named = []
+
+    def simplify(scene: Scene, simulation: Simulation, *, first: bool) -> None:
+        original(scene, simulation, first=first)
+        named.append(sorted(label.text for label in scene.labels if label.part == "name"))
+
+    original = strip._simplify
+    monkeypatch.setattr(strip, "_simplify", simplify)
+    snapshot(text=SCENE, strip=2, steps=20, size=600)
+    assert named == [["o1", "r0"], ["r0"]]

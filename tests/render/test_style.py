@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.style import STYLE_KEYS
 from irsim.scenario.model.plot import ObjectPlot
 
@@ -79,6 +80,11 @@ NEEDS = {
     "text_zorder": {"text_position": [0.0, 0.0]},
     "obj_linestyle": {"obj_linewidth": 6.0},
 }
+
+
+def test_cycled_colors_begin_with_the_first_and_start_again() -> None:
+    palette = Palette(cycle=["red", "green", "blue"])
+    assert [palette.cycle_color(index) for index in range(4)] == ["red", "green", "blue", "red"]
 
 
 def test_drawing_knows_the_keys_of_the_language() -> None:

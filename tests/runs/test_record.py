@@ -41,6 +41,16 @@ def test_a_recorded_run_reads_back_bit_for_bit(room: Path) -> None:
     assert (room.parent / ".irsim" / ".gitignore").read_text() == "*\n"
 
 
+def test_flags_keep_their_meaning(crash: Path) -> None:
+    crash.write_text(crash.read_text().replace("world: {", "world: {collision_mode: unobstructed, ", 1))
+    run = open_run(str(irsim.run(crash, seed=4, record=True).run_id))
+    live = record(Env(crash, seed=4, headless=True, log_level="ERROR").simulation, run.last_step, scans=True)
+    assert live.collided.any()
+    assert not live.stopped.any()
+    for name in ("arrived", "collided", "stopped"):
+        np.testing.assert_array_equal(getattr(run.trace(), name), getattr(live, name))
+
+
 def in_single_precision(trace: Trace) -> Trace:
     """With controls as they are kept."""
     return replace(trace, control=trace.control.astype(np.float32).astype(np.float64))

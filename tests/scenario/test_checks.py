@@ -151,6 +151,8 @@ CASES: list[tuple[dict[str, Any], str, str, tuple[str | int, ...]]] = [
     (obstacle(shape={"name": "circle", "radius": 50}, state=[5, 5]),
         "hint", "looks-like-centimetres", ("obstacle", 0, "shape")),
     (obstacle(state=[500, 300]), "hint", "looks-like-centimetres", ("obstacle", 0, "state")),
+    (robot(sensors=[{"range_min": 3, "range_max": 3}]),
+        "error", "range-order", ("robot", 0, "sensors", 0, "range_min")),
     (robot(sensors=[{"range_max": 5000}]),
         "hint", "looks-like-centimetres", ("robot", 0, "sensors", 0, "range_max")),
     (robot(sensors=[{"offset": [20, 0, 0]}]), "hint", "looks-like-centimetres", ("robot", 0, "sensors", 0, "offset")),

@@ -168,6 +168,8 @@ def test_speeding_up_takes_time() -> None:
     assert "needs at least 17.8 s" in item.message
     assert "larger acce" in str(item.fix)
     assert codes(scenario(robot, time_limit=60)) == []
+    soon = {**robot, "acce": [0.25, 1]}  # 4 s and 2 m until full speed, then 5.9 m at 1 m/s
+    assert "needs at least 9.9 s" in one(scenario(soon, time_limit=8), "time-too-short").message
 
 
 def test_walkers_behind_a_wall_are_a_hint() -> None:
