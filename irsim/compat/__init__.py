@@ -1,10 +1,14 @@
-"""Compatibility with IR-SIM 2.12: old module paths, old helpers, and the list of intended differences.
+"""What is the same as in IR-SIM 2.12, what differs on purpose, and why: data for tests and for the published page."""
 
-The list is data for the tests and for the published page, ``irsim/compat/README.md``.
-"""
+from __future__ import annotations
 
-from irsim.compat.differences import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, Difference
-from irsim.compat.names import missing_names, reference_names
+from typing import TYPE_CHECKING
+
+from irsim.common.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from irsim.compat.differences import DIFFERENCES, KEY_DIFFERENCES, NAME_DIFFERENCES, Difference
+    from irsim.compat.names import missing_names, reference_names
 
 __all__ = [
     "DIFFERENCES",
@@ -14,3 +18,15 @@ __all__ = [
     "missing_names",
     "reference_names",
 ]
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "DIFFERENCES": "irsim.compat.differences",
+        "Difference": "irsim.compat.differences",
+        "KEY_DIFFERENCES": "irsim.compat.differences",
+        "NAME_DIFFERENCES": "irsim.compat.differences",
+        "missing_names": "irsim.compat.names",
+        "reference_names": "irsim.compat.names",
+    },
+)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from importlib.abc import InspectLoader, MetaPathFinder
 from importlib.machinery import ModuleSpec
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 from irsim.compat.paths import NAMES, SAME
@@ -25,7 +24,7 @@ def install() -> None:
         sys.meta_path.insert(0, OldPathFinder())
 
 
-class OldPathFinder(MetaPathFinder):
+class OldPathFinder:
     """Answers for the listed paths and for nothing else."""
 
     def find_spec(
@@ -41,7 +40,30 @@ class OldPathFinder(MetaPathFinder):
         return None
 
 
-class _AnotherName(InspectLoader):
+class _Loader:
+    """What loaders of old paths have in common.
+
+    They do not derive from the base classes of ``importlib.abc``, whose import takes longer than that of irsim.
+    """
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
+        """None lets the import system make the module."""
+        return None
+
+    def get_source(self, fullname: str) -> str:
+        """The program that ``python -m`` runs."""
+        raise NotImplementedError
+
+    def get_code(self, fullname: str) -> CodeType:
+        """The program that ``python -m`` runs, compiled."""
+        return compile(self.get_source(fullname), f"<{fullname}>", "exec")
+
+    def is_package(self, fullname: str) -> bool:
+        """Whether modules are found below the path."""
+        return _is_package(fullname)
+
+
+class _AnotherName(_Loader):
     """Gives an existing module a second name, so that both paths lead to one object."""
 
     def __init__(self, home: str) -> None:
@@ -60,11 +82,8 @@ class _AnotherName(InspectLoader):
         """One line, which ``python -m`` runs."""
         return f"from {self._home} import *\n"
 
-    def is_package(self, fullname: str) -> bool:
-        return _is_package(fullname)
 
-
-class _ReExports(InspectLoader):
+class _ReExports(_Loader):
     """Makes a module whose names are imported from their homes when they are first used."""
 
     def __init__(self, homes: dict[str, str]) -> None:
@@ -100,9 +119,6 @@ class _ReExports(InspectLoader):
         """One line for each name, which ``python -m`` runs."""
         homes = ((home.partition(":"), name) for name, home in sorted(self._homes.items()))
         return "".join(f"from {home} import {there or name} as {name}\n" for (home, _, there), name in homes)
-
-    def is_package(self, fullname: str) -> bool:
-        return _is_package(fullname)
 
 
 def _submodules(package: str) -> list[str]:

@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from irsim import msg
 from irsim.env.queries import robot
 from irsim.env.state import EnvState
-from irsim.msg.messages import state_and_control
+
+if TYPE_CHECKING:
+    from irsim.msg import WorldState
 
 __all__ = ["get_msg", "receive_msg", "resolve_message_targets"]
 
 
-def get_msg(env: EnvState, use_inf: bool = False) -> msg.WorldState:
+def get_msg(env: EnvState, use_inf: bool = False) -> WorldState:
     """Return a message with the present state of every object.
 
     Args:
         use_inf: Report +inf as the range of beams that hit nothing, and -inf for hits nearer than ``range_min``.
     """
-    return msg.WorldState.from_env(env, use_inf=use_inf)
+    from irsim.msg import WorldState
+
+    return WorldState.from_env(env, use_inf=use_inf)
 
 
 def receive_msg(
@@ -41,6 +44,8 @@ def receive_msg(
         ValueError: An object does not exist, or a number is not finite; then no object has been changed.
         TypeError: ``msg`` is not a valid message.
     """
+    from irsim.msg.messages import state_and_control
+
     pairs = resolve_message_targets(env._objects, msg, object_name, object_id, default_target=lambda: robot(env))
     changes = [(view, *state_and_control(view, odometry)) for view, odometry in pairs]
     for view, state, velocity in changes:

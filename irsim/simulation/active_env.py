@@ -13,8 +13,8 @@ import numpy as np
 __all__ = ["current_rng", "last_used", "set_current_rng", "use"]
 
 _LAST: list[ReferenceType[Any]] = []
-_OUTSIDE = [np.random.default_rng()]
-"""The generator of scripts that have not made an environment."""
+_OUTSIDE: list[np.random.Generator] = []
+"""The generator of scripts that have not made an environment; made on first use, since NumPy's take long to import."""
 
 
 def use(env: Any) -> None:
@@ -30,13 +30,17 @@ def last_used() -> Any:
 def current_rng() -> Any:
     """The generator of the environment used last; without one, a generator with a fresh seed."""
     env = last_used()
-    return _OUTSIDE[0] if env is None else env.rng
+    if env is not None:
+        return env.rng
+    if not _OUTSIDE:
+        _OUTSIDE.append(np.random.default_rng())
+    return _OUTSIDE[0]
 
 
 def set_current_rng(generator: np.random.Generator) -> None:
     """Replace the generator that :func:`current_rng` returns."""
     env = last_used()
     if env is None:
-        _OUTSIDE[0] = generator
+        _OUTSIDE[:] = [generator]
     else:
         env.simulation.set_rng(generator)
