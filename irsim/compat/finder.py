@@ -33,11 +33,14 @@ class OldPathFinder:
         """The spec of an old path, or None."""
         if not fullname.startswith("irsim."):
             return None
+        loader: Any
         if fullname in SAME:
-            return ModuleSpec(fullname, _AnotherName(SAME[fullname]), is_package=_is_package(fullname))
-        if fullname in NAMES:
-            return ModuleSpec(fullname, _ReExports(NAMES[fullname]), is_package=_is_package(fullname))
-        return None
+            loader = _AnotherName(SAME[fullname])
+        elif fullname in NAMES:
+            loader = _ReExports(NAMES[fullname])
+        else:
+            return None
+        return ModuleSpec(fullname, loader, is_package=_is_package(fullname))
 
 
 class _Loader:

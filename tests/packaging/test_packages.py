@@ -50,9 +50,9 @@ def test_sdist_holds_nothing_else(sdist_names: set[str]) -> None:
     assert not any(name.endswith((".so", ".pyd", ".pyc")) for name in sdist_names)
 
 
-def test_wheel_holds_the_two_packages_only(wheel_names: set[str]) -> None:
+def test_wheel_holds_the_two_packages_and_stubs_only(wheel_names: set[str]) -> None:
     folders = {name.partition("/")[0] for name in wheel_names}
-    assert {folder for folder in folders if not folder.endswith(".dist-info")} == {"irsim", "irsim_mcp"}
+    assert {folder for folder in folders if not folder.endswith(".dist-info")} == {"irsim", "irsim_mcp", "irsim-stubs"}
     assert sum(name.startswith("irsim/_core.") and name.endswith((".so", ".pyd")) for name in wheel_names) == 1
 
 
@@ -61,6 +61,7 @@ def test_wheel_holds_data_and_types(wheel_names: set[str]) -> None:
     skills = {f"irsim/.agents/{name}" for name in files_of("skills")}
     assert sorted((data | skills | files_of("irsim/runs/replay")) - wheel_names) == []
     assert {"irsim/py.typed", "irsim/_core.pyi", "irsim_mcp/py.typed"} <= wheel_names
+    assert sorted({f"irsim-stubs/{name}" for name in stub_files(SAME, NAMES)} - wheel_names) == []
 
 
 def test_wheel_holds_no_sources_of_the_core(wheel_names: set[str]) -> None:
