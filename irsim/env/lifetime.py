@@ -132,9 +132,9 @@ def end(env: EnvState, ending_time: float = 3.0, **kwargs: Any) -> None:
     env.logger.info(f"{env} ended after {env._world.time} s")
 
 
-def quit_program(env: EnvState) -> NoReturn:
+def quit_program(env: Any) -> NoReturn:
     """End the environment and exit the program."""
-    end(env, ending_time=1.0)
+    env.end(ending_time=1.0)
     raise SystemExit(0)
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NoReturn
 
-from irsim.env.objects import add_objects, delete_objects
-from irsim.env.state import EnvState
 from irsim.objects.view import ObjectView
 
 __all__ = ["ObjectList"]
@@ -21,7 +19,7 @@ class ObjectList(list[ObjectView]):
         env: The environment.
     """
 
-    def __init__(self, env: EnvState) -> None:
+    def __init__(self, env: Any) -> None:
         super().__init__(env._objects)
         self._env = env
 
@@ -34,7 +32,7 @@ class ObjectList(list[ObjectView]):
 
     def extend(self, objs: Iterable[ObjectView]) -> None:
         """Put objects into the world; if one is not valid, none is added."""
-        add_objects(self._env, objs)
+        self._env.add_objects(objs)
         self._reread()
 
     def __iadd__(self, objs: Iterable[ObjectView]) -> ObjectList:  # type: ignore[misc,override]
@@ -61,7 +59,7 @@ class ObjectList(list[ObjectView]):
 
     def __delitem__(self, index: Any) -> None:
         chosen = self[index] if isinstance(index, slice) else [self[index]]
-        delete_objects(self._env, [view.id for view in chosen])
+        self._env.delete_objects([view.id for view in chosen])
         self._reread()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:

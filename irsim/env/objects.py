@@ -44,13 +44,13 @@ def _create(env: EnvState, role: Literal["robot", "obstacle"], kinematics: Any, 
     return view
 
 
-def add_object(env: EnvState, obj: ObjectView) -> None:
+def add_object(env: Any, obj: ObjectView) -> None:
     """Add an object to the world, as the last one; it takes part from the next step on.
 
     Raises:
         ValueError: The name of the object is taken, or it is already in a world.
     """
-    add_objects(env, [obj])
+    env.add_objects([obj])
 
 
 def add_objects(env: EnvState, objs: Iterable[ObjectView]) -> None:
@@ -75,9 +75,9 @@ def add_objects(env: EnvState, objs: Iterable[ObjectView]) -> None:
         _note_exchange(env)
 
 
-def delete_object(env: EnvState, target_id: int | str) -> None:
+def delete_object(env: Any, target_id: int | str) -> None:
     """Delete the object with this id or name from the world; it remains usable. An unknown id is ignored."""
-    delete_objects(env, [target_id])
+    env.delete_objects([target_id])
 
 
 def delete_objects(env: EnvState, target_ids: Iterable[int | str]) -> None:

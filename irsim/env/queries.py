@@ -152,7 +152,7 @@ def _robot(env: EnvState, index: int) -> ObjectView:
 
 def time(env: EnvState) -> float:
     """Return the simulated time, rounded to 0.01 s [s]."""
-    return round(int(env._simulation.count[0]) * env._world.step_time, 2)
+    return env._world.time
 
 
 def sim_time(env: EnvState) -> float:

@@ -189,3 +189,32 @@ def test_modules_are_attributes_of_their_packages() -> None:
     assert irsim.world.object_group.ObjectGroup.__name__ == "ObjectGroup"
     with pytest.raises(AttributeError):
         _ = irsim.world.nothing_of_the_kind
+
+
+def test_what_a_subclass_overrides_is_called() -> None:
+    called = []
+
+    class Logged(irsim.Env):
+        def add_objects(self, objs):
+            called.append("add")
+            super().add_objects(objs)
+
+        def delete_objects(self, target_ids):
+            called.append("delete")
+            super().delete_objects(target_ids)
+
+        def end(self, ending_time=3.0, **kwargs):
+            called.append("end")
+            super().end(ending_time, **kwargs)
+
+    from irsim.scenario.open import or_raise
+    from irsim.scenario.read import read
+
+    env = Logged(or_raise(read({"robot": {"kinematics": {"name": "diff"}}}))[0], headless=True, log_level="ERROR")
+    env.add_object(env.create_obstacle(shape={"name": "circle", "radius": 0.2}, state=[3, 3, 0]))
+    env.delete_object("obstacle_1")
+    env.objects.append(env.create_obstacle(shape={"name": "circle", "radius": 0.2}, state=[3, 3, 0]))
+    env.objects.pop()
+    with pytest.raises(SystemExit):
+        env.quit()
+    assert called == ["add", "delete", "add", "delete", "end"]
