@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from irsim.common.conflict import refuse_conflicts
+from irsim.common.lazy import lazy_names
 from irsim.common.public_names import PUBLIC_HOMES
 from irsim.compat.finder import install
 
@@ -58,22 +59,16 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
+_get, _list = lazy_names(__name__, PUBLIC_HOMES, _PACKAGES)
 
+
+def __getattr__(name: str) -> Any:
     if name == "__version__":
         from irsim.common.version import version
 
-        value: Any = version()
-    elif name in PUBLIC_HOMES:
-        value = getattr(import_module(PUBLIC_HOMES[name]), name)
-    elif name in _PACKAGES:
-        return import_module(f"irsim.{name}")
-    else:
-        raise AttributeError(f"module 'irsim' has no attribute {name!r}")
-    globals()[name] = value
-    return value
+        return version()
+    return _get(name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *_PACKAGES})
+    return [*_list(), "__version__"]

@@ -18,17 +18,19 @@ def lazy_names(
     Args:
         package: Name of the package.
         homes: Name -> module that defines it, or ``module:name`` if it has another name there.
-        modules: Modules of the package that are its attributes, even if they have not been imported yet.
+        modules: Modules of the package that are its attributes, even if they have not been imported yet. Where a name
+            and a module are the same word, the name wins.
     """
     own_modules = frozenset(modules)
 
     def get(name: str) -> Any:
-        if name in own_modules:
-            return import_module(f"{package}.{name}")
-        if name not in homes:
+        if name in homes:
+            home, _, name_there = homes[name].partition(":")
+            value = getattr(import_module(home), name_there or name)
+        elif name in own_modules:
+            value = import_module(f"{package}.{name}")
+        else:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        home, _, name_there = homes[name].partition(":")
-        value = getattr(import_module(home), name_there or name)
         setattr(sys.modules[package], name, value)
         return value
 

@@ -9,7 +9,8 @@ from importlib.machinery import ModuleSpec
 from types import CodeType, ModuleType
 from typing import Any
 
-from irsim.compat.paths import NAMES, SAME
+from irsim.common.lazy import lazy_names
+from irsim.compat.paths import NAMES, SAME, submodules
 
 __all__ = ["OldPathFinder", "install"]
 
@@ -40,7 +41,7 @@ class OldPathFinder:
             loader = _ReExports(NAMES[fullname])
         else:
             return None
-        return ModuleSpec(fullname, loader, is_package=_is_package(fullname))
+        return ModuleSpec(fullname, loader, is_package=bool(submodules(fullname)))
 
 
 class _Loader:
@@ -63,7 +64,7 @@ class _Loader:
 
     def is_package(self, fullname: str) -> bool:
         """Whether modules are found below the path."""
-        return _is_package(fullname)
+        return bool(submodules(fullname))
 
 
 class _AnotherName(_Loader):
@@ -93,28 +94,16 @@ class _ReExports(_Loader):
         self._homes = homes
 
     def exec_module(self, module: ModuleType) -> None:
-        homes, own = self._homes, module.__name__
-
-        def get(name: str) -> Any:
-            if name in homes:
-                home, _, name_there = homes[name].partition(":")
-                value = getattr(import_module(home), name_there or name)
-            elif f"{own}.{name}" in SAME or f"{own}.{name}" in NAMES:
-                value = import_module(f"{own}.{name}")
-            else:
-                raise AttributeError(f"module {own!r} has no attribute {name!r}")
-            setattr(module, name, value)
-            return value
-
-        public = {*homes, *_submodules(own)}
+        own, modules = module.__name__, submodules(module.__name__)
+        get, listing = lazy_names(own, self._homes, modules)
         vars(module).update(
             __doc__=f"The names of IR-SIM's ``{own}``; their homes are in ``irsim.compat.paths``.",
-            __all__=sorted(homes),
+            __all__=sorted(self._homes),
             __getattr__=get,
-            __dir__=lambda: sorted({*vars(module), *public}),
+            __dir__=listing,
         )
-        for name in _submodules(own):
-            if name in homes:  # importing the module later would replace the function of the same name
+        for name in modules:
+            if name in self._homes:  # importing the module later would replace the function of the same name
                 import_module(f"{own}.{name}")
                 get(name)
 
@@ -122,12 +111,3 @@ class _ReExports(_Loader):
         """One line for each name, which ``python -m`` runs."""
         homes = ((home.partition(":"), name) for name, home in sorted(self._homes.items()))
         return "".join(f"from {home} import {there or name} as {name}\n" for (home, _, there), name in homes)
-
-
-def _submodules(package: str) -> list[str]:
-    """Names of the old modules directly below an old package."""
-    return sorted({path.rpartition(".")[2] for path in {*SAME, *NAMES} if path.rpartition(".")[0] == package})
-
-
-def _is_package(path: str) -> bool:
-    return bool(_submodules(path))

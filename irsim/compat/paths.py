@@ -5,7 +5,7 @@ This file imports nothing of irsim, so that a build can read it before there is 
 
 from __future__ import annotations
 
-__all__ = ["NAMES", "SAME", "old_paths"]
+__all__ = ["NAMES", "SAME", "old_paths", "submodules"]
 
 SAME: dict[str, str] = {
     "irsim.config": "irsim.compat.config",
@@ -259,3 +259,8 @@ NAMES: dict[str, dict[str, str]] = {
 def old_paths() -> list[str]:
     """Every module path of 2.12 that the finder answers for, sorted."""
     return sorted({*SAME, *NAMES})
+
+
+def submodules(package: str) -> list[str]:
+    """Names of the old modules directly below an old path, sorted; without any, the path is not a package."""
+    return sorted(path.rpartition(".")[2] for path in old_paths() if path.rpartition(".")[0] == package)

@@ -5,24 +5,22 @@
 
 from __future__ import annotations
 
+import runpy
 import sys
 from pathlib import Path
+from typing import Any
 
 __all__ = ["stub_files", "write_stubs"]
 
 
-def stub_files(same: dict[str, str], names: dict[str, dict[str, str]]) -> dict[str, str]:
-    """Path below ``irsim-stubs`` -> text of every stub.
-
-    Args:
-        same: ``SAME`` of :mod:`irsim.compat.paths`.
-        names: ``NAMES`` of that module.
-    """
+def stub_files() -> dict[str, str]:
+    """Path below ``irsim-stubs`` -> text of every stub, from the table beside this file."""
+    table: dict[str, Any] = runpy.run_path(str(Path(__file__).with_name("paths.py")))
+    same, names = table["SAME"], table["NAMES"]
     files = {"py.typed": "partial\n"}
-    paths = {*same, *names}
-    for path in sorted(paths):
-        is_package = any(other.startswith(f"{path}.") for other in paths)
-        file = path.removeprefix("irsim.").replace(".", "/") + ("/__init__.pyi" if is_package else ".pyi")
+    for path in table["old_paths"]():
+        ending = "/__init__.pyi" if table["submodules"](path) else ".pyi"
+        file = path.removeprefix("irsim.").replace(".", "/") + ending
         if path in same:
             files[file] = f"from {same[path]} import *\n"
         else:
@@ -36,10 +34,8 @@ def _import(name: str, home: str) -> str:
 
 
 def write_stubs(folder: Path) -> None:
-    """Write the stubs into ``folder``, from the table beside this file."""
-    table: dict[str, dict[str, object]] = {}
-    exec(Path(__file__).with_name("paths.py").read_text(encoding="utf-8"), table)
-    for name, text in stub_files(table["SAME"], table["NAMES"]).items():  # type: ignore[arg-type]
+    """Write the stubs into ``folder``."""
+    for name, text in stub_files().items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

@@ -113,7 +113,7 @@ def test_old_paths_run_as_programs(path: str) -> None:
 
 
 def test_stubs_have_each_path_and_name_existing_homes() -> None:
-    files = stub_files(SAME, NAMES)
+    files = stub_files()
     assert files["py.typed"] == "partial\n"
     assert len(files) == 1 + len(old_paths())
     for text in files.values():

@@ -13,7 +13,6 @@ from typing import Any
 
 import pytest
 
-from irsim.compat.paths import NAMES, SAME
 from irsim.compat.stubs import stub_files
 
 # One process has them all, and so builds sdist and wheel once; the other one builds without a compiler meanwhile.
@@ -64,7 +63,7 @@ def test_wheel_holds_data_and_types(wheel_names: set[str]) -> None:
     skills = {f"irsim/.agents/{name}" for name in files_of("skills")}
     assert sorted((data | skills | files_of("irsim/runs/replay")) - wheel_names) == []
     assert {"irsim/py.typed", "irsim/_core.pyi", "irsim_mcp/py.typed"} <= wheel_names
-    assert sorted({f"irsim-stubs/{name}" for name in stub_files(SAME, NAMES)} - wheel_names) == []
+    assert sorted({f"irsim-stubs/{name}" for name in stub_files()} - wheel_names) == []
 
 
 def test_wheel_holds_no_sources_of_the_core(wheel_names: set[str]) -> None:
