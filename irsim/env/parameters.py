@@ -66,7 +66,36 @@ def set_step_time(simulation: Simulation, seconds: float) -> None:
     amend_world(simulation, step_time=value)
 
 
-class WorldParam:
+class _Clock:
+    """The clock of a simulation, which the world and its parameters both show."""
+
+    _simulation: Simulation
+
+    @property
+    def step_time(self) -> float:
+        """Period of a step [s]."""
+        return float(self._simulation.scenario.world.step_time)
+
+    @step_time.setter
+    def step_time(self, seconds: float) -> None:
+        set_step_time(self._simulation, seconds)
+
+    @property
+    def count(self) -> int:
+        """Number of executed steps; the simulated time is this number times ``step_time``."""
+        return int(self._simulation.count[0])
+
+    @count.setter
+    def count(self, steps: int) -> None:
+        self._simulation.count[0] = int(steps)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, rounded to 0.01 s."""
+        return round(self.count * self.step_time, 2)
+
+
+class WorldParam(_Clock):
     """Time and modes of one environment.
 
     ``control_mode``, ``collision_mode``, ``step_mode`` and ``count`` may be changed at run time, ``step_time`` before
@@ -112,29 +141,6 @@ class WorldParam:
         self._control_mode = mode
 
     @property
-    def step_time(self) -> float:
-        """Period of a step [s]."""
-        return float(self._simulation.scenario.world.step_time)
-
-    @step_time.setter
-    def step_time(self, seconds: float) -> None:
-        set_step_time(self._simulation, seconds)
-
-    @property
-    def count(self) -> int:
-        """Number of executed steps; the simulated time is this number times ``step_time``."""
-        return int(self._simulation.count[0])
-
-    @count.setter
-    def count(self, steps: int) -> None:
-        self._simulation.count[0] = int(steps)
-
-    @property
-    def time(self) -> float:
-        """Simulated time, rounded to 0.01 s."""
-        return round(self.count * self.step_time, 2)
-
-    @property
     def collision_mode(self) -> str:
         """How objects react to a collision: the value of ``collision_mode``."""
         return self._collision_mode
@@ -176,7 +182,7 @@ class PathParam:
         self.fig_path = self.root_path + "/figure"
 
 
-class WorldView:
+class WorldView(_Clock):
     """The world of one environment: extent, time, sampling.
 
     ``count`` and ``sample_time`` may be set at any time, ``step_time`` before the first step; all others are fixed by
@@ -213,15 +219,6 @@ class WorldView:
         object.__setattr__(self, name, value)
 
     @property
-    def step_time(self) -> float:
-        """Period of a step [s]."""
-        return float(self._simulation.scenario.world.step_time)
-
-    @step_time.setter
-    def step_time(self, seconds: float) -> None:
-        set_step_time(self._simulation, seconds)
-
-    @property
     def sample_time(self) -> float:
         """Period of the drawn frames [s]; by default the period of a step."""
         return self.step_time if self._sample_time is None else self._sample_time
@@ -247,20 +244,6 @@ class WorldView:
     def y_range(self) -> list[float]:
         """[ymin, ymax] of the world [m]."""
         return [self.offset[1], self.offset[1] + self.height]
-
-    @property
-    def count(self) -> int:
-        """Number of executed steps; the simulated time is this number times ``step_time``."""
-        return int(self._simulation.count[0])
-
-    @count.setter
-    def count(self, steps: int) -> None:
-        self._simulation.count[0] = int(steps)
-
-    @property
-    def time(self) -> float:
-        """Simulated time, rounded to 0.01 s."""
-        return round(self.count * self.step_time, 2)
 
     @property
     def sampling(self) -> bool:
