@@ -12,7 +12,7 @@ import pytest
 import typer.testing
 from hypothesis import HealthCheck, settings
 
-from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES
+from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES, is_built_in
 from irsim.scenario.model import json_schema
 from tests import warm
 from tests.warm import schema
@@ -51,7 +51,7 @@ def registered_features() -> Iterator[None]:
     before = [dict(table) for table in tables]
     yield
     for table, known in zip(tables, before, strict=True):
-        ours = {pair: made for pair, made in table.items() if made.__module__.startswith("irsim.objects.handlers.")}
+        ours = {pair: made for pair, made in table.items() if is_built_in(made)}
         table.clear()
         table.update(known | ours)
     for registry in REGISTRIES.values():

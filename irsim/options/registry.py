@@ -28,11 +28,17 @@ __all__ = [
     "CustomBehaviors",
     "Feature",
     "Registry",
+    "is_built_in",
 ]
 
 
 Pair = tuple[str, str]
 """Kinematics and name of a behavior."""
+
+
+def is_built_in(made: object) -> bool:
+    """Whether a class or a function is one of irsim, not of user code or a plug-in."""
+    return getattr(made, "__module__", "").startswith("irsim.")
 
 
 @dataclass(frozen=True)
@@ -93,8 +99,7 @@ class Registry:
         known = self._features.get(name)
         if known is not None and known.options is not options:
             raise ValueError(f"{self.kind} {name!r} is already registered by {known.options.__module__}")
-        module = options.__module__
-        origin = "built-in" if module.startswith("irsim.") else module
+        origin = "built-in" if is_built_in(options) else options.__module__
         self._features[name] = Feature(name, options, kernel, function, origin)
 
         def add(computed_by: Callable[..., Any]) -> Callable[..., Any]:
@@ -199,18 +204,12 @@ class CustomBehaviors:
         """The function that user code has registered, or None."""
         key = (kinematics or "static", name)
         found = self.functions.get(key)
-        if (
-            found is None
-            or key in self._taken[1]
-            or getattr(found, "__module__", "").startswith("irsim.objects.handlers.")
-        ):
-            return None
-        return found
+        return None if found is None or key in self._taken[1] or is_built_in(found) else found
 
     def maker(self, kinematics: str | None, name: str) -> Callable[..., Any] | None:
         """The class or factory that user code has registered, or None."""
         found = self.classes.get((kinematics or "static", name))
-        return None if getattr(found, "__module__", "").startswith("irsim.objects.handlers.") else found
+        return None if is_built_in(found) else found
 
     def has(self, kinematics: str | None, name: str) -> bool:
         """Whether user code has registered anything for this kinematics and name."""
