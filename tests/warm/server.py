@@ -138,6 +138,8 @@ def run(program: Program) -> None:
         sys.argv = rest
         if not isolated:
             sys.path.insert(0, folder)
+        if not hasattr(sys.modules.get(rest[0]), "__path__"):  # of a module that is loaded already, runpy would warn
+            sys.modules.pop(rest[0], None)
         runpy.run_module(rest[0], run_name="__main__", alter_sys=True)
     elif kind == "-c":
         sys.argv = ["-c", *rest[1:]]
