@@ -86,6 +86,7 @@ def test_contacts_conserve_momentum_and_angular_momentum(seed: int) -> None:
         for k in range(2)
     ]
     world, state = scene(*bodies, mode=CONTACT)
+    assume(outline_of(state, 0).intersection(outline_of(state, 1)).area > 0)  # apart in 4 of the 10,001 draws
     centres = np.array([_centroid(state, row) for row in range(2)])
     core.contact_step(world, state, 0, [(0, 1)], 1, SLOP, DT)
     ((_, _, nx, ny, depth, *_),) = contacts(state)
