@@ -8,6 +8,7 @@ from typing import Any
 
 import irsim._core as core
 from irsim.components.maps._grid import MapCells, Walls
+from irsim.diagnostics.diagnostic import Path
 from irsim.options.registry import SHAPES
 from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
@@ -41,9 +42,9 @@ def check(context: Context) -> Iterator[Finding]:
     bodies = [_Body(record) for record in context.resolved.objects if record.id not in random and _is_fixed(record)]
     reported = {path for path, entry, _ in context.entries() if _reports_stacking(entry)}
     found: dict[tuple[Any, ...], tuple[ObjectRecord, ObjectRecord, int]] = {}
-    for a, b in _near_pairs(bodies):
+    for a, b in _near_pairs(bodies, reported):
         mover, other = (a.record, b.record) if _matters(a.record) else (b.record, a.record)
-        if other.unobstructed or (mover.path == other.path and mover.path in reported):
+        if other.unobstructed:
             continue
         key = (mover.path, other.path)
         if (len(found) >= _MAX_REPORTED and key not in found) or (key in found and found[key][2] >= _MAX_COUNTED):
@@ -192,21 +193,25 @@ def _reach_of_part(part: Any) -> float:
     return math.inf
 
 
-def _near_pairs(bodies: list[_Body]) -> Iterator[tuple[_Body, _Body]]:
-    """Pairs with a robot or a moving object whose bounding circles meet, by a sweep along x."""
+def _near_pairs(bodies: list[_Body], reported: set[Path]) -> Iterator[tuple[_Body, _Body]]:
+    """Pairs with a robot or a moving object whose bounding circles meet, by a sweep along x.
+
+    Args:
+        bodies: Objects of fixed position.
+        reported: Entries whose own objects are not paired with one another.
+    """
     ordered = sorted(bodies, key=lambda body: body.record.state[0] - body.reach)
-    active: list[_Body] = []
+    active: list[tuple[float, float, float, bool, Path, _Body]] = []
     looked_at = 0
     for body in ordered:
         x, y = body.record.state[:2]
-        active = [other for other in active if other.record.state[0] + other.reach >= x - body.reach]
+        reach, matters, path = body.reach, _matters(body.record), body.record.path
+        active = [other for other in active if other[0] + other[2] >= x - reach]
         looked_at += len(active)
         if looked_at > _MAX_PAIRS:
             return
-        for other in active:
-            if not _matters(body.record) and not _matters(other.record):
-                continue
-            gap = math.hypot(other.record.state[0] - x, other.record.state[1] - y)
-            if gap <= body.reach + other.reach:
+        own = path if path in reported else None
+        for there, up, far, counts, entry, other in active:
+            if (matters or counts) and entry != own and math.hypot(there - x, up - y) <= reach + far:
                 yield other, body
-        active.append(body)
+        active.append((x, y, reach, matters, path, body))
