@@ -52,6 +52,7 @@ def test_films_need_no_display_and_no_ffmpeg_of_the_system(irsim: Run, room: Pat
     assert (tmp_path / "room.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+@pytest.mark.slow
 def test_demo_leaves_a_gif_and_says_where(irsim: Run, tmp_path: Path) -> None:
     result = irsim("demo")
     assert result.exit_code == 0, result.output

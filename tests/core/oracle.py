@@ -93,14 +93,14 @@ def normals(block: Sequence[int]) -> np.ndarray:
 
 
 def ray_segment(origin: np.ndarray, beam: np.ndarray, a: np.ndarray, b: np.ndarray, slack: float) -> float:
-    """Distance along a beam to a segment; infinite without a hit."""
-    p, e = a - origin, b - a
+    """Distance along a beam to a segment; infinite without a hit, and with a negative slack if it only runs along."""
+    p, q, e = a - origin, b - origin, b - a
+    if max(abs(beam[0] * corner[1] - beam[1] * corner[0]) for corner in (p, q)) < 1e-9:
+        ahead = [t for t in (p @ beam, q @ beam) if t > 1e-9 and slack >= 0]
+        return min(ahead, default=math.inf)
     den, area = beam[0] * e[1] - beam[1] * e[0], p[0] * e[1] - p[1] * e[0]
     if den == 0.0:
-        if area != 0.0:
-            return math.inf
-        ahead = [t for t in (p @ beam, (b - origin) @ beam) if t > 1e-9]
-        return min(ahead, default=math.inf)
+        return math.inf
     t, w = area / den, (p[0] * beam[1] - p[1] * beam[0]) / den
     return t if -slack <= w <= 1 + slack and t > 1e-9 else math.inf
 
@@ -163,8 +163,7 @@ def assert_scan(
         c, s, ch, sh = math.cos(angle), math.sin(angle), math.cos(heading), math.sin(heading)
         beam = np.array([c * ch - s * sh, c * sh + s * ch])
         found, hit = float(state.ranges[beams][i]), int(state.hits[beams][i])
-        right = False
-        answers = []
+        right, answers, own = False, [], []
         for slack in (-1e-9, 1e-12, 1e-9):
             each = {row: distances(state, row, origin, beam, slack) for row in rows}
             near = min((t for t in each.values() if t <= reach), default=math.inf)
@@ -173,7 +172,9 @@ def assert_scan(
                 range_ = min(max(near + error[i], 0.0), reach)
             hits = {row for row, t in each.items() if abs(t - near) < 1e-9} if near < math.inf else {-1}
             answers.append((range_, hits))
+            own.append(each.get(hit, math.inf))
             right |= hit in hits and math.isclose(found, range_, rel_tol=1e-12, abs_tol=1e-12)
-        if not right and error is None and all(found <= range_ + 1e-9 for range_, _ in answers):
-            right = runs_along(state, hit, origin, beam, found)
+        if not right and error is None and found <= answers[0][0] + 1e-9:  # before what it surely hits
+            grazed = any(math.isclose(found, distance, rel_tol=1e-12) for distance in own)
+            right = grazed or runs_along(state, hit, origin, beam, found)
         assert right, (i, found, hit, answers)

@@ -15,6 +15,7 @@ from tests.core import crowd_oracle as oracle
 from tests.core.crowds import Crowd
 from tests.core.oracle import rotation
 from tests.core.worlds import DRIVES, PI, circle, line, obstacle, rectangle, robot, scene
+from tests.effort import examples
 
 DEFAULTS: dict[str, Any] = {
     "vxmax": 1.5,
@@ -51,7 +52,7 @@ def expected(crowd: Crowd, i: int, view: oracle.View, velocity: np.ndarray, disc
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("mode", ["rvo", "hrvo", "vo"])
-@settings(max_examples=6)
+@settings(max_examples=examples(8))
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_best_of_all_samples(drive: str, mode: str, seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -56,8 +56,8 @@ async def served(command: str, arguments: list[str], mode: str) -> tuple[str, se
         return client.server_info.name, {tool.name for tool in tools.tools}
 
 
-@pytest.mark.parametrize("mode", ["legacy", "auto"])
-@pytest.mark.parametrize("index", range(3))
+@pytest.mark.parametrize("mode", ["auto", pytest.param("legacy", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("index", [0, *(pytest.param(index, marks=pytest.mark.slow) for index in (1, 2))])
 def test_the_command_of_each_block_starts_a_server_that_answers(tmp_path: Path, index: int, mode: str) -> None:
     entry = configurations()[index]
     assert set(entry) <= {"type", "command", "args"}

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from irsim.cli.overview import commands_table
+from tests.warm import warm
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -80,7 +81,7 @@ def test_irsim_commands_run(folder: Path) -> None:
     ]
     assert commands
     for command in commands:
-        execute([sys.executable, "-m", *shlex.split(command)], folder)
+        execute(warm([sys.executable, "-m", *shlex.split(command)]), folder)
 
 
 def test_the_table_of_commands_is_the_programs_own() -> None:

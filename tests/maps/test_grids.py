@@ -250,6 +250,7 @@ def test_maps_stay_inside_the_workspace(tmp_path) -> None:
     assert codes(scenario(inside, "own.png"), limits) == [("map-full", "warning", 1)]
 
 
+@pytest.mark.slow
 def test_a_large_map_takes_little(tmp_path) -> None:
     rng = np.random.default_rng(0)
     coarse = rng.random((400, 400)) < 0.3

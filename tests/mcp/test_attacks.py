@@ -167,6 +167,7 @@ async def test_checking_that_takes_too_long_is_stopped(empty: Path) -> None:
     assert told.startswith("out-of-time: 1 s of computing time were used up")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("ordinary_processes")
 async def test_the_environment_of_the_server_is_not_passed_on(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (workspace / "evil").mkdir()

@@ -212,6 +212,7 @@ def test_a_port_in_use_is_told(local: str, empty: Path) -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.anyio
 @pytest.mark.usefixtures("ordinary_processes")

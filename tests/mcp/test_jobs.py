@@ -33,6 +33,7 @@ async def test_what_takes_longer_goes_on_as_a_job(workspace: Path) -> None:
         assert again == found
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("ordinary_processes")
 async def test_a_job_that_is_cancelled_leaves_no_process(workspace: Path) -> None:
     async with connected(workspace) as client:
@@ -159,8 +160,15 @@ async def test_links_are_not_followed(workspace: Path, tmp_path: Path, link: str
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.usefixtures("ordinary_processes")
-@pytest.mark.parametrize("how", ["end of input", "kill -9"])
-@pytest.mark.parametrize("world", ["long", "short"])
+@pytest.mark.parametrize(
+    ("world", "how"),
+    [
+        ("short", "end of input"),
+        pytest.param("short", "kill -9", marks=pytest.mark.slow),
+        pytest.param("long", "end of input", marks=pytest.mark.slow),
+        pytest.param("long", "kill -9", marks=pytest.mark.slow),
+    ],
+)
 async def test_a_server_that_ends_leaves_no_process_and_all_that_was_done(
     workspace: Path, how: str, world: str
 ) -> None:

@@ -96,6 +96,7 @@ def live_and_die(workspace: Path, seed: int, lives: int) -> None:
     assert irsim.run(text=ROOM, seed=1).outcome == "success"
 
 
+@pytest.mark.slow
 def test_killed_twice(workspace: Path) -> None:
     live_and_die(workspace, 1, 2)
 

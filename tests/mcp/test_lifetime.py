@@ -100,7 +100,9 @@ def test_end_of_input_ends_server_and_worker(wire: Wire, workspace: Path) -> Non
 
 
 @linux
-@pytest.mark.parametrize("how", ["kill", "terminate", "interrupt"])
+@pytest.mark.parametrize(
+    "how", [*(pytest.param(how, marks=pytest.mark.slow) for how in ("kill", "terminate")), "interrupt"]
+)
 @pytest.mark.usefixtures("interruptible")
 def test_a_server_that_is_killed_takes_its_workers_along(wire: Wire, how: str) -> None:
     workers = wire.start_long_run()
@@ -125,7 +127,7 @@ def test_it_survives_nonsense(wire: Wire) -> None:
 
 @linux
 @pytest.mark.anyio
-@pytest.mark.parametrize("era", ERAS)
+@pytest.mark.parametrize("era", [ERAS[0], pytest.param(ERAS[1], marks=pytest.mark.slow)])
 async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> None:
     started = anyio.Event()
 
@@ -152,6 +154,7 @@ async def test_cancelling_a_call_ends_its_worker(workspace: Path, era: str) -> N
         assert data_of(await client.call_tool("validate_scenario", {"scenario_yaml": ROOM}))["valid"]
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.anyio
 async def test_of_a_run_whose_worker_is_killed_the_beginning_can_be_read(workspace: Path) -> None:

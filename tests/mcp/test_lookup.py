@@ -128,6 +128,7 @@ async def test_resources_can_be_listed_and_read(empty: Path, era: str) -> None:
     assert "range_max" in deeper["properties"]
 
 
+@pytest.mark.slow
 async def test_every_listed_resource_can_be_read_and_is_what_it_says(empty: Path) -> None:
     async with connected(empty) as client:
         listed = [str(resource.uri) for resource in (await client.list_resources()).resources]

@@ -162,8 +162,13 @@ async def read(client: Client, uri: str) -> str:
 @pytest.mark.usefixtures("ordinary_processes")
 async def test_a_cancelled_run_says_so_and_can_be_read(workspace: Path) -> None:
     async with connected(workspace) as client:
-        with anyio.move_on_after(6):
-            await client.call_tool("run_episode", {"scenario_yaml": LONG, "seed": 1})
+        async with anyio.create_task_group() as tasks:
+
+            async def cancel(done: float, total: float | None, message: str | None) -> None:
+                if list(workspace.rglob("trace*")):  # some of it is written down
+                    tasks.cancel_scope.cancel()
+
+            await client.call_tool("run_episode", {"scenario_yaml": LONG, "seed": 1}, progress_callback=cancel)
         with anyio.fail_after(20):
             while not (runs := list_runs(workspace)) or runs[0].status == "running":
                 await anyio.sleep(0.1)
@@ -173,6 +178,7 @@ async def test_a_cancelled_run_says_so_and_can_be_read(workspace: Path) -> None:
         assert text_of(result).startswith("cancelled: ")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("ordinary_processes")
 async def test_a_run_whose_time_is_over_is_named(workspace: Path) -> None:
     async with connected(workspace) as client:

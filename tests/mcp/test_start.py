@@ -21,6 +21,7 @@ def run(*arguments: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="measures processor time of children")
 def test_initialize_costs_little_more_than_importing_the_sdk(workspace: Path) -> None:
     def cost(*arguments: str) -> float:
@@ -104,6 +105,7 @@ def test_bad_options_end_with_2(arguments: tuple[str, ...], said: str) -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_a_checkout_serves_too(workspace: Path) -> None:
     root = Path(__file__).resolve().parents[2]
     done = subprocess.run(
@@ -117,6 +119,7 @@ def test_a_checkout_serves_too(workspace: Path) -> None:
     assert "serverInfo" in done.stdout
 
 
+@pytest.mark.slow
 def test_limits_can_be_raised_and_lowered(workspace: Path) -> None:
     scenario = "robot:\n  - {kinematics: {name: diff}, number: 3, distribution: {name: random}}\n"
     params = {"name": "validate_scenario", "arguments": {"scenario_yaml": scenario}}

@@ -36,7 +36,7 @@ assert "tkinter" not in sys.modules
 """
 
 
-@pytest.mark.parametrize("display", ["True", "False"])
+@pytest.mark.parametrize("display", ["True", pytest.param("False", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("variables", SCREENLESS)
 def test_no_screen_no_window_but_files(tmp_path: Path, display: str, variables: dict[str, str]) -> None:
     (tmp_path / "world.yaml").write_text(SCENARIO)

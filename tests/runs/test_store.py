@@ -302,7 +302,9 @@ def test_a_run_that_is_being_written_can_be_read(workspace: Path) -> None:
         process.wait()
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.02, 0.07, 0.15, 0.4])
+@pytest.mark.parametrize(
+    "delay", [0.02, 0.15, *(pytest.param(delay, marks=pytest.mark.slow) for delay in (0.0, 0.07, 0.4))]
+)
 def test_what_a_killed_process_leaves_is_whole(workspace: Path, delay: float) -> None:
     process = endless(workspace)
     run = first_run(workspace)

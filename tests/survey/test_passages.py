@@ -55,7 +55,7 @@ def test_a_wall_across_a_world_is_found_however_large_it_is(size: float, radius:
     assert "obstacles separate them completely" in item.message
 
 
-@pytest.mark.parametrize("size", [50, 100, 200, 300, 1000])
+@pytest.mark.parametrize("size", [50, *(pytest.param(size, marks=pytest.mark.slow) for size in (100, 200, 300, 1000))])
 @pytest.mark.parametrize(
     ("gap", "code"), [(0.5, "goal-unreachable"), (0.58, "goal-unreachable"), (0.66, "narrow-passage"), (0.8, None)]
 )
