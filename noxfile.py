@@ -3,16 +3,17 @@
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
 ``nox -s full`` is the whole proof. What each part is for:
 
-- ``newest``: on the newest Python, in one environment: lint, types, generated files; the quick tests but for those of
-  the core's arithmetic, which is the same C++ on every Python; then the parts ``slow``, ``browser`` and ``peers``.
+- ``newest``: on the newest Python, in one environment: lint, types, generated files, and the parts ``slow``,
+  ``browser`` and ``peers``.
 - ``lowest``: on the oldest Python with the lower bound of every dependency: the quick tests of what depends on those
-  (models, messages, arrays, geometry, figures, server, command line), not of arithmetic and of pages.
+  (models, messages, arrays, geometry, figures, server, command line), not of arithmetic, pages, processes and contents.
 - ``sanitize``: the core's tests with its address and undefined-behavior sanitizers on.
 - ``slow``: packages built and installed elsewhere, a build without a compiler, attacks, fuzzing, recorded decisions,
   many servers, and the properties that the quick tests try with a quarter of their examples, with all of them.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
-All quick tests together run in the README's own test command, with which ``.ci/run`` begins, and in ``check``.
+All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
+``.ci/run`` begins.
 """
 
 from __future__ import annotations
@@ -42,6 +43,24 @@ ARITHMETIC = (
 """Tests of the core's numbers, which depend on neither the version of Python nor those of the dependencies."""
 PAGES = ("tests/docs", "tests/evals")
 """Tests of texts, and of programs in them that others start as well."""
+PROCESSES = (
+    "tests/benchmarks",
+    "tests/cli/test_process.py",
+    "tests/mcp/test_jobs.py",
+    "tests/mcp/test_lifetime.py",
+    "tests/mcp/test_runs.py",
+    "tests/runs/test_store.py",
+)
+"""Tests of processes, signals and files, which are those of the system."""
+CONTENTS = (
+    "tests/api/test_diff_rewritten.py",
+    "tests/cli/test_everyday.py",
+    "tests/compat/test_scripts.py",
+    "tests/skills",
+    "tests/survey/test_passages.py",
+    "tests/templates",
+)
+"""Long tests of what files say and programs find out, by means that the other tests use, too."""
 
 nox.needs_version = ">=2025.2.9"
 nox.options.sessions = ["check"]
@@ -133,10 +152,9 @@ for _version in (OLDEST, NEWEST):
 
 @nox.session(python=find_python(NEWEST), reuse_venv=True)
 def newest(session: nox.Session) -> None:
-    """Linters, quick tests but for the core's arithmetic, slow tests, browser and peers, on the newest Python."""
+    """Linters, slow tests, browser and peers, on the newest Python."""
     install(session, "-e", ".[dev]", PLAYWRIGHT)
     run_linters(session)
-    run_quick_tests(session, left_out=ARITHMETIC)
     run_slow_tests(session)
     run_browser_tests(session)
     run_peers(session)
@@ -182,7 +200,7 @@ def lowest(session: nox.Session) -> None:
     bounds = [re.match(r"([\w-]+)>=([\w.]+)", requirement) for requirement in required]
     constraints.write_text("".join(f"{bound[1]}=={bound[2]}\n" for bound in bounds if bound), encoding="utf-8")
     install(session, "-e", ".[test]", "-c", str(constraints))
-    run_quick_tests(session, left_out=[*ARITHMETIC, *PAGES])
+    run_quick_tests(session, left_out=[*ARITHMETIC, *PAGES, *PROCESSES, *CONTENTS])
 
 
 @nox.session(reuse_venv=True)

@@ -170,7 +170,9 @@ def assert_scan(
             range_ = min(near, reach)
             if error is not None and near < math.inf:
                 range_ = min(max(near + error[i], 0.0), reach)
-            hits = {row for row, t in each.items() if abs(t - near) < 1e-9} if near < math.inf else {-1}
+            hits = {row for row, t in each.items() if abs(t - min(near, reach)) < 1e-9}
+            if near > reach - 1e-9:
+                hits.add(-1)
             answers.append((range_, hits))
             own.append(each.get(hit, math.inf))
             right |= hit in hits and math.isclose(found, range_, rel_tol=1e-12, abs_tol=1e-12)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sysconfig
 import venv
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,6 +41,12 @@ class Environment:
         )
         assert done.returncode == 0, f"{command}: exit {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}"
         return done.stdout
+
+    def share_libraries(self) -> None:
+        """Let this environment use what the one of the tests has installed: the irsim in it comes first."""
+        [folder] = self.folder.glob("[Ll]ib/**/site-packages")
+        libraries = {Path(sysconfig.get_path(kind)) for kind in ("purelib", "platlib")}
+        (folder / "zz_shared.pth").write_text("".join(f"{path}\n" for path in sorted(libraries)), encoding="utf-8")
 
     def pip(self, *arguments: str | Path, **variables: str) -> None:
         self.run("python", "-m", "pip", "--disable-pip-version-check", *arguments, **variables)

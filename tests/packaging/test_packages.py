@@ -84,17 +84,15 @@ def install_wheel(environment: Any, request: pytest.FixtureRequest) -> None:
     environment.pip("install", "-q", request.getfixturevalue("wheel"))
 
 
-def install_sdist(environment: Any, request: pytest.FixtureRequest) -> None:
-    environment.pip("install", "-q", request.getfixturevalue("sdist"))
-
-
 def install_editable(environment: Any, request: pytest.FixtureRequest) -> None:
+    """With the dependencies of this environment: that all are found is asked of the wheel."""
     copy = unpacked(request.getfixturevalue("sdist"), environment.folder / "checkout")
+    environment.share_libraries()
     environment.pip("install", "-q", "-e", copy)
 
 
 def install_without_compiler(environment: Any, request: pytest.FixtureRequest) -> None:
-    """As on a machine that has Python and nothing else: not one program of the system is on PATH."""
+    """A source distribution, where there is Python and nothing else: not one program of the system is on PATH."""
     nothing = environment.folder / "nothing"
     nothing.mkdir()
     path = f"{environment.bin}{os.pathsep}{nothing}"
@@ -144,7 +142,7 @@ without_compiler = pytest.param(
 
 @pytest.fixture(
     scope="session",
-    params=[install_wheel, install_sdist, install_editable, without_compiler],
+    params=[install_wheel, install_editable, without_compiler],
     ids=lambda install: getattr(install, "__name__", None),
 )
 def installed(request: pytest.FixtureRequest, new_environment: Callable[[str], Any]) -> Iterator[Any]:

@@ -9,6 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import venv
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -18,6 +19,7 @@ import yaml
 import irsim._core as core
 from irsim.diagnostics import codes
 from irsim.options.registry import REGISTRIES
+from tests.packaging.conftest import Environment
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
 from tests.warm import warm
 
@@ -135,23 +137,19 @@ def test_a_sensor_is_found_by_its_entry_point(tmp_path: Path) -> None:
 
 @pytest.mark.slow(80)
 def test_a_behavior_is_two_files_and_its_test(tmp_path: Path) -> None:
-    """Needs what compiles the core: it is built as for the user."""
-    import venv
-
-    copy, environment = tmp_path / "copy", tmp_path / "environment"
+    """Needs what compiles the core: it is built as for the user, who has the dependencies already."""
+    copy, environment = tmp_path / "copy", Environment(tmp_path / "environment")
     copy.mkdir()
     copy_tree(copy)
     put_into(copy, "new-behavior")
     stub = copy / "irsim" / "_core.pyi"
     [part] = fences((EXAMPLES / "new-behavior" / "elements.md").read_text(encoding="utf-8"), "python")
     stub.write_text(stub.read_text(encoding="utf-8") + "\n" + part, encoding="utf-8")
-    venv.create(environment, with_pip=True, symlinks=os.name != "nt")
-    scripts = environment / ("Scripts" if os.name == "nt" else "bin")
+    venv.create(environment.folder, with_pip=True, symlinks=os.name != "nt")
+    environment.share_libraries()
 
     def run(*words: str) -> str:
-        done = subprocess.run([str(scripts / "python"), *words], cwd=copy, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, f"{words}: {done.stdout[-3000:]}{done.stderr[-3000:]}"
-        return done.stdout
+        return environment.run("python", *words, cwd=copy)
 
     run("-m", "pip", "install", "-q", "-e", ".[test]")
     for words in commands("new-behavior")[1:]:
