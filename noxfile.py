@@ -57,7 +57,7 @@ CONTENTS = (
     "tests/cli/test_everyday.py",
     "tests/compat/test_scripts.py",
     "tests/skills",
-    "tests/survey/test_passages.py",
+    "tests/feasibility/test_passages.py",
     "tests/templates",
 )
 """Long tests of what files say and programs find out, by means that the other tests use, too."""
@@ -124,7 +124,8 @@ def run_slow_tests(session: nox.Session) -> None:
 
 def run_browser_tests(session: nox.Session) -> None:
     """Tests marked browser, in the Chromium that there is or one from npm."""
-    timed(session, "tests in a browser", "pytest", "-m", "browser", *session.posargs, env=find_chromium(session))
+    options = ("-m", "browser", "-n", "2", "--dist", "loadfile", *session.posargs)
+    timed(session, "tests in a browser", "pytest", *options, env=find_chromium(session))
 
 
 def run_peers(session: nox.Session) -> None:

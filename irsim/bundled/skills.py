@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Literal
 
 from irsim.common import data_files as resources
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
 
 __all__ = ["PLACES", "Installed", "PlaceError", "Skill", "SkillError", "find_skills", "install", "place_of"]
@@ -99,8 +99,7 @@ def find_skills(names: Iterable[str] = ()) -> list[Skill]:
     wanted = list(dict.fromkeys(names)) or list(known)
     for name in wanted:
         if name not in known:
-            near = nearest(name, list(known))
-            fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"
+            fix = suggestion(name, known, f"choose one of {', '.join(known)}")
             raise SkillError("unknown-skill", f"there is no skill {name!r}", fix)
     return [_read(known[name]) for name in wanted]
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from irsim.diagnostics.codes import CODES
 
-__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "is_slip_of", "nearest"]
+__all__ = ["Diagnostic", "Edit", "Path", "Severity", "format_path", "is_slip_of", "nearest", "suggestion"]
+
+Otherwise = TypeVar("Otherwise", str, None)
 
 Severity = Literal["error", "warning", "hint"]
 Path = tuple[str | int, ...]
@@ -91,6 +93,12 @@ def nearest(word: object, choices: Iterable[str], cutoff: float = 0.6) -> str | 
     lowered = {str(choice).lower(): str(choice) for choice in choices}
     found = difflib.get_close_matches(str(word).lower(), list(lowered), 1, cutoff)
     return lowered[found[0]] if found else None
+
+
+def suggestion(word: object, choices: Iterable[str], otherwise: Otherwise) -> str | Otherwise:
+    """Return a fix that names the choice most similar to ``word``, or ``otherwise`` if none is similar enough."""
+    near = nearest(word, choices)
+    return f"did you mean {near}?" if near else otherwise
 
 
 def is_slip_of(word: object, meant: str) -> bool:

@@ -36,7 +36,7 @@ def index_answer() -> Answer:
     return Answer(
         topic="",
         kind="index",
-        title="What irsim describe knows",
+        title="Topics that irsim describe explains",
         groups={
             "the scenario and its components": [sections, *kinds],
             "templates": [Key(name="templates", text=", ".join(templates.names()))],

@@ -12,7 +12,7 @@ import numpy as np
 
 from irsim.common.arrays import Floats
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.metrics import approaches
 from irsim.results.run import RunTable
 from irsim.runs.files import RunError
@@ -142,8 +142,7 @@ def _fields(names: Sequence[str] | None) -> Sequence[Field]:
         return _SHOWN
     for index, name in enumerate(names):
         if name not in FIELDS:
-            near = nearest(name, FIELDS)
-            fix = f"did you mean {near}?" if near else f"the fields are {', '.join(FIELDS)}"
+            fix = suggestion(name, FIELDS, f"the fields are {', '.join(FIELDS)}")
             raise RunError("bad-argument", f"{clean(name)!r} is not a valid field", fix, where=f"fields[{index}]")
     return [field for field in FIELDS if field in names]
 

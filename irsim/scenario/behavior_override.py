@@ -9,7 +9,7 @@ from typing import Any
 
 from irsim.common.arguments import as_given
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import Diagnostic, format_path, nearest
+from irsim.diagnostics.diagnostic import Diagnostic, format_path, suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
 from irsim.scenario.open import or_raise
@@ -93,8 +93,7 @@ def check_behavior_name(behavior: str) -> None:
     known = sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
     name = (parse_behavior(behavior) or {"name": AS_WRITTEN})["name"]
     if name not in known:
-        near = nearest(name, known)
-        fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}"
+        fix = suggestion(name, known, f"choose one of {', '.join(known)}")
         raise BenchmarkError(f"there is no behavior {clean(name)!r}", fix)
 
 

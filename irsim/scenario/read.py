@@ -23,7 +23,7 @@ from irsim.scenario.yaml.edits import apply_edits, removal_edit
 
 __all__ = ["Reading", "read"]
 
-Survey = Callable[[Context], Iterable[Finding]]
+FeasibilityChecks = Callable[[Context], Iterable[Finding]]
 _STAND_INS = {"entry.kinematics.name": "diff", "entry.distribution.name": "random"}
 """Valid names that replace wrong ones, so that the later checks still see an object that moves and has a place."""
 _MAX_ROUNDS = 6
@@ -56,7 +56,7 @@ def read(
     strict: bool = False,
     limits: Limits = DEFAULT_LIMITS,
     name: str | None = None,
-    survey: Survey | None = None,
+    feasibility: FeasibilityChecks | None = None,
 ) -> Reading:
     """Read, validate, check and resolve a scenario. The result holds all problems at once; none raises an exception.
 
@@ -65,13 +65,13 @@ def read(
         strict: Report what IR-SIM 2.12 tolerates as errors; otherwise do what it does, and warn.
         limits: Upper bounds; a larger scenario is refused.
         name: Name of the text in messages.
-        survey: Feasibility checks, which run only if no finding blocks the scenario.
+        feasibility: Feasibility checks, which run only if no finding blocks the scenario.
     """
     document = _document(source, limits, name)
     findings = [Finding(problem) for problem in document.problems]
     if document.data is None and document.fatal:
         return Reading(None, _diagnostics(findings, document, strict), document)
-    reader = _Reader(document, limits, findings, survey)
+    reader = _Reader(document, limits, findings, feasibility)
     resolved = reader.read()
     blocked = document.fatal or any(f.blocking or (strict and f.diagnostic.severity == "error") for f in findings)
     return Reading(None if blocked else resolved, _diagnostics(findings, document, strict, reader.renamed), document)
@@ -91,9 +91,9 @@ class _Reader:
     """Validates the data, repairs a copy of it and validates again, so that one error does not hide the next."""
 
     def __init__(
-        self, document: Document, limits: Limits, findings: list[Finding], survey: Survey | None = None
+        self, document: Document, limits: Limits, findings: list[Finding], feasibility: FeasibilityChecks | None = None
     ) -> None:
-        self.document, self.limits, self.findings, self.survey = document, limits, findings, survey
+        self.document, self.limits, self.findings, self.feasibility = document, limits, findings, feasibility
         self.data = document.data
         self.touched: list[Path] = []
         self.renamed: dict[Path, Path] = {}
@@ -116,8 +116,8 @@ class _Reader:
         map_findings = self._map[1].findings if self._map is not None else []
         context = Context(scenario, resolved, self.data, self.document, map_findings)
         found = run_checks(context)
-        if self.survey is not None and not any(f.blocking for f in [*self.findings, *found]):
-            found = [*self.survey(context), *found]  # the first of two equal findings is kept: the survey has tried it
+        if self.feasibility is not None and not any(f.blocking for f in [*self.findings, *found]):
+            found = [*self.feasibility(context), *found]  # of two equal findings the first is kept, which was tried out
         found = [f for f in found if not self._under_repair(f.diagnostic.path)]
         self._add(found)
         edits = [f.carry_on for f in found if f.carry_on is not None]

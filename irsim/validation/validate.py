@@ -48,12 +48,12 @@ def validate(
         ValueError: Neither or both of ``path`` and ``text`` are given, or both of ``base`` and ``base_text``.
     """
     most = limits or DEFAULT_LIMITS
-    reading = read(source_of(path, text, limits), strict=strict, limits=most, survey=feasibility_findings)
+    reading = read(source_of(path, text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
     report = report_of(reading, str(path) if path is not None else "(text)")
     if base is not None or base_text is not None:
         from irsim.validation.diff.compare import compare
 
-        other = read(source_of(base, base_text, limits), strict=strict, limits=most, survey=feasibility_findings)
+        other = read(source_of(base, base_text, limits), strict=strict, limits=most, feasibility=feasibility_findings)
         report.changes = compare(other, reading, seed=seed)
         _mark_old(report.findings, other)
     if simulate and reading.scenario is not None:

@@ -115,7 +115,7 @@ def _validate_new(job: dict[str, Any], progress: _Progress) -> str:
 
     limits, path = _limits(job), job["arguments"]["path"]
     document = load_text(job["arguments"]["text"], name=path, path=path, limits=limits)
-    scenario, found = or_raise(read(document, strict=True, limits=limits, survey=feasibility_findings))
+    scenario, found = or_raise(read(document, strict=True, limits=limits, feasibility=feasibility_findings))
     warnings = sum(item.severity == "warning" for item in found)
     return json.dumps({"contents": in_words(counts_of(scenario), sensors=False), "warnings": warnings})
 

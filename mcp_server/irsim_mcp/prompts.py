@@ -16,7 +16,7 @@ from pydantic import Field
 import irsim
 from irsim.common import data_files as resources
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import suggestion
 from irsim_mcp.errors import failure
 from irsim_mcp.services import Services
 
@@ -113,8 +113,7 @@ def _with_protocol_errors(function: Callable[..., str]) -> Callable[..., str]:
 
 def _one_of(name: str, value: str, choices: list[str]) -> None:
     if value not in choices:
-        near = nearest(value, choices)
-        fix = f"did you mean {near}?" if near else f"give one of {', '.join(choices)}"
+        fix = suggestion(value, choices, f"give one of {', '.join(choices)}")
         raise failure("bad-argument", f"{clean(value)!r} is not accepted", where=name, fix=fix)
 
 

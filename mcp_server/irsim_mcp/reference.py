@@ -13,7 +13,7 @@ from irsim.scenario.yaml.modeline import without_modeline
 
 __all__ = ["explanation", "schema_text"]
 
-_INDEX_TITLE = "What lookup knows"
+_INDEX_TITLE = "Topics that lookup explains"
 _INDEX_HELP = (
     "Look up any of these, or a path such as robot.sensors.lidar2d or world.plot. Templates are whole scenarios; "
     "empty-room is the smallest. Units: m, s, rad; heading 0 looks along +x and grows counter-clockwise."

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +17,7 @@ from pydantic import AnyUrl
 
 from irsim import __version__
 from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
 from irsim_mcp.completions import add_completions
 from irsim_mcp.docs import add_docs
 from irsim_mcp.errors import failure
@@ -72,8 +72,7 @@ class IrsimServer(MCPServer[Any]):
         """Call a tool, or suggest a similar name if there is no such tool."""
         names = [tool.name for tool in await self.list_tools()]
         if name not in names:
-            near = difflib.get_close_matches(name, names, 1)
-            fix = f"did you mean {near[0]}?" if near else f"the tools are {', '.join(names)}"
+            fix = suggestion(name, names, f"the tools are {', '.join(names)}")
             raise failure("unknown-tool", f"there is no tool {clean(name)!r}", fix=fix)
         return await super().call_tool(name, arguments, context)
 

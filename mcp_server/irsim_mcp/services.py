@@ -22,7 +22,9 @@ ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML 
 Seed = Annotated[
     int | None,
     Field(
-        ge=0, le=MAX_SEED, description="Seed of all randomness. Default: the scenario's own, else drawn and reported."
+        ge=0,
+        le=MAX_SEED,
+        description="Seed of every random draw. Default: the scenario's own, else drawn and reported.",
     ),
 ]
 

@@ -15,7 +15,7 @@ from mcp.types import ToolAnnotations
 from pydantic import ValidationError
 
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import format_path, nearest
+from irsim.diagnostics.diagnostic import format_path, suggestion
 from irsim_mcp.errors import failure
 
 __all__ = ["StrictTool", "strict"]
@@ -40,8 +40,7 @@ class StrictTool(Tool):
         known = list(self.parameters["properties"])
         for name in arguments:
             if name not in known:
-                near = nearest(name, known)
-                fix = f"did you mean {near}?" if near else f"{self.name} takes {', '.join(known)}"
+                fix = suggestion(name, known, f"{self.name} takes {', '.join(known)}")
                 raise failure("unknown-argument", f"there is no argument {clean(name)!r}", where=self.name, fix=fix)
         given = {name: _unpack(value, self.parameters["properties"][name]) for name, value in arguments.items()}
         self._check(given)
@@ -187,8 +186,9 @@ def _slim(schema: Any) -> Any:
 def _accepted(schema: Mapping[str, Any], given: Any = None) -> str:
     """What an argument accepts, in words; for many names only the one most similar to the given value."""
     if "enum" in schema:
-        near = nearest(given, schema["enum"]) if isinstance(given, str) and len(schema["enum"]) > 2 else None
-        return f"did you mean {near}?" if near else f"give one of {', '.join(map(str, schema['enum']))}"
+        all_names = f"give one of {', '.join(map(str, schema['enum']))}"
+        is_name = isinstance(given, str) and len(schema["enum"]) > 2
+        return suggestion(given, schema["enum"], all_names) if is_name else all_names
     if "items" in schema and "enum" in schema["items"]:
         return f"give a list of some of {', '.join(map(str, schema['items']['enum']))}"
     if "items" in schema:

@@ -18,6 +18,7 @@ from irsim.scenario.model.world import WorldModel
 from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_data
+from tests.effort import examples
 
 DRIVES = ("diff", "omni", "acker")
 SHAPES = ({"name": "circle", "radius": 0.2}, {"name": "rectangle", "length": 0.5, "width": 0.3})
@@ -113,7 +114,7 @@ def written(data: dict[str, Any], rng: random.Random) -> str:
     return text
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(data=scenarios(), seed=st.integers(0, 2**32 - 1))
 def test_other_ways_to_write_a_world_are_the_same_world(data: dict[str, Any], seed: int) -> None:
     rng = random.Random(seed)
@@ -141,7 +142,7 @@ EDITS: dict[str, Any] = {
 }
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(data=scenarios(), edit=st.data())
 def test_objects_that_move_otherwise_are_told(data: dict[str, Any], edit: st.DataObject) -> None:
     number = edit.draw(st.integers(0, len(data["robot"]) - 1))

@@ -168,7 +168,7 @@ def test_outline_is_the_boundary_of_the_union(grid) -> None:
         assert (np.abs(steps).min(axis=1) == 0).all()
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(grid=grids())
 def test_clearance_counts_cells(grid) -> None:
     full = np.argwhere(grid.occupied)

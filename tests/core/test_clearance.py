@@ -41,7 +41,7 @@ def test_apart_as_far_as_shapely_says(a, b, pose_a, pose_b) -> None:
         assert found <= 1e-9
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(
     a=st.lists(shape(), min_size=1, max_size=3),
     b=st.lists(shape(), min_size=1, max_size=3),
@@ -112,7 +112,7 @@ def naive(poses, radii, robots, kinds) -> tuple[np.ndarray, np.ndarray]:
     return distance, partner
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 12))
 def test_the_nearest_of_each_kind(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
@@ -153,7 +153,7 @@ def test_arguments_that_do_not_fit() -> None:
         core.clearances(world, state, 0, np.zeros((1, 2, 3)), [2], kinds)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     bodies=st.lists(shape(), min_size=2, max_size=5),
     ways=st.lists(st.tuples(POSE, POSE), min_size=5, max_size=5),

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.worlds import circle, command, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 SHAPES = {
     "circle": circle(0.4),
@@ -31,7 +32,7 @@ def all_pairs(state: core.State, shapes: list[str]) -> list[tuple[int, int]]:
     ]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.data())
 def test_pairs_are_those_of_asking_about_every_pair(data: st.DataObject) -> None:
     count = data.draw(st.integers(0, 30))
@@ -120,7 +121,7 @@ def test_contacts_of_unobstructed_objects() -> None:
     assert [(i, j) for _, _, i, j, _, _ in state.events(0)] == [(0, 2), (1, 2)]
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(st.data())
 def test_the_contact_point_is_in_both(data: st.DataObject) -> None:
     a, b = (data.draw(st.sampled_from(sorted(SHAPES))) for _ in range(2))

@@ -20,6 +20,7 @@ from tests.core.worlds import (
     rectangle,
     scene,
 )
+from tests.effort import examples
 
 # what every contact obeys ---------------------------------------------------------------------------------------------
 ANGLE = st.floats(-math.pi, math.pi)
@@ -35,7 +36,7 @@ def unit(angle: float) -> np.ndarray:
     return np.array([math.cos(angle), math.sin(angle)])
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.lists(ANGLE, min_size=0, max_size=3), ANGLE, st.floats(0.2, 5.0))
 def test_a_body_gives_way_past_what_blocks_it_most(walls: list[float], push: float, mass: float) -> None:
     depth = 0.02
@@ -54,7 +55,7 @@ def test_a_body_gives_way_past_what_blocks_it_most(walls: list[float], push: flo
     assert state.pose[1, :2] == pytest.approx(-(0.4 - depth + scale) * unit(push), abs=1e-9)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.floats(-1.4, 1.4), st.floats(0.0, 1.5), st.floats(0.0, 1.5))
 def test_a_pressed_body_sticks_inside_the_friction_cone_and_slides_outside(
     angle: float, ground: float, wall: float
@@ -71,7 +72,7 @@ def test_a_pressed_body_sticks_inside_the_friction_cone_and_slides_outside(
     assert state.pose[0, :2].tolist() == pytest.approx([0.0, math.sin(angle) * scale if slides else 0.0], abs=1e-9)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.integers(0, 10_000))
 def test_contacts_conserve_momentum_and_angular_momentum(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -109,7 +110,7 @@ def _centroid(state: core.State, row: int) -> np.ndarray:
     return state.pose[row, :2] + [c * x - s * y, s * x + c * y]
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.floats(0.5, 5.0), st.floats(0.1, 0.9), st.floats(0.2, 1.0), st.sampled_from(["diff", "omni"]))
 def test_a_box_pushed_at_its_middle_stays_in_front(mass: float, friction: float, speed: float, name: str) -> None:
     box = body(parts=[rectangle(0.5, 0.5)], pose=[0.46, 0.0, 0], mass=mass, friction=friction)
@@ -175,7 +176,7 @@ def outline_of(state: core.State, row: int) -> shapely.Geometry:
     return shapely.Polygon(state.vertices(row, 0, True))
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.integers(0, 10_000), st.sampled_from(["diff", "omni", "omni_angular", "steer"]))
 def test_whatever_is_pushed_stays_apart_and_the_same_every_time(seed: int, name: str) -> None:
     rng = np.random.default_rng(seed)

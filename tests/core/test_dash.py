@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import DRIVES, PI, robot, scene
+from tests.effort import examples
 
 NUMBER = st.floats(-5, 5)
 LAW = {"angular": "steer"}
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     pose=st.tuples(NUMBER, NUMBER, st.floats(-PI, PI)),
     goal=st.one_of(st.tuples(NUMBER, NUMBER), st.tuples(NUMBER, NUMBER, st.floats(-PI, PI))),

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import DRIVES, PI, circle, command, fmcw, lidar, obstacle, rectangle, robot, scene
+from tests.effort import examples
 
 
 def velocities(state: core.State) -> np.ndarray:
@@ -78,7 +79,7 @@ def world_velocity(state: core.State, row: int, drive: str) -> np.ndarray:
     return control[0] * np.array([math.cos(theta), math.sin(theta)])
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(seed=st.integers(0, 10_000), compensate=st.booleans(), mounted=st.sampled_from([0.0, 0.7, -2.5]))
 def test_every_beam_reads_the_projected_velocity(seed: int, compensate: bool, mounted: float) -> None:
     rng = np.random.default_rng(seed)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.worlds import PI, circle, fmcw, lidar, obstacle, rectangle, robot, scene
+from tests.effort import examples
 
 
 def fog(columns: int = 20, rows: int = 15, carriers=(0,), views=()) -> core.Fog:
@@ -34,7 +35,7 @@ def cells_along(pose, bearings, ranges, columns: int, rows: int) -> np.ndarray:
     return seen
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.integers(0, 10_000), st.sampled_from([(20, 15), (37, 8), (1, 1), (80, 60)]), st.sampled_from([0.0, -2.0]))
 def test_beams_lift_it(seed: int, shape: tuple[int, int], mounted: float) -> None:
     rng = np.random.default_rng(seed)

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import DRIVES, PI, obstacle, robot, scene
+from tests.effort import examples
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     pose=st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-PI, PI)),
     goal=st.one_of(

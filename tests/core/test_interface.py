@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import irsim._core as core
 from tests.core.worlds import DRIVES, circle, command, everything, fmcw, lidar, line, obstacle, polygon, robot, scene
+from tests.effort import examples
 
 OPTIONS = [
     core.DiffOptions,
@@ -112,7 +113,7 @@ PARTS = [
 ]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.data())
 def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
     objects = [robot(pose=[50, 50, 0], goals=[[52, 50]])]

@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import DRIVES, PI, command, robot, scene
+from tests.effort import examples
 
 NUMBER = st.floats(-3, 3)
 THREE = st.lists(NUMBER, min_size=3, max_size=3)
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(
     x=NUMBER, y=NUMBER, theta=st.floats(-PI, PI), psi=st.floats(-0.9, 0.9), wanted=THREE, before=THREE, data=st.data()
 )

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core.oracle import rotation
 from tests.core.worlds import DRIVES, circle, line, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 
 def crowd(seed: int, count: int, size: float) -> tuple[core.World, core.State]:
@@ -116,7 +117,7 @@ def test_what_is_a_wall_and_what_is_not() -> None:
     assert [row[0] for row in core.neighbors(world, state, 0, (0.0, 0.0), 100.0)] == [2, 5]
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(seed=st.integers(0, 10**6), reach=st.floats(0.1, 8.0))
 def test_walls_within_reach(seed: int, reach: float) -> None:
     rng = np.random.default_rng(seed)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import circle, obstacle, polygon, rectangle, robot, scene
+from tests.effort import examples
 
 SHAPES = [circle(0.4), rectangle(1.2, 0.4), polygon((-0.6, -0.5), (0.6, 0.0), (-0.6, 0.5), (-0.2, 0.0))]
 
@@ -20,7 +21,7 @@ def placement(objects, size: float, min_distance: float = 0.0, attempts: int = 2
     )
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(seed=st.integers(0, 2**64 - 1), distance=st.sampled_from([0.0, 1.0]))
 def test_nothing_overlaps(seed: int, distance: float) -> None:
     walls = [

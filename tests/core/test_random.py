@@ -7,12 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
+from tests.effort import examples
 
 WORD = st.integers(0, 2**64 - 1)
 HALF = st.integers(0, 2**32 - 1)
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(seed=WORD, scene=HALF, noise=HALF, stream=WORD, number=WORD, draw=WORD)
 def test_blocks_are_those_of_numpy(seed: int, scene: int, noise: int, stream: int, number: int, draw: int) -> None:
     counter = draw | number << 64 | stream << 128

@@ -15,6 +15,7 @@ from tests.core import crowd_oracle as oracle
 from tests.core.crowds import Crowd
 from tests.core.oracle import rotation
 from tests.core.worlds import DRIVES, circle, line, obstacle, rectangle, robot, scene
+from tests.effort import examples
 
 DEFAULTS: dict[str, Any] = {
     "vmax": 1.5,
@@ -55,7 +56,7 @@ def turning(crowd: Crowd, i: int) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(seed=st.integers(0, 2**32 - 1))
 def test_each_object_alone(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -77,7 +78,7 @@ def test_each_object_alone(drive: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("drive", DRIVES)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(seed=st.integers(0, 2**32 - 1))
 def test_members_of_a_group(drive: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -160,7 +161,7 @@ def test_what_is_unobstructed_pushes_only_if_it_is_a_line_or_a_circle() -> None:
         assert bool(state.command[0].any()) == (name != "box")
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(seed=st.integers(0, 2**32 - 1), angle=st.floats(-3, 3), shift=st.tuples(st.floats(-9, 9), st.floats(-9, 9)))
 def test_turning_and_shifting_the_world_turns_and_shifts_the_motion(seed: int, angle: float, shift: tuple) -> None:
     rng = np.random.default_rng(seed)

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import irsim._core as core
 from tests.core import oracle
 from tests.core.worlds import circle, line, obstacle, polygon, rectangle, scene
+from tests.effort import examples
 
 COORDINATE = st.floats(-5, 5).map(lambda v: round(v, 3))
 POINT = st.tuples(COORDINATE, COORDINATE)
@@ -31,14 +32,14 @@ def test_radius_of_simple_shapes() -> None:
     assert radius_of(polygon((1, 1))) == 0.0
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.lists(POINT, min_size=2, max_size=12))
 def test_radius_is_the_minimum_bounding_circle_of_the_vertices(points) -> None:
     expected = shapely.minimum_bounding_radius(shapely.MultiPoint(points))
     assert radius_of(line(*points)) == pytest.approx(expected, abs=1e-6)  # GEOS is the less exact one
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(st.tuples(COORDINATE, COORDINATE, st.sampled_from([0.0, 0.5, 1.0, 2.7])), min_size=1, max_size=5))
 def test_radius_of_a_union_of_discs_is_the_smallest_that_holds_them(discs) -> None:
     found = radius_of(*(circle(r, (x, y)) for x, y, r in discs))
@@ -49,7 +50,7 @@ def test_radius_of_a_union_of_discs_is_the_smallest_that_holds_them(discs) -> No
     assert inner - 1e-6 <= found <= inner + 3e-3
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(POINT, st.floats(-4, 4))
 def test_world_frame_vertices(position, theta: float) -> None:
     _, state = scene(obstacle(pose=[*position, theta], parts=[polygon((0, 0), (2, 0), (0, 1)), circle(0.3, (1, 1))]))

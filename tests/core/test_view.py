@@ -122,7 +122,7 @@ def test_occlusion_by_a_wall() -> None:
     assert view(obstacle(pose=[4, 0, 0], parts=[line((0, -1), (0, 1))]), hidden=True) == [1]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.integers(0, 100_000), st.sampled_from([0.5, PI / 2, 4.0, 2 * PI]))
 def test_occlusion_agrees_with_many_lines_of_sight(seed: int, angle: float) -> None:
     """Sampled lines of sight: what one of them sees is seen; what is seen is seen by one, slivers apart."""
@@ -179,7 +179,7 @@ def cells(rng: np.random.Generator, density: float) -> tuple[core.OccupancyGrid,
     return grid, shapely.union_all(boxes)
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(st.integers(0, 100_000), st.sampled_from([0.2, 1.5, PI, 4.0, 2 * PI]), st.sampled_from([0.02, 0.2]))
 def test_cells_of_a_map_are_seen(seed: int, angle: float, density: float) -> None:
     rng = np.random.default_rng(seed)
@@ -195,7 +195,7 @@ def test_cells_of_a_map_are_seen(seed: int, angle: float, density: float) -> Non
         assert seen == []
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.integers(0, 100_000), st.sampled_from([1.5, 2 * PI]))
 def test_cells_hide_what_is_behind_them(seed: int, angle: float) -> None:
     rng = np.random.default_rng(seed)

@@ -107,7 +107,7 @@ def scenes(draw: st.DrawFn) -> list[Any]:
     return things
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(scenes(), shapes, st.booleans())
 def test_paths_are_free_of_collisions(things: list[Any], robot: Any, smooth: bool) -> None:
     env_map = Map(6, 6, 0.25, things)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irsim.lib.path_planners import RRT, InformedRRTStar, PRMPlanner, RRTStar
 from irsim.navigation.map import Map
+from tests.effort import examples
 
 DISC = shapely.Point(0, 0).buffer(0.3)
 CORNER = shapely.Polygon([(-0.3, -0.3), (0.5, -0.3), (0.5, 0.0), (0.0, 0.0), (0.0, 0.4), (-0.3, 0.4)])
@@ -52,7 +53,7 @@ def test_valid_and_reproducible(cls: Any) -> None:
     assert not np.array_equal(paths[0], paths[2])
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.integers(0, 1000), st.sampled_from([RRT, RRTStar, InformedRRTStar]), st.booleans())
 def test_any_body(seed: int, cls: Any, smooth: bool) -> None:
     rng = np.random.default_rng(seed)

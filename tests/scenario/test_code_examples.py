@@ -25,7 +25,7 @@ AS_TEXT = ("yaml-", "empty-", "multiple-", "not-a-scenario", "unsupported-", "du
 
 def codes(code: str, text: str) -> set[str]:
     if code.startswith(AS_TEXT):
-        return {d.code for d in read(text + "\n", strict=True, survey=feasibility_findings).diagnostics}
+        return {d.code for d in read(text + "\n", strict=True, feasibility=feasibility_findings).diagnostics}
     data: dict[str, Any] = yaml.safe_load(text)
     robot = data.get("robot", {})
     if robot is not None:
@@ -38,7 +38,7 @@ def codes(code: str, text: str) -> set[str]:
     if "obstacle" in data:
         kept = {} if code in ("default-state", "missing-key") else OBSTACLE
         data["obstacle"] = [{**kept, **data["obstacle"]}]
-    return {d.code for d in read(data, strict=True, survey=feasibility_findings).diagnostics}
+    return {d.code for d in read(data, strict=True, feasibility=feasibility_findings).diagnostics}
 
 
 @pytest.mark.parametrize("code", EXAMPLES)

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import irsim
+from tests.effort import examples
 
 DRIVES = {
     "diff": ("[1.0, 1.5]", "circle, radius: 0.2"),
@@ -61,7 +62,7 @@ def scenarios(draw: st.DrawFn) -> str:
     return "\n".join(lines) + "\n"
 
 
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
+@settings(max_examples=examples(25), suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(text=scenarios(), seed=st.integers(0, 2**64 - 4), threads=st.integers(2, 5))
 def test_alone_in_batch_and_rolled_out_agree(tmp_path: Path, text: str, seed: int, threads: int) -> None:
     path = tmp_path / "world.yaml"

@@ -19,7 +19,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import suggestion
 from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Outcome", "Parameter", "Template", "TemplateError", "Value"]
@@ -125,12 +125,11 @@ class Template(_Metadata):
         """
         for name in given:
             if name not in self.parameters:
-                near = nearest(name, self.parameters)
                 known = ", ".join(self.parameters) or "none"
                 raise TemplateError(
                     "unknown-parameter",
                     f"{self.name} has no parameter {name!r}; it has {known}.",
-                    f"did you mean {near}?" if near else None,
+                    suggestion(name, self.parameters, None),
                 )
         return {
             name: parameter.check(name, given.get(name, parameter.default))

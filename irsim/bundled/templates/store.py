@@ -7,7 +7,7 @@ from pathlib import Path
 
 from irsim.bundled.templates.metadata import Template, TemplateError
 from irsim.common import data_files as resources
-from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.diagnostic import suggestion
 
 __all__ = ["find", "load", "load_all", "names", "scenario_file"]
 
@@ -25,11 +25,10 @@ def load(name: str) -> Template:
     """
     known = names()
     if name not in known:
-        near = nearest(name, known)
         raise TemplateError(
             "unknown-template",
             f"there is no template {name!r}; choose one of {', '.join(known)}.",
-            f"did you mean {near}?" if near else None,
+            suggestion(name, known, None),
         )
     file = scenario_file(name)
     described = resources.read_yaml(file.with_name("template.yaml").read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""A behavior as an object: looks up what is registered for a drive and a name, and asks it."""
+"""The behavior of one object: finds the function or class registered for its drive and name, and calls it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Behavior:
 
     @property
     def behavior_dict(self) -> dict[str, Any]:
-        """Its keys. Those of the ``obj_behavior`` of an object are its ``beh_config``: what is set holds at once."""
+        """Keys of the behavior: the ``beh_config`` of the object itself, so that changes take effect at once."""
         return self._keys
 
     @behavior_dict.setter
@@ -56,7 +56,7 @@ class Behavior:
             print(f"behavior class {name!r} could not be constructed: {error!r}", file=sys.stderr)
 
     def gen_vel(self, ego_object: Any, external_objects: Any = None) -> Any:
-        """The control that the behavior chooses.
+        """Return the control that the behavior chooses.
 
         Args:
             ego_object: The object.
@@ -85,7 +85,7 @@ class Behavior:
         )
 
     def load_behavior(self, behaviors: str = ".behavior_methods") -> None:
-        """Import a module for what it registers; a leading dot means this package."""
+        """Import a module, which registers its behaviors; a leading dot means this package."""
         from importlib import import_module
 
         import_module(behaviors, package="irsim.lib.behavior")

@@ -1,4 +1,4 @@
-"""Behaviors that can be asked by kinematics and name: the built-in ones and those that user code has registered."""
+"""Behaviors by kinematics and name: the built-in ones and those that user code has registered."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The built-in behaviors as functions: for arrays, and for objects among others; the engine computes them."""
+"""The built-in behaviors as functions of arrays and of objects; the engine computes the controls."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def DiffDash(
     angular_acce: float = math.inf,
     dt: float = 0.0,
 ) -> Floats:
-    """(2, 1) control of a differential drive that heads for its goal: forward speed [m/s], yaw rate [rad/s].
+    """Return the (2, 1) control that drives a differential drive to its goal: forward speed [m/s], yaw rate [rad/s].
 
     Args:
         state: (3, 1) pose.
@@ -81,7 +81,7 @@ def DiffDash(
 
 
 def OmniDash(state: Floats, goal: Floats, max_vel: Floats, goal_threshold: float = 0.1) -> Floats:
-    """(2, 1) body-frame velocity of a holonomic drive that heads for its goal; arguments as of :func:`DiffDash`."""
+    """Return the (2, 1) body-frame velocity of a holonomic drive to its goal; arguments as for :func:`DiffDash`."""
     return dash("omni", state, goal, max_vel, goal_threshold=goal_threshold)
 
 
@@ -94,7 +94,7 @@ def OmniAngularDash(
     angular_acce: float = math.inf,
     dt: float = 0.0,
 ) -> Floats:
-    """(3, 1) the same for one that turns, too: to the goal's bearing, and at the goal to its heading."""
+    """Return the (3, 1) velocity of a holonomic drive that turns towards the goal and, once there, to its heading."""
     return dash(
         "omni_angular",
         state,
@@ -108,7 +108,7 @@ def OmniAngularDash(
 
 
 def AckerDash(state: Floats, goal: Floats, max_vel: Floats, goal_threshold: float, angle_tolerance: float) -> Floats:
-    """(2, 1) control of a car that heads for its goal: forward speed [m/s], steering angle [rad]."""
+    """Return the (2, 1) control that drives a car to its goal: forward speed [m/s], steering angle [rad]."""
     return dash("acker", state, goal, max_vel, goal_threshold=goal_threshold, angle_tolerance=angle_tolerance)
 
 
@@ -123,7 +123,7 @@ def OmniRVO(
     neighbor_threshold: float = 3.0,
     line_segments: Sequence[Sequence[float]] | None = None,
 ) -> Floats:
-    """(2, 1) world-frame velocity [m/s] of a holonomic drive that avoids others.
+    """Return the (2, 1) world-frame velocity [m/s] with which a holonomic drive avoids other objects.
 
     Args:
         state_tuple: [x, y, vx, vy, padded radius, wanted vx, wanted vy, theta], as ``rvo_state`` of objects.
@@ -152,7 +152,7 @@ def DiffRVO(
     neighbor_threshold: float = 3.0,
     line_segments: Sequence[Sequence[float]] | None = None,
 ) -> Floats:
-    """(2, 1) control of a differential drive that avoids others; arguments as of :func:`OmniRVO`."""
+    """Return the (2, 1) control of a differential drive that avoids others; arguments as for :func:`OmniRVO`."""
     keys = {"vxmax": vxmax, "vymax": vymax, "acce": acce, "factor": factor, "mode": mode}
     world = _rvo_velocity(state_tuple, neighbor_list, line_segments, {**keys, "neighbor_threshold": neighbor_threshold})
     pose = [state_tuple[0], state_tuple[1], state_tuple[7]]
@@ -175,7 +175,7 @@ def SFMVelocity(
     step_time: float = 0.1,
     **keys: Any,
 ) -> tuple[float, float]:
-    """World-frame velocity [m/s] that social forces lead to within one period.
+    """Return the world-frame velocity [m/s] to which social forces accelerate an object within one time step.
 
     Args:
         state_tuple: [x, y, vx, vy, padded radius, wanted vx, wanted vy, …].
@@ -195,48 +195,48 @@ def _among(name: str, ego_object: Any, external_objects: Sequence[Any], keys: di
 
 
 def _dashing(ego_object: Any, keys: dict[str, Any]) -> Floats:
-    """What `dash` wants, within the limits of the next step."""
+    """Return the control of `dash`, clipped to the limits of the next step."""
     low, high = ego_object.get_vel_range()
     return np.clip(_among("dash", ego_object, [], keys), low, high)
 
 
 def beh_diff_dash(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) control of `dash` for an object with a differential drive; keywords are those of its YAML mapping."""
+    """Return the (2, 1) control of `dash` for a differential drive; keywords are the keys of its YAML mapping."""
     return _dashing(ego_object, kwargs)
 
 
 def beh_omni_dash(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) the same for a holonomic drive."""
+    """Return the (2, 1) control of `dash` for a holonomic drive; keywords are the keys of its YAML mapping."""
     return _dashing(ego_object, kwargs)
 
 
 def beh_omni_angular_dash(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(3, 1) the same for a holonomic drive that turns."""
+    """Return the (3, 1) control of `dash` for a holonomic drive that turns; keywords are its YAML keys."""
     return _dashing(ego_object, kwargs)
 
 
 def beh_acker_dash(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) the same for a car."""
+    """Return the (2, 1) control of `dash` for a car; keywords are the keys of its YAML mapping."""
     return _dashing(ego_object, kwargs)
 
 
 def beh_diff_rvo(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) control of `rvo` for an object among others; keywords are those of its YAML mapping."""
+    """Return the (2, 1) control of `rvo` for a differential drive; keywords are the keys of its YAML mapping."""
     return _among("rvo", ego_object, external_objects, kwargs)
 
 
 def beh_omni_rvo(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) the same for a holonomic drive."""
+    """Return the (2, 1) control of `rvo` for a holonomic drive; keywords are the keys of its YAML mapping."""
     return _among("rvo", ego_object, external_objects, kwargs)
 
 
 def beh_diff_sfm(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) control of `sfm` for an object among others; keywords are those of its YAML mapping."""
+    """Return the (2, 1) control of `sfm` for a differential drive; keywords are the keys of its YAML mapping."""
     return _among("sfm", ego_object, external_objects, kwargs)
 
 
 def beh_omni_sfm(ego_object: Any, external_objects: Sequence[Any], **kwargs: Any) -> Floats:
-    """(2, 1) the same for a holonomic drive."""
+    """Return the (2, 1) control of `sfm` for a holonomic drive; keywords are the keys of its YAML mapping."""
     return _among("sfm", ego_object, external_objects, kwargs)
 
 

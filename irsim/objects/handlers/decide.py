@@ -1,4 +1,4 @@
-"""Evaluates a built-in behavior for some objects in a world that contains only the given objects."""
+"""Evaluates a built-in behavior in a world that contains only the given objects."""
 
 from __future__ import annotations
 

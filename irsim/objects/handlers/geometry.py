@@ -32,14 +32,14 @@ _RANDOM_KEYS = ("center_range", "avg_radius_range", "irregularity_range", "spike
 
 
 class geometry_handler:
-    """A shape in its body frame, and where it was put last.
+    """A shape in its body frame, and its geometry at the pose of the last :meth:`step`.
 
     Args:
-        name: Of the shape.
+        name: Name of the shape.
         **kwargs: Keys of its YAML mapping.
 
     Attributes:
-        geometry: Where it was put last, shapely, world frame.
+        geometry: Shapely geometry at the pose of the last :meth:`step`, world frame.
         length, width: Extent along x and y of the body frame [m].
         wheelbase: Distance of the axles [m], or None.
     """
@@ -57,30 +57,30 @@ class geometry_handler:
         self.radius = float(shapely.minimum_bounding_radius(self._original))
 
     def construct_original_geometry(self, *args: Any, **kwargs: Any) -> Any:
-        """The shapely geometry in the body frame."""
+        """Return the shapely geometry in the body frame."""
         raise NotImplementedError
 
     @staticmethod
     def cal_length_width(geometry: Any) -> tuple[float, float]:
-        """Extent of a geometry along x and y [m]."""
+        """Return the extent of a geometry along x and y [m]."""
         low_x, low_y, high_x, high_y = geometry.bounds
         return high_x - low_x, high_y - low_y
 
     def step(self, state: Floats) -> Any:
-        """Put the shape somewhere.
+        """Move the shape to a pose.
 
         Args:
             state: (3 or more, 1) x, y [m], heading [rad].
 
         Returns:
-            Its geometry there.
+            The shapely geometry at that pose.
         """
         self.geometry = _placed(self._original, state)
         return self.geometry
 
     @property
     def vertices(self) -> Floats | None:
-        """(2, M) outline where it was put last; None for a compound."""
+        """(2, M) outline at the pose of the last :meth:`step`; None for a compound."""
         return _outline(self.geometry)
 
     @property
@@ -95,12 +95,12 @@ class geometry_handler:
         return np.array([[point.x], [point.y]])
 
     def get_init_Gh(self) -> Inequality:
-        """``G p <= h`` of the body frame, with cone and whether it is convex."""
+        """Return the matrices of ``G p <= h`` in the body frame, the cone, and whether the shape is convex."""
         vertices = self.original_vertices
         return _NOT_CONVEX if vertices is None else self.get_polygon_Gh(vertices)
 
     def get_Gh(self, **kwargs: Any) -> Inequality:
-        """``G p <= h`` of other vertices.
+        """Return the matrices of ``G p <= h`` for the given vertices.
 
         Args:
             **kwargs: ``vertices``, (2, M).
@@ -109,12 +109,12 @@ class geometry_handler:
         return _NOT_CONVEX if vertices is None else self.get_polygon_Gh(np.asarray(vertices))
 
     def get_polygon_Gh(self, vertices: Floats | None = None) -> Inequality:
-        """``G p <= h`` of a convex polygon (2, M): outward normals, cone ``Rpositive``."""
+        """Return the matrices of ``G p <= h`` for a convex polygon (2, M): outward normals, cone ``Rpositive``."""
         found = None if vertices is None else polygon_inequality(np.asarray(vertices, dtype=np.float64).T)
         return _NOT_CONVEX if found is None else (*found, "Rpositive", True)
 
     def get_circle_Gh(self, center: Floats, radius: float) -> Inequality:
-        """``G p <= h`` of a disc, in the cone ``norm2``."""
+        """Return the matrices of ``G p <= h`` for a disc, in the cone ``norm2``."""
         x, y = np.asarray(center, dtype=np.float64).reshape(-1)[:2]
         return np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.array([[x], [y], [-float(radius)]]), "norm2", True
 
@@ -133,7 +133,7 @@ class CircleGeometry(geometry_handler):
         radius_range: Any = None,
         wheelbase: float | None = None,
     ) -> Any:
-        """The polygon in the body frame."""
+        """Return the polygon in the body frame."""
         import shapely
 
         if random_shape:
@@ -142,17 +142,17 @@ class CircleGeometry(geometry_handler):
         return shapely.Point(x + (wheelbase or 0.0) / 2, y).buffer(radius, quad_segs=16)
 
     def get_init_Gh(self) -> Inequality:
-        """``G p <= h`` of the body frame."""
+        """Return the matrices of ``G p <= h`` in the body frame."""
         return self.get_circle_Gh(self.original_centroid, self.radius)
 
     def get_Gh(self, **kwargs: Any) -> Inequality:
-        """``G p <= h`` of another disc.
+        """Return the matrices of ``G p <= h`` for the given disc.
 
         Args:
             **kwargs: ``center``, (2, 1), and ``radius`` [m].
 
         Raises:
-            TypeError: One is missing.
+            TypeError: An argument is missing.
         """
         if kwargs.get("center") is None or kwargs.get("radius") is None:
             raise TypeError("a disc needs `center` and `radius`")
@@ -168,7 +168,7 @@ class RectangleGeometry(geometry_handler):
     def construct_original_geometry(
         self, length: float = 1.0, width: float = 1.0, wheelbase: float | None = None
     ) -> Any:
-        """The polygon in the body frame."""
+        """Return the polygon in the body frame."""
         import shapely
 
         rear = -length / 2 if wheelbase is None else -(length - wheelbase) / 2
@@ -185,7 +185,7 @@ class PolygonGeometry(geometry_handler):
     def construct_original_geometry(
         self, vertices: Any = None, random_shape: bool = False, is_convex: bool = False, **kwargs: Any
     ) -> Any:
-        """The polygon in the body frame."""
+        """Return the polygon in the body frame."""
         import shapely
 
         if random_shape:
@@ -202,7 +202,7 @@ class LinestringGeometry(geometry_handler):
     def construct_original_geometry(
         self, vertices: Any = None, random_shape: bool = False, is_convex: bool = True, **kwargs: Any
     ) -> Any:
-        """The line in the body frame."""
+        """Return the line in the body frame."""
         import shapely
 
         if random_shape:
@@ -212,11 +212,11 @@ class LinestringGeometry(geometry_handler):
         return shapely.LineString(np.asarray(vertices, dtype=np.float64))
 
     def get_init_Gh(self) -> Inequality:
-        """A line has no inside: all None."""
+        """Return None for each value, because a line has no interior."""
         return _NO_AREA
 
     def get_Gh(self, **kwargs: Any) -> Inequality:
-        """A line has no inside: all None."""
+        """Return None for each value, because a line has no interior."""
         return _NO_AREA
 
 
@@ -231,7 +231,7 @@ class CompoundGeometry(geometry_handler):
         super().__init__(name, **kwargs)
 
     def construct_original_geometry(self, parts: Any = None, **kwargs: Any) -> Any:
-        """The union in the body frame."""
+        """Return the union of the parts in the body frame."""
         import shapely
 
         if not parts:
@@ -247,7 +247,7 @@ class CompoundGeometry(geometry_handler):
         return shapely.union_all(self._pieces)
 
     def step(self, state: Floats) -> Any:
-        """Put the shape somewhere; see :meth:`geometry_handler.step`."""
+        """Move the shape to a pose; see :meth:`geometry_handler.step`."""
         self._placed = [_placed(piece, state) for piece in self._pieces]
         return super().step(state)
 
@@ -263,7 +263,7 @@ class CompoundGeometry(geometry_handler):
 
     @property
     def part_vertices(self) -> list[Floats | None]:
-        """(2, M) outline of each part where it was put last."""
+        """(2, M) outline of each part at the pose of the last :meth:`step`."""
         return [_outline(piece) for piece in self._placed]
 
     @property
@@ -279,7 +279,7 @@ class PointsGeometry(geometry_handler):
         super().__init__(name, **kwargs)
 
     def construct_original_geometry(self, points: Any = None, reso: Any = 0.1, **kwargs: Any) -> Any:
-        """The boundary of the union of the cells."""
+        """Return the boundary of the union of the cells."""
         import shapely
 
         size = np.broadcast_to(np.asarray(reso, dtype=np.float64).reshape(-1), (2,)) / 2
@@ -288,11 +288,11 @@ class PointsGeometry(geometry_handler):
         return outline if outline.geom_type == "MultiLineString" else shapely.MultiLineString([outline])
 
     def get_init_Gh(self) -> Inequality:
-        """Outlines have no inside: all None."""
+        """Return None for each value, because outlines have no interior."""
         return _NO_AREA
 
     def get_Gh(self, **kwargs: Any) -> Inequality:
-        """Outlines have no inside: all None."""
+        """Return None for each value, because outlines have no interior."""
         return _NO_AREA
 
 
@@ -307,14 +307,14 @@ _KINDS: dict[str, type[geometry_handler]] = {
 
 
 class GeometryFactory:
-    """Makes handlers by name."""
+    """Creates handlers by the name of the shape."""
 
     @staticmethod
     def create_geometry(name: str = "circle", **kwargs: Any) -> Any:
-        """The handler of a shape.
+        """Create the handler of a shape.
 
         Args:
-            name: Of the shape, in any case.
+            name: Name of the shape, in upper or lower case.
             **kwargs: Keys of its YAML mapping.
 
         Raises:
@@ -331,7 +331,7 @@ class _BodyGeometry(geometry_handler):
     """The geometry of an object of a simulation."""
 
     def construct_original_geometry(self, **kwargs: Any) -> Any:
-        """The geometry it was given."""
+        """Return the geometry that the handler was created with."""
         return kwargs["body"]
 
 
@@ -346,7 +346,7 @@ class _LineGeometry(_BodyGeometry):
 
 
 def handler_of(view: Any) -> geometry_handler:
-    """The shape of an object, where it stands."""
+    """Return the shape of an object at its current pose."""
     kinds: dict[str, type[geometry_handler]] = {"circle": _DiscGeometry, "linestring": _LineGeometry}
     maker: Any = kinds.get(view.shape, _BodyGeometry)
     made: geometry_handler = maker(view.shape, body=view.original_geometry, wheelbase=view.wheelbase)
@@ -370,7 +370,7 @@ def _placed(geometry: Any, state: Floats) -> Any:
 
 
 def _outline(geometry: Any) -> Floats | None:
-    """(2, M) vertices of a polygon without the repeated last one, or of a line."""
+    """Return the (2, M) vertices of a line, or of a polygon without its repeated last vertex."""
     if geometry.geom_type == "LineString":
         return np.asarray(geometry.coords, dtype=np.float64).T[:2]
     if geometry.geom_type != "Polygon":

@@ -1,4 +1,4 @@
-"""A group behavior as an object: looks up what is registered for a drive and a name, and asks it."""
+"""The behavior of a group: finds the function or class registered for its drive and name, and calls it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["GroupBehavior"]
 
 
 class GroupBehavior:
-    """What drives the members of a group together.
+    """A behavior that chooses the controls of all members of a group together.
 
     Args:
         members: The group; the drive of the first one counts.
@@ -42,16 +42,16 @@ class GroupBehavior:
             print(f"group behavior {self.name!r} could not be constructed: {error!r}", file=sys.stderr)
 
     def update_members(self, members: Sequence[Any]) -> None:
-        """Other members from now on."""
+        """Replace the members of the group."""
         self.members = list(members)
 
     def load_group_behaviors(self, group_behaviors: str = ".group_behavior_methods") -> None:
-        """Import a module for what it registers; a leading dot means this package."""
+        """Import a module, which registers its behaviors; a leading dot means this package."""
         import_module(group_behaviors, package="irsim.lib.behavior")
         self._construct()
 
     def gen_group_vel(self) -> list[Any]:
-        """One control per member, (vel_dim, 1); None where the group has nothing to say."""
+        """Return one control per member, (vel_dim, 1); a member whose entry is None follows its own behavior."""
         act = self._made or group_behaviors_map.get((self.kinematics or "static", self.name or ""))
         if act is None or not self.members:
             return [None] * len(self.members)

@@ -28,7 +28,7 @@ class _NativeGroup:
         **kwargs: Keys of the YAML mapping.
 
     Raises:
-        ValidationError: A value does not fit.
+        ValidationError: A value is invalid.
     """
 
     behavior = ""
@@ -38,7 +38,7 @@ class _NativeGroup:
         self._roles = str(kwargs.get("target_roles", "all"))
 
     def __call__(self, members: Sequence[Any], **kwargs: Any) -> list[Floats]:
-        """Controls, (vel_dim, 1) each, of the members, all from the present moment."""
+        """Return the controls of all members, (vel_dim, 1) each, for the current state of the simulation."""
         if not members:
             return []
         others = [o for o in members[0].environment_objects if not any(o is m for m in members)]

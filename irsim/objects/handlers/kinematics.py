@@ -1,4 +1,4 @@
-"""Drives as objects: what ``robot.kf`` is, and what users derive their own from."""
+"""Drives as objects (``robot.kf``), and the base classes of drives that users write."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ class DifferentialKinematics(KinematicsHandler):
     yaw_rate_row: ClassVar[int | None] = 1
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
-        """The state (3, 1) one period later."""
+        """Return the state after one time step, (3, 1)."""
         return differential_kinematics(state, velocity, step_time, self.noise, self.alpha)
 
 
 class AckermannKinematics(KinematicsHandler):
-    """Car: forward speed and steering angle, or its rate."""
+    """Car: forward speed and steering angle, or forward speed and steering rate."""
 
     state_dim: ClassVar[int] = 4
     min_state_dim: ClassVar[int] = 4
@@ -63,7 +63,7 @@ class AckermannKinematics(KinematicsHandler):
         self.wheelbase = wheelbase
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
-        """The state (4, 1) one period later."""
+        """Return the state after one time step, (4, 1)."""
         return ackermann_kinematics(state, velocity, step_time, self.noise, self.alpha, self.mode, self.wheelbase)
 
 
@@ -77,23 +77,23 @@ class OmniKinematics(KinematicsHandler):
         super().__init__(name, noise, [0.03, 0.03] if alpha is None else alpha)
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
-        """The state (3, 1) one period later."""
+        """Return the state after one time step, (3, 1)."""
         return omni_kinematics(state, velocity, step_time, self.noise, self.alpha)
 
     def velocity_to_xy(self, state: Floats, velocity: Floats) -> Floats:
-        """(2, 1) world-frame velocity of a control."""
+        """Return the world-frame velocity of a control, (2, 1)."""
         return _turned(velocity, float(state[2, 0]))
 
     def velocity_from_xy(self, state: Floats, velocity_xy: Floats) -> Floats:
-        """(2, 1) control of a world-frame velocity."""
+        """Return the control that produces a world-frame velocity, (2, 1)."""
         return _turned(velocity_xy, -float(state[2, 0]))
 
     def compute_max_speed(self, vel_max: Floats) -> float:
-        """Length of the upper limits [m/s]."""
+        """Return the speed at the upper limits of both velocity components [m/s]."""
         return float(np.hypot(*np.asarray(vel_max, dtype=np.float64).reshape(-1)[:2]))
 
     def compute_heading(self, state: Floats, velocity: Floats) -> float:
-        """Direction of travel [rad], not wrapped."""
+        """Return the direction of travel [rad], not wrapped."""
         forward, lateral = np.asarray(velocity, dtype=np.float64).reshape(-1)[:2]
         return math.atan2(lateral, forward) + float(state[2, 0])
 
@@ -112,20 +112,20 @@ class OmniAngularKinematics(OmniKinematics):
         super().__init__(name, noise, [0.03, 0.03, 0.03] if alpha is None else alpha)
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
-        """The state (3, 1) one period later."""
+        """Return the state after one time step, (3, 1)."""
         return omni_angular_kinematics(state, velocity, step_time, self.noise, self.alpha)
 
     def velocity_from_xy(self, state: Floats, velocity_xy: Floats) -> Floats:
-        """(3, 1) control of a world-frame velocity, without turning."""
+        """Return the control that produces a world-frame velocity without rotation, (3, 1)."""
         return np.vstack([_turned(velocity_xy, -float(state[2, 0])), [[0.0]]])
 
     def compute_heading(self, state: Floats, velocity: Floats) -> float:
-        """Heading of the body [rad]."""
+        """Return the heading of the body [rad]."""
         return float(state[2, 0])
 
 
 class PassiveKinematics(KinematicsHandler):
-    """Nothing drives it: it keeps its world-frame velocity (vx, vy, yaw rate), and slows down by friction."""
+    """An object without a drive: it keeps its world-frame velocity (vx, vy, yaw rate) and friction slows it down."""
 
     action_dim: ClassVar[int] = 3
     vel_max: ClassVar[Sequence[float]] = [1, 1, 1]
@@ -142,11 +142,11 @@ class PassiveKinematics(KinematicsHandler):
 
     @classmethod
     def default_color(cls, role: str, pushable: bool = False) -> str:
-        """Colour of an object that the scenario gives none."""
+        """Return the color of an object whose scenario entry has no color."""
         return PUSHABLE_COLOR if pushable else OBSTACLE_COLOR
 
     def step(self, state: Floats, velocity: Floats, step_time: float) -> Floats:
-        """The state (3, 1) one period later."""
+        """Return the state after one time step, (3, 1)."""
         moved = np.array(state, dtype=np.float64)
         moved[:3, 0] += np.asarray(velocity, dtype=np.float64).reshape(-1)[:3] * step_time
         return moved
@@ -154,7 +154,7 @@ class PassiveKinematics(KinematicsHandler):
     def coast(
         self, velocity: Floats, step_time: float, friction: float, gyration: float = 0.0, gravity: float = 9.81
     ) -> Floats:
-        """(3, 1) velocity of the next period: slowed down by friction on the ground, to rest at most."""
+        """Return the velocity of the next step, (3, 1): friction with the ground slows it down, at most to rest."""
         after = np.array(velocity, dtype=np.float64).reshape(-1, 1)
         loss = friction * gravity * step_time
         speed, rate = float(np.hypot(after[0, 0], after[1, 0])), abs(float(after[2, 0]))
@@ -164,20 +164,20 @@ class PassiveKinematics(KinematicsHandler):
         return after
 
     def velocity_to_xy(self, state: Floats, velocity: Floats) -> Floats:
-        """(2, 1) world-frame velocity: the velocity's own."""
+        """Return the world-frame velocity, (2, 1), which is the velocity itself."""
         return np.asarray(velocity, dtype=np.float64).reshape(-1, 1)[:2]
 
     def velocity_from_xy(self, state: Floats, velocity_xy: Floats) -> Floats:
-        """(3, 1) the same without turning."""
+        """Return the same velocity without rotation, (3, 1)."""
         return np.vstack([np.asarray(velocity_xy, dtype=np.float64).reshape(-1, 1)[:2], [[0.0]]])
 
     def compute_max_speed(self, vel_max: Floats) -> float:
-        """Nothing drives it: 0."""
+        """Return 0, because there is no drive."""
         return 0.0
 
 
 def _turned(vector: Floats, angle: float) -> Floats:
-    """(2, 1) the first two numbers, turned."""
+    """Return the first two numbers, rotated, (2, 1)."""
     x, y = np.asarray(vector, dtype=np.float64).reshape(-1)[:2]
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[x * cosine - y * sine], [x * sine + y * cosine]])
@@ -193,7 +193,7 @@ _BUILT_IN: dict[str, type[KinematicsHandler]] = {
 
 
 class KinematicsFactory:
-    """Makes handlers by name."""
+    """Creates handlers by the name of the drive."""
 
     @staticmethod
     def create_kinematics(
@@ -208,13 +208,13 @@ class KinematicsFactory:
         shape_wheelbase: float | None = None,
         **kwargs: Any,
     ) -> KinematicsHandler:
-        """The handler of a drive.
+        """Create the handler of a drive.
 
         Args:
-            name: Of the drive; None is ``diff``.
-            noise: Whether it has motion noise.
+            name: Name of the drive; None means ``diff``.
+            noise: Whether motion noise is on.
             alpha: Parameters of the noise.
-            mode: Of ``acker``.
+            mode: Mode of ``acker``.
             wheelbase: Distance of the axles [m].
             role: ``robot`` or ``obstacle``; nothing depends on it.
             tau: Lag in ``collision_mode: contact`` [s].
@@ -239,5 +239,5 @@ class KinematicsFactory:
 
     @staticmethod
     def get_handler_class(name: str) -> type[KinematicsHandler] | None:
-        """The class of a drive, None if there is none."""
+        """Return the class of a drive, or None if no such drive exists."""
         return _BUILT_IN.get(name.lower()) or handler_class(name.lower())

@@ -70,7 +70,7 @@ def register_group_behavior(kinematics: str, action: str) -> Callable[[Made], Ma
 
 
 def register_group_behavior_class(kinematics: str, action: str) -> Callable[[Made], Made]:
-    """The same for a class, which is called once with the members and the keys.
+    """Make a class the group behavior ``action``; it is called once with the members and the keys of the YAML mapping.
 
     Raises:
         ValueError: The pair is registered already.

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 import irsim
+from irsim.runs import Run
 
 SWITCHES = [
     "--no-sandbox",
@@ -87,6 +88,12 @@ def watched(chromium: Any) -> Iterator[Watched]:
     assert watched.problems == []
     assert [address for address in watched.requests if not address.startswith("file:")] == []
     assert len(watched.requests) <= 1
+
+
+@pytest.fixture
+def shown(run: Run, watched: Watched) -> Any:
+    """The page of a run with three robots."""
+    return watched.open(Path(irsim.replay(run).file))
 
 
 @pytest.fixture(scope="session")

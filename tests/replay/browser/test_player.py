@@ -72,12 +72,6 @@ def value(page: Any, name: str) -> str:
     return str(dict(pairs)[name])
 
 
-@pytest.fixture
-def shown(run: Run, watched: Watched) -> Any:
-    """The page of a run with three robots."""
-    return watched.open(Path(irsim.replay(run).file))
-
-
 def test_it_tells_what_the_run_was(shown: Any, run: Run) -> None:
     assert shown.title() == f"{run.scenario_text and shown.inner_text('#title')} · irsim replay"
     assert shown.inner_text("#outcome") == "collision"

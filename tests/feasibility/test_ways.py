@@ -1,4 +1,4 @@
-"""What the survey finds about ways: too little time, dead ends, walls, and how long it takes to find it."""
+"""Findings about ways: too little time, dead ends, walls, and how long it takes to find it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.validation.feasibility.check import feasibility_findings
-from tests.survey.test_survey import DISC, ROBOT, ROOT, codes, door, found, one, scenario
+from tests.feasibility.test_findings import DISC, ROBOT, ROOT, codes, door, found, one, scenario
 
 
 def test_too_little_time() -> None:
@@ -133,7 +133,7 @@ def test_it_stays_quick(name: str) -> None:
     before = time.process_time()
     read(data, strict=True)
     middle = time.process_time()
-    read(data, strict=True, survey=feasibility_findings)
+    read(data, strict=True, feasibility=feasibility_findings)
     assert time.process_time() - middle < (middle - before) + 3.0
 
 

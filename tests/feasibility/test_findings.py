@@ -40,7 +40,7 @@ ROBOT = {**DISC, "state": [2, 5, 0], "goal": [10, 5]}
 
 
 def found(data: Any) -> list[Diagnostic]:
-    return list(read(data, strict=True, survey=feasibility_findings).diagnostics)
+    return list(read(data, strict=True, feasibility=feasibility_findings).diagnostics)
 
 
 def codes(data: Any) -> list[str]:

@@ -41,7 +41,7 @@ def door(size: float, gap: float, **more: Any) -> dict[str, Any]:
 
 
 def found(data: Any) -> list[Diagnostic]:
-    return list(read(data, strict=True, survey=feasibility_findings).diagnostics)
+    return list(read(data, strict=True, feasibility=feasibility_findings).diagnostics)
 
 
 def codes(data: Any) -> list[str]:
