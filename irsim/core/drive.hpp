@@ -21,7 +21,7 @@ struct Motion {
   double dt;       // [s]
 };
 
-/// How sharply a drive that cannot move sideways turns toward a wanted velocity (reference: 5.4).
+/// How sharply a drive that cannot move sideways turns toward a wanted velocity.
 struct Turning {
   double min_speed = 0.02;         // wanted velocities below this speed count as a stop [m/s]
   double tolerance = 0.1;          // smaller heading errors are not corrected [rad]

@@ -60,7 +60,7 @@ def _report_limits(env: EnvState, view: SimObject, control: list[float]) -> None
     given = ", ".join(f"{v:.6g}" for v in control)
     env.logger.warning(
         f"{view.name}: action [{given}] is cut to the limits of its drive, now [{low}] to [{high}] "
-        "(vel_min, vel_max, acce; said once per object)"
+        "(vel_min, vel_max, acce; logged once per object)"
     )
 
 

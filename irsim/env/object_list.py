@@ -63,7 +63,7 @@ class ObjectList(list[ObjectView]):
         self._reread()
 
     def _refused(self, *args: Any, **kwargs: Any) -> NoReturn:
-        raise TypeError("the order of `env.objects` is that of the world: append and remove are all it takes")
+        raise TypeError("the order of `env.objects` is that of the world: objects can only be appended or removed")
 
     insert = sort = reverse = __setitem__ = __imul__ = _refused
 

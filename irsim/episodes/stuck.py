@@ -185,7 +185,7 @@ def heading_message(record: ObjectRecord, pose: NDArray[np.float64], goal: NDArr
     if not math.dist(pose[:2], goal[:2]) <= record.goal_threshold:
         return None
     off = abs(math.remainder(float(pose[2] - goal[2]), 2 * math.pi))
-    return f"it is at its goal, but its heading is off by {off:.2f} rad (arrive_mode: state needs it too)"
+    return f"it is at its goal, but its heading is off by {off:.2f} rad (arrive_mode: state requires the heading)"
 
 
 def find_circling(poses: NDArray[np.float64], goal: NDArray[np.float64]) -> Circle | None:

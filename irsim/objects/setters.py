@@ -100,7 +100,7 @@ SETTINGS: dict[str, Callable[[Any, str, Any], Any]] = {
 """Attributes of an object that may be written, each with the function that converts a value for the record."""
 
 HINTS: dict[str, str] = {
-    "name": "names stay; give `name` in the scenario, or to `env.create_robot`",
+    "name": "a name cannot change; give `name` in the scenario, or to `env.create_robot`",
     "id": "ids stay",
     "state": "call `set_state`",
     "position": "call `set_state`",

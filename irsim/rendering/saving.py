@@ -153,7 +153,7 @@ class Saving:
         self.size = pixels.shape[1], pixels.shape[0]
 
     def _keep_options(self, options: Mapping[str, Any]) -> None:
-        """Keep options for later saves, and refuse misspelt ones before."""
+        """Refuse misspelt options, then keep the options for later saves."""
         for name in options:
             if name not in _SAVE_OPTIONS:
                 near = nearest(name, _SAVE_OPTIONS)

@@ -40,7 +40,7 @@ def artifact(
 
     Files are read from character ``offset`` on; events and traces from ``from_step`` to ``to_step``. A part that is
     cut by ``most`` ends with a whole step; ``next_step`` of ``events.json`` and ``trace.json`` is the step to continue
-    with, null at the end. ``trace.csv`` has it in a last line ``# next_step: N``, which is missing at the end.
+    with, null at the end. In ``trace.csv`` it is the last line, ``# next_step: N``, which the last part lacks.
     ``replay.json`` is what the page of :mod:`irsim.replay` reads: ``data`` holds the characters from ``offset`` on of a
     packed run in base64, which has ``total`` characters.
 

@@ -98,7 +98,7 @@ def pack_chunk(
 def _archive(entries: Sequence[tuple[str, bytes, Buffer]]) -> list[Buffer]:
     """A ZIP archive of uncompressed entries, each given by its name and the two parts of its content.
 
-    :mod:`zipfile` takes six times as long, more than the steps of a short run. PKWARE's APPNOTE 6.3, sections 4.3.7
+    :mod:`zipfile` takes six times as long, longer than a short run. See PKWARE's APPNOTE 6.3, sections 4.3.7
     (before each entry), 4.3.12 (directory) and 4.3.16 (its end).
     """
     parts, directory, place = list[Buffer](), list[bytes](), 0

@@ -56,7 +56,7 @@ class Recorder:
         scenario: Scenario file as the user named it, None for a text.
         options: Other options of the run, as JSON types.
         folder: A new or empty folder for the run, which is never deleted; by default a folder in ``.irsim/runs`` of
-            the current directory, which is.
+            the current directory, which :mod:`irsim.runs.pruning` deletes later.
 
     Attributes:
         folder: Folder of the run.
@@ -307,7 +307,7 @@ def _stem(scenario: str) -> str:
 
 
 def _make_empty_folder(folder: Path) -> Path:
-    """Make a folder unless it exists already and is empty."""
+    """Make a folder and return its path; a folder that exists already must be empty."""
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise RunError("file-exists", f"'{folder}' exists and is not empty", "name another folder for the run")
     folder.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,7 @@ __all__ = ["current_rng", "last_used", "set_current_rng", "use"]
 
 _LAST: list[ReferenceType[Any]] = []
 _OUTSIDE: list[np.random.Generator] = []
-"""The generator of scripts that have not made an environment; made on first use, since NumPy's take long to import."""
+"""The generator of scripts without an environment; made on first use, as NumPy's generators take long to import."""
 
 
 def use(env: Any) -> None:

@@ -38,7 +38,7 @@ class ExternalDrives(Protocol):
         """The :class:`KinematicsHandler` of a row; None where the core moves it."""
 
     def wide(self, row: int) -> WideControls | None:
-        """The controls of a row that has more than the core keeps."""
+        """Return the controls of a row with more than three controls; None for other rows."""
 
     def find(self) -> bool:
         """Look for the objects that they move; True if there are any."""
@@ -59,10 +59,10 @@ class ExternalDrives(Protocol):
         """Move one object by one period."""
 
     def control_alone(self, row: int, wanted: Floats) -> Floats:
-        """(n,) controls for what a native behavior wants of a row."""
+        """Return the control (n,) with which the drive of a row realizes the choice of a native behavior."""
 
     def feeling(self) -> AbstractContextManager[None]:
-        """While it is entered, the controls follow what contacts change of the velocities."""
+        """Return a context in which velocity changes by contacts are applied to the controls of these drives, too."""
 
 
 class StepHooks(Protocol):
@@ -77,13 +77,13 @@ class StepHooks(Protocol):
     decided: dict[int, Floats]
 
     def add(self, view: Any) -> None:
-        """Ask this object, too."""
+        """Call the overridden methods of this object, too."""
 
     def decide(self) -> None:
         """Renew goals, call ``pre_process`` and let native behaviors decide."""
 
     def before_motion(self) -> None:
-        """Keep what the core is about to change of objects with a step of their own."""
+        """Call ``gen_behavior_vel``, and save the state of objects that override ``step`` or ``mid_process``."""
 
     def after_motion(self) -> None:
         """Call ``step``, ``mid_process`` and ``post_process`` where they are overridden."""

@@ -55,7 +55,7 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
         "status": state["status"],
         "outcome": None,
         "view": "episodes",
-        "summary": f"{len(episodes)} episodes, those without success first: {len(lost)}",
+        "summary": f"{len(episodes)} episodes, of which {len(lost)} without success (listed first)",
         "columns": list(_COLUMNS),
         "rows": rows,
         "total": len(episodes),

@@ -62,7 +62,7 @@ def add_prompts(server: MCPServer, services: Services) -> None:
         )
 
     def debug_run(
-        run_id: Annotated[str, Field(description="Of run_episode; last is the last one. Or a job_id.")],
+        run_id: Annotated[str, Field(description="run_id of run_episode (last: the last run), or a job_id.")],
     ) -> str:
         if run_id not in services.workspace.runs() and services.jobs.known(run_id):
             return _DEBUG_JOB.format(job_id=clean(run_id))

@@ -1,4 +1,4 @@
-// dash: drive straight to the goal without avoiding others. Each drive has its own law (reference: 5.1); drives without
+// dash: drive straight to the goal without avoiding others. Each drive has its own law; drives without
 // one get the wanted velocity.
 #pragma once
 

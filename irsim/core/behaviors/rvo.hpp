@@ -1,4 +1,4 @@
-// rvo: reciprocal velocity obstacles, by sampling (reference: 5.2, 5.3). van den Berg, Lin, Manocha: "Reciprocal
+// rvo: reciprocal velocity obstacles, by sampling. van den Berg, Lin, Manocha: "Reciprocal
 // velocity obstacles for real-time multi-agent navigation" (2008); Snape, van den Berg, Guy, Manocha: "The hybrid
 // reciprocal velocity obstacle" (2011).
 #pragma once

@@ -1,4 +1,4 @@
-// sfm: social forces (reference: 5.5, 5.7). Moussaid, Helbing, Garnier, Johansson, Combe, Theraulaz: "Experimental
+// sfm: social forces. Moussaid, Helbing, Garnier, Johansson, Combe, Theraulaz: "Experimental
 // study of the behavioural mechanisms underlying self-organization in human crowds" (2009); for groups Moussaid,
 // Perozo, Garnier, Helbing, Theraulaz: "The walking behaviour of pedestrian social groups" (2010).
 #pragma once

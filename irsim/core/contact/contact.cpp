@@ -1,4 +1,4 @@
-// Rigid contacts of one world: bodies that overlap are pushed apart, sweep by sweep (reference: dynamics 12).
+// Rigid contacts of one world: bodies that overlap are pushed apart, sweep by sweep.
 #include "contact/contact.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr int kSweepsBeforeStall = 120;      // extra sweeps before drivers stal
 // Pairs resolved in one step. Hundreds of bodies in one place are thus pushed apart over several steps.
 constexpr int kMaxPairs = 4'000'000;
 
-/// Update for how long each object has touched something, or nothing.
+/// Update how long each object has touched something, and how long it has touched nothing.
 void update_contact_times(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int row = first; row < first + world.objects; ++row) state.touching[row] = (state.touching[row] & 1u) << 1;

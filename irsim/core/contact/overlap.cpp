@@ -42,7 +42,7 @@ Overlap disc_and(const Placed& a, const Placed& b, double gap) {
   return {normal, depth, centre - normal * (a.radius - 0.5 * depth)};
 }
 
-/// The face of `of` that separates best: the other piece has the largest signed distance from it, which is returned.
+/// Find the face of `of` from which `other` has the largest signed distance, and return that distance [m].
 double best_face(const Placed& of, const Placed& other, int& face) {
   double best = -kInfinity;
   for (int k = 0; k < of.count; ++k) {

@@ -1,4 +1,4 @@
-// How drives respond to commands and bodies without a drive slide, before contacts are resolved.
+// How drives respond to commands, and how bodies without a drive slide, before contacts are resolved.
 #pragma once
 
 #include "drive.hpp"

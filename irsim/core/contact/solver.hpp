@@ -53,8 +53,8 @@ class ContactSolver {
   void collect_pairs(bool as_given);
   /// Rank objects by the order in which IR-SIM's index of boxes finds them.
   void rank_boxes();
-  /// Sort pairs by how many objects away the nearest immovable objects are; then as given, or by the first id and, for
-  /// its partners, by rank.
+  /// Sort pairs by the distances of both objects, counted in contacts, from objects that cannot be pushed; pairs of
+  /// equal distance stay as given, or are sorted by the first object and then by the rank of the second.
   void order_pairs(bool as_given);
 
   Placed piece(int p) const;

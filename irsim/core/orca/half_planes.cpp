@@ -66,7 +66,7 @@ int best_velocity(const HalfPlane* planes, int count, double max_speed, const Ai
   return count;
 }
 
-/// Find the plane of velocities that violate `a` by no more than `b`. Returns false if all velocities do.
+/// Find the half-plane of velocities that violate `b` no more than they violate `a`. Returns false if all do.
 bool no_worse(const HalfPlane& a, const HalfPlane& b, HalfPlane& out) {
   const double sine = cross(a.direction, b.direction);
   if (std::fabs(sine) <= kParallel) {

@@ -39,7 +39,7 @@ class Clearance {
  private:
   struct Feature {
     Vec2 a, b;
-    double radius;  // of a circle about a [m]; negative for a segment
+    double radius;  // of a circle with the centre `a` [m]; negative for a segment
   };
 
   void add(const Part& part, const Vec2* vertices);

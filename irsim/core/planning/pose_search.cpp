@@ -10,7 +10,7 @@ namespace irsim {
 namespace {
 
 constexpr int kHeadings = 24;           // number of headings that count as different
-constexpr int kBodiesPerHeading = 4;    // headings with a body of their own, per one of those
+constexpr int kBodiesPerHeading = 4;    // number of rotated bodies for each of those headings
 constexpr double kMargin = 0.02;        // margin of the body [m]
 constexpr double kMinStep = 0.15;       // smallest length of a piece [m]
 constexpr double kMaxStep = 0.4;        // largest length of a piece [m]

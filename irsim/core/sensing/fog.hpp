@@ -1,4 +1,4 @@
-// Fog: the cells of the world that no robot has seen yet (reference: section 9.3).
+// Fog: the cells of the world that no robot has seen yet.
 #pragma once
 
 #include <array>

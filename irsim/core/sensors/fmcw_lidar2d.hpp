@@ -1,4 +1,4 @@
-// Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit (reference: section 7).
+// Frequency-modulated lidar: range and, by the Doppler shift, radial velocity of each hit.
 #pragma once
 
 #include "fields.hpp"

@@ -1,4 +1,4 @@
-// Planar lidar: exact ranges to the boundaries of all objects that are not unobstructed (reference: section 7).
+// Planar lidar: exact ranges to the boundaries of all objects that are not unobstructed.
 #pragma once
 
 #include "fields.hpp"

@@ -1,4 +1,4 @@
-// What an object knows about itself and its surroundings when its behavior decides (reference: 5.2).
+// What an object knows about itself and its surroundings when its behavior decides.
 #pragma once
 
 #include "decision.hpp"

@@ -25,7 +25,7 @@ class PythonBehaviors:
 
     Attributes:
         objects: Indices, within a world, of the objects whose `behavior` is user code or is not registered yet.
-        groups: Indices of the members of each group whose `group_behavior`, that of the first member, is so.
+        groups: Indices of the members of each group whose first member has such a `group_behavior`.
     """
 
     def __init__(self, simulation: Simulation) -> None:

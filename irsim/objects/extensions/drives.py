@@ -29,7 +29,7 @@ _DIFF = core.DiffOptions(noise=False, alpha=[0.0] * 4)
 
 
 class Wide:
-    """The controls of a drive with more than three controls, which is all that the core stores.
+    """The controls of a drive that has more than three; the core stores only the first three.
 
     Attributes:
         command: Control for the next step, (n,).

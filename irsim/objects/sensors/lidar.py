@@ -183,7 +183,7 @@ class Lidar2D:
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """Copy of the flags whether each beam hit something within ``[range_min, range_max]``, (number,)."""
+        """Copy of the flags that say whether each beam hit something within ``[range_min, range_max]``, (number,)."""
         return self._valid.astype(bool)
 
     @property
@@ -203,7 +203,7 @@ class Lidar2D:
 
     @property
     def cast_angles(self) -> Floats:
-        """(number,) the nominal angles [rad]; noise on them (``angle_std``) is drawn within each scan. A copy."""
+        """Copy of the nominal beam angles, (number,) [rad]; their noise (``angle_std``) is drawn within each scan."""
         return self.angle_list.copy()
 
     @property

@@ -31,7 +31,7 @@ class PythonSensor:
     A function is called ``function(parent, options, rng)`` and what it returns becomes ``data``. A class is made once
     for each object, ``cls(parent, options)``. Its ``step(state)`` is called, with ``rng`` set before, and what that
     returns becomes ``data`` unless it is None; its ``reset()``, if it has one, is called when an episode begins. Other
-    attributes are those of the instance. Both see the world after the step, with every native sensor read.
+    attributes are those of the instance. Both kinds are called after the step and after all native sensors.
 
     Args:
         parent: The object that carries it.
@@ -59,7 +59,7 @@ class PythonSensor:
 
     @property
     def rng(self) -> np.random.Generator:
-        """The random stream of this measurement: the same draws in any batch, and when it is repeated."""
+        """Generator of this measurement; its draws are the same in any batch and when the measurement is repeated."""
         simulation, world = self.parent._simulation, self.parent.world
         key = (*simulation.key(world), int(simulation.count[world]))
         if self._rng is None or self._rng[0] != key:

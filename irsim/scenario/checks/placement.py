@@ -15,7 +15,7 @@ from irsim.scenario.model.scenario import Entry
 from irsim.scenario.resolve.resolved import ObjectRecord
 
 _MAX_ALIKE = 50
-"""Obstacles in one place with which another is compared."""
+"""Largest number of obstacles at one place with which a further obstacle is compared."""
 
 
 def check(context: Context) -> Iterator[Finding]:

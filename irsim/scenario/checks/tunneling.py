@@ -24,7 +24,7 @@ _PASSABLE = ("unobstructed", "reactive")
 _PUSHING = ("contact",)
 """Collision modes in which other objects push an object off its path."""
 _MAX_LEGS = 1000
-"""Legs of a path that is examined; an object with more may be anywhere."""
+"""Largest number of legs of a path that is examined; an object with more legs is assumed to get anywhere."""
 _TURNING_RADII = 2.0
 """Space that an object needs to turn towards its goal, in radii of its turning circle."""
 _NAMES = {"map": "the map", "walls": "the walls round the world"}

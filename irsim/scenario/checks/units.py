@@ -37,7 +37,7 @@ _MAX_BEAM_RATIO = 100.0
 _MAX_OFFSET_RATIO = 5.0
 """Plausible offset of a sensor, in multiples of the reach of the body."""
 _MIN_REACH = 0.1
-"""Reach of the body that is assumed at least for that [m]."""
+"""Smallest reach of a body that the offset is compared with [m]."""
 
 
 def check(context: Context) -> Iterator[Finding]:

@@ -20,7 +20,7 @@ _LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
 _MIN_LIKENESS = 0.34
 """Least share of common leaves of two items that match."""
 _MAX_CANDIDATES = 10_000
-"""Number of pairs of items that are compared; of longer lists, only items in the same order are."""
+"""Number of pairs up to which every item is compared with every other; beyond it, only items in equal places."""
 
 Pairs = list[tuple[int | None, int | None]]
 """Indices of matching items of two lists; None where an item has no match."""

@@ -15,9 +15,9 @@ __all__ = ["differing", "listed", "match_objects", "object_facts"]
 _SHIFTING = ("name", "entry", "index", "group", "group_members")
 """Keys of an object's description whose values shift when other objects come or go."""
 _MAX_DIFFERENCES = 2
-"""Number of properties in which two objects may differ that match although neither name nor entry says so."""
+"""Largest number of differing properties of two objects that are matched by neither name nor entry."""
 _MAX_CANDIDATES = 2_500
-"""Number of pairs of objects that are compared for that."""
+"""Largest number of pairs of unmatched objects whose properties are compared."""
 _NUMBERED = re.compile(r"(robot|obstacle)_\d+\Z")
 """Names that objects get by default."""
 
@@ -96,7 +96,7 @@ def _facts(item: Mapping[str, Any]) -> str:
 
 
 def _count_differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
-    """How many of their keys differ; objects of two roles are two, as are those that have two names."""
+    """Number of keys that differ; infinity for objects with different roles or different written names."""
     names = _written_name(a), _written_name(b)
     if a["role"] != b["role"] or (None not in names and names[0] != names[1]):
         return float("inf")

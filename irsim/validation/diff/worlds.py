@@ -105,7 +105,7 @@ def _entry_of(path: str) -> str:
 def _changed_group(
     old: Sequence[Mapping[str, Any]], new: Sequence[Mapping[str, Any]], i: int, j: int, twins: Mapping[int, int]
 ) -> Iterator[tuple[str, Any, Any]]:
-    """The members of an object's group behavior, if most of those in both worlds have changed."""
+    """The members of an object's group behavior before and after, if fewer than half of them are the same."""
     before = old[i].get("group_members") or []
     after = new[j].get("group_members") or []
     if not before and not after:

@@ -17,7 +17,7 @@ __all__ = ["Passages", "passages_of"]
 _SLACK = 1e-6
 """Share by which a gap may be narrower than a robot because of rounding."""
 _MIN_RADIUS_SHARE = 0.25
-"""Least share of its radius with which a robot is tested against places that only sample its arrival region."""
+"""Smallest share of a robot's radius that its disc may keep when places only sample its arrival region."""
 _MAX_PLACES = 100
 """Number of places that sample the region in which a robot counts as arrived."""
 

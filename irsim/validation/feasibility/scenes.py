@@ -31,7 +31,7 @@ _MAX_MAP_CELLS = 1_000_000
 _MAX_MAP_EDGES = 300_000
 """Maps whose outline has more edges are not examined."""
 _COLUMN_STRIDE = 16
-"""Every how many columns a large map is sampled to estimate the length of its outline."""
+"""Distance, in columns, between the columns of a large map from which the length of its outline is estimated."""
 
 Thing = tuple[list[Any], list[float]]
 

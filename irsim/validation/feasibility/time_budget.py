@@ -136,7 +136,7 @@ def _report_trap(mover: Mover, leg: Leg, trap: Trap, scene: Scene, tally: Tally)
         mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{mover.record.name}' is likely to stop near "
-        f"({x:.2f}, {y:.2f}), before {trap.length:.3g} m of wall straight behind which its goal "
+        f"({x:.2f}, {y:.2f}), in front of a wall {trap.length:.3g} m long, behind which its goal "
         f"({leg.goal[0]:g}, {leg.goal[1]:g}) lies",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
         scene.seed,
@@ -170,7 +170,7 @@ def _report_detour(mover: Mover, leg: Leg, scene: Scene, around: float, length: 
         mover.goal_path(leg.index),
         mover.record,
         f"'{mover.behavior}' avoids nearby objects but plans no path: '{name}' is likely to get stuck on the "
-        f"{around:.3g} m around the obstacles (straight: {length:.3g} m)",
+        f"path of {around:.3g} m around the obstacles (straight line: {length:.3g} m)",
         f"behavior: {{name: follow, planner: astar, local: {mover.behavior}}}, or waypoints",
         scene.seed,
         serious=False,

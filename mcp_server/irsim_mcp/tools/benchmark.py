@@ -33,9 +33,9 @@ __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
     Compare behaviors fairly: every scenario under every behavior with the same seeds. Rows have shares of
-    success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff is
-    to the first behavior, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job, inspect_run with
-    the job_id, or run_episode with a seed that failed.
+    success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff
+    is the difference from the first behavior, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job,
+    inspect_run with the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
 """Outcomes whose shares a row has."""

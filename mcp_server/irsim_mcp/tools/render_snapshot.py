@@ -37,7 +37,7 @@ def tool(services: Services) -> StrictTool:
         ctx: Context[Any, Any],
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
-        run_id: Annotated[str | None, Field(max_length=100, description="Or of run_episode, with its seed.")] = None,
+        run_id: Annotated[str | None, Field(max_length=100, description="Or a recorded run, with its seed.")] = None,
         step: Annotated[int, Field(ge=-1, le=MAX_STEPS, description="0: start; -1: end of the episode.")] = 0,
         strip: Annotated[
             int | None,

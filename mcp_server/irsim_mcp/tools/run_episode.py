@@ -25,9 +25,8 @@ _DESCRIPTION = """
     reason says what hit what, where and when, and how far robots were from their goals. Also returns robots
     (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
     use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment
-    with
-    render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds if
-    anything is random.
+    with render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds
+    if anything is random.
 """
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
