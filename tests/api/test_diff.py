@@ -373,3 +373,14 @@ def test_small_facts_are_facts(before: str, after: str, fact: str) -> None:
     text = "robot:\n" + robot(2, ", behavior: {name: dash}").replace("diff", "acker, wheelbase: 1")
     found = diff(text, text.replace(before, after))
     assert [(item.object, item.key) for item in found.world or []] == [("robot_0", fact)]
+
+
+def test_a_finding_of_an_entry_that_has_moved_is_known_from_the_base() -> None:
+    shared = "kinematics: {name: diff}, behavior: {name: dash}"
+    slow = f"  - {{name: slow, {shared}, state: [1, 1, 0], goal: [9, 1, 0], vel_max: [0, 1]}}\n"
+    fast = f"  - {{name: fast, {shared}, state: [1, 4, 0], goal: [9, 4, 0]}}\n"
+    world = "world: {width: 12, height: 6}\nrobot:\n"
+    report = irsim.validate(text=world + fast + slow, base_text=world + slow + fast)
+    told = [(finding.path, finding.in_base) for finding in report.findings if "slow" in finding.message]
+    assert told
+    assert all(path.startswith("robot[1]") and in_base for path, in_base in told)

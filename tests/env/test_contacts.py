@@ -256,3 +256,18 @@ def test_a_squeeze_leaves_nobody_inside_another(tmp_path: Path, rows: int, mass:
         assert centers[:, 0].max() < 5.1 - 0.2 + 1e-3  # nor in the wall
     env.end()
     assert touched > 10
+
+
+def test_discs_collide_in_the_middle_of_where_they_overlap(tmp_path: Path) -> None:
+    """From 2.3 m, where the obstacle begins, to 2.5 m, where the robot ends."""
+    file = tmp_path / "scene.yaml"
+    file.write_text(
+        "world: {width: 12, height: 4}\n"
+        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.5}, state: [2, 2, 0], goal: [8, 2, 0]}\n"
+        "obstacle: {shape: {name: circle, radius: 0.3}, state: [2.6, 2, 0]}\n"
+    )
+    env = irsim.make(str(file), display=False, seed=1, log_level="ERROR")
+    env.step()
+    [event] = env.events
+    assert (event.kind, event.step) == ("collision", 0)
+    np.testing.assert_allclose([event.x, event.y], [2.4, 2.0], atol=1e-12)

@@ -182,3 +182,19 @@ def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
             assert max(0.0, min(opening.width / 2, ends)) == pytest.approx(max(0.0, widest), abs=2 * half + 1e-6)
             narrow += opening.width / 2 < ends
     assert narrow > 20
+
+
+def test_a_goal_between_walls_that_the_body_just_touches_can_be_reached() -> None:
+    walls = [{"shape": {"name": "rectangle", "length": 6, "width": 1}, "state": [8, y, 0]} for y in (3.8, 2.2)]
+    robot = {
+        "kinematics": {"name": "diff"},
+        "shape": {"name": "circle", "radius": 0.3},
+        "behavior": {"name": "dash"},
+        "state": [1, 3, 0],
+        "goal": [8, 3, 0],
+        "goal_threshold": 0.05,
+    }
+    data = {"world": {"width": 12, "height": 6}, "robot": [robot], "obstacle": walls}
+    assert "goal-blocked" not in {finding.code for finding in found(data)}
+    walls[0]["state"] = [8, 3.79, 0]
+    assert "goal-blocked" in {finding.code for finding in found(data)}

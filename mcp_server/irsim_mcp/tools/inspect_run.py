@@ -40,7 +40,7 @@ Column = Literal[
 
 
 class Table(BaseModel):
-    """A table of a run; lengths in m, times in s, angles in rad."""
+    """Table of a run: lengths in m, times in s, angles in rad."""
 
     model_config = ConfigDict(extra="allow")  # the further keys of `irsim inspect --json`
 
