@@ -381,6 +381,6 @@ def test_a_finding_of_an_entry_that_has_moved_is_known_from_the_base() -> None:
     fast = f"  - {{name: fast, {shared}, state: [1, 4, 0], goal: [9, 4, 0]}}\n"
     world = "world: {width: 12, height: 6}\nrobot:\n"
     report = irsim.validate(text=world + fast + slow, base_text=world + slow + fast)
-    told = [(finding.path, finding.in_base) for finding in report.findings if "slow" in finding.message]
-    assert told
-    assert all(path.startswith("robot[1]") and in_base for path, in_base in told)
+    known = [(finding.path, finding.in_base) for finding in report.findings if "slow" in finding.message]
+    assert known
+    assert all(path.startswith("robot[1]") and in_base for path, in_base in known)

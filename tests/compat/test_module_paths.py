@@ -38,12 +38,12 @@ def listed(statement: str) -> str:
 
 
 def test_the_maps_of_behaviors_list_the_built_in_ones():
-    told = listed(
+    printed = listed(
         "print(len(r.behaviors_map), ('diff', 'rvo') in r.behaviors_map)\n"
         "print(sorted(r.group_behaviors_class_map)[:2], len(r.group_behaviors_class_map))\n"
         "print(len(r.behaviors_class_map), len(r.group_behaviors_map))"
     )
-    assert told.splitlines() == ["8 True", "[('diff', 'orca'), ('diff', 'sfm')] 4", "0 0"]
+    assert printed.splitlines() == ["8 True", "[('diff', 'orca'), ('diff', 'sfm')] 4", "0 0"]
     assert listed("from irsim.lib.behavior.behavior_registry import behaviors_map as b; print(len(b))") == "8"
 
 

@@ -189,6 +189,6 @@ def test_in_random_scenes_no_single_place_is_named() -> None:
 
 def test_a_wall_stops_nobody_who_gets_around_its_end() -> None:
     """Sliding towards the goal, the body passes an end that is nearer than its radius."""
-    for low, told in ((4.75, []), (4.0, ["needs-planning"])):
+    for low, expected in ((4.75, []), (4.0, ["needs-planning"])):
         wall = {"shape": {"name": "rectangle", "length": 0.2, "width": 9 - low}, "state": [6, (low + 9) / 2, 0]}
-        assert codes(scenario(ROBOT, wall)) == told, low
+        assert codes(scenario(ROBOT, wall)) == expected, low

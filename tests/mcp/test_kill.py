@@ -101,6 +101,6 @@ def test_killed_twice(workspace: Path) -> None:
     live_and_die(workspace, 1, 2)
 
 
-@pytest.mark.slow(30)
+@pytest.mark.slow(40)
 def test_killed_over_and_over(workspace: Path) -> None:
-    live_and_die(workspace, 2, 10)
+    live_and_die(workspace, 2, 15)

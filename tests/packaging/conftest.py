@@ -22,6 +22,12 @@ class Environment:
 
     folder: Path
 
+    @classmethod
+    def create(cls, folder: Path) -> Environment:
+        """Make an empty virtual environment."""
+        venv.create(folder, with_pip=True, symlinks=os.name != "nt")
+        return cls(folder)
+
     @property
     def bin(self) -> Path:
         return self.folder / ("Scripts" if os.name == "nt" else "bin")
@@ -57,9 +63,7 @@ def new_environment(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str],
     """Makes empty virtual environments."""
 
     def make(name: str) -> Environment:
-        folder = tmp_path_factory.mktemp(name)
-        venv.create(folder, with_pip=True, symlinks=os.name != "nt")
-        return Environment(folder)
+        return Environment.create(tmp_path_factory.mktemp(name))
 
     return make
 

@@ -9,7 +9,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import venv
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -138,14 +137,13 @@ def test_a_sensor_is_found_by_its_entry_point(tmp_path: Path) -> None:
 @pytest.mark.slow(80)
 def test_a_behavior_is_two_files_and_its_test(tmp_path: Path) -> None:
     """Needs what compiles the core: it is built as for the user, who has the dependencies already."""
-    copy, environment = tmp_path / "copy", Environment(tmp_path / "environment")
+    copy, environment = tmp_path / "copy", Environment.create(tmp_path / "environment")
     copy.mkdir()
     copy_tree(copy)
     put_into(copy, "new-behavior")
     stub = copy / "irsim" / "_core.pyi"
     [part] = fences((EXAMPLES / "new-behavior" / "elements.md").read_text(encoding="utf-8"), "python")
     stub.write_text(stub.read_text(encoding="utf-8") + "\n" + part, encoding="utf-8")
-    venv.create(environment.folder, with_pip=True, symlinks=os.name != "nt")
     environment.share_libraries()
 
     def run(*words: str) -> str:

@@ -81,7 +81,7 @@ def DiffDash(
 
 
 def OmniDash(state: Floats, goal: Floats, max_vel: Floats, goal_threshold: float = 0.1) -> Floats:
-    """Return the (2, 1) body-frame velocity of a holonomic drive to its goal; arguments as for :func:`DiffDash`."""
+    """Return the (2, 1) body-frame velocity that moves a holonomic drive to its goal; see :func:`DiffDash`."""
     return dash("omni", state, goal, max_vel, goal_threshold=goal_threshold)
 
 

@@ -211,7 +211,9 @@ def _near_pairs(bodies: list[_Body], reported: set[Path]) -> Iterator[tuple[_Bod
         if looked_at > _MAX_PAIRS:
             return
         own = path if path in reported else None
-        for there, up, far, counts, entry, other in active:
-            if (matters or counts) and entry != own and math.hypot(there - x, up - y) <= reach + far:
+        for other_x, other_y, other_reach, other_matters, other_path, other in active:
+            if not (matters or other_matters) or other_path == own:
+                continue
+            if math.hypot(other_x - x, other_y - y) <= reach + other_reach:
                 yield other, body
         active.append((x, y, reach, matters, path, body))
