@@ -124,8 +124,8 @@ class Peers:
             mark = folder / "installed.txt"
             if mark.is_file() and mark.read_text(encoding="utf-8").split() == requirements:
                 continue
-            subprocess.run([sys.executable, "-m", "venv", "--clear", str(folder)], check=True)
-            self.run(self.python(name), "-m", "pip", "install", "-q", *requirements, seconds=600)
+            self.run("uv", "venv", "-q", "--clear", "-p", sys.executable, str(folder))
+            self.run("uv", "pip", "install", "-q", "-p", self.python(name), *requirements, seconds=600)
             mark.write_text("\n".join(requirements), encoding="utf-8")
         return ""
 
