@@ -32,7 +32,7 @@ nb::object by_column(const OccupancyGrid& grid, bool clearance) {
   return own(std::move(out), {nx, ny});
 }
 
-nb::list outline(const OccupancyGrid& grid) {
+nb::list outline_rings(const OccupancyGrid& grid) {
   nb::list out;
   for (const std::vector<Vec2>& ring : grid.outline()) {
     std::vector<double> numbers;
@@ -72,7 +72,7 @@ void bind_maps(nb::module_& m) {
       .def_prop_ro("count", &OccupancyGrid::count)
       .def_prop_ro("occupied", [](const OccupancyGrid& g) { return by_column(g, false); })
       .def_prop_ro("clearance", [](const OccupancyGrid& g) { return by_column(g, true); })
-      .def("outline", &outline)
+      .def("outline", &outline_rings)
       .def(
           "cast",
           [](const OccupancyGrid& g, const Two& from, const Two& direction, double limit) {
