@@ -24,6 +24,7 @@ import shutil
 import subprocess
 import time
 from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import nox
@@ -47,9 +48,13 @@ PAGES = ("tests/docs", "tests/evals")
 PROCESSES = (
     "tests/benchmarks",
     "tests/cli/test_process.py",
+    "tests/mcp/test_attacks.py",
     "tests/mcp/test_jobs.py",
     "tests/mcp/test_lifetime.py",
+    "tests/mcp/test_many.py",
     "tests/mcp/test_runs.py",
+    "tests/render/test_headless.py",
+    "tests/render/test_live.py",
     "tests/runs/test_store.py",
 )
 """Tests of processes, signals and files, which are those of the system."""
@@ -157,12 +162,19 @@ for _version in (OLDEST, NEWEST):
 
 @nox.session(python=find_python(NEWEST), reuse_venv=True)
 def newest(session: nox.Session) -> None:
-    """Linters, slow tests, browser and peers, on the newest Python."""
+    """Linters, slow tests, browser and peers, on the newest Python.
+
+    Linters and peers keep one processor busy half of the time, so they go on beside the tests.
+    """
     install(session, "-e", ".[dev]", PLAYWRIGHT, UV)
-    run_linters(session)
-    run_slow_tests(session)
-    run_browser_tests(session)
-    run_peers(session)
+    with ThreadPoolExecutor() as beside:
+        others = [beside.submit(run, session) for run in (run_linters, run_peers)]
+        try:
+            run_slow_tests(session)
+            run_browser_tests(session)
+        finally:
+            for other in others:
+                other.result()
 
 
 @nox.session(python=False)

@@ -16,7 +16,13 @@ def _name(fact: str) -> str:
     return fact.removeprefix(">> ").partition(" = ")[0]
 
 
-@pytest.mark.parametrize("name", NAMES)
+QUICK = NAMES[::2]
+"""Scripts that are played in the quick tests, too."""
+
+
+@pytest.mark.parametrize(
+    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in NAMES]
+)
 def test_a_script_prints_what_it_printed(name: str) -> None:
     facts, complaint = play(name, sys.executable, lambda command: warm(command, LIBRARIES))
     assert complaint == ""

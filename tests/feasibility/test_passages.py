@@ -155,7 +155,7 @@ def random_things(rng: np.random.Generator, low: float, high: float) -> list[Any
     return things
 
 
-@pytest.mark.parametrize("open_edge", [False, True])
+@pytest.mark.parametrize("open_edge", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_gaps_are_those_that_fine_cells_show(open_edge: bool) -> None:
     """Against the widest way over a lattice, whose distances are at most half a diagonal off."""
     rng = np.random.default_rng(7)

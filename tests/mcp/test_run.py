@@ -126,7 +126,7 @@ async def test_command_line_and_server_say_the_same(workspace: Path, monkeypatch
     assert report["summary"].startswith(checked["summary"])  # and how many hints there are
 
 
-@pytest.mark.parametrize("era", ERAS)
+@pytest.mark.parametrize("era", [ERAS[0], pytest.param(ERAS[1], marks=pytest.mark.slow)])
 async def test_progress_increases_at_most_once_a_second(empty: Path, era: str) -> None:
     told: list[tuple[float, float, float]] = []
 

@@ -326,8 +326,8 @@ def test_a_colour_that_is_none_says_so(make: Make) -> None:
     [
         ("", (0, 158, 115)),
         ("color: red", (255, 0, 0)),
-        ("plot: {obj_color: '#0000ff'}", (0, 0, 255)),
-        ("color: red, description: car_blue.png", (0, 114, 178)),
+        pytest.param("plot: {obj_color: '#0000ff'}", (0, 0, 255), marks=pytest.mark.slow),
+        pytest.param("color: red, description: car_blue.png", (0, 114, 178), marks=pytest.mark.slow),
     ],
 )
 def test_cars_have_the_color_that_was_asked_for(make: Make, color_at: Look, keys: str, want: tuple[int, ...]) -> None:

@@ -48,6 +48,7 @@ def shares(row: dict[str, Any]) -> str:
     return f"{100 * found['rate']:.0f} % [{100 * found['low']:.0f}, {100 * found['high']:.0f}]"
 
 
+@pytest.mark.slow(10)
 def test_commands_work_as_written(tmp_path: Path) -> None:
     for name in ("a", "b"):
         (tmp_path / f"{name}.yaml").write_text(SKELETON, encoding="utf-8")

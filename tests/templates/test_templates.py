@@ -103,6 +103,7 @@ def test_valid_without_a_warning(template: Template, validator: Any) -> None:
     assert [error.message for error in validator.iter_errors(yaml.safe_load(template.text))] == []
 
 
+@pytest.mark.slow
 def test_valid_and_possible_at_the_ends_of_every_parameter(template: Template, validator: Any, tmp_path: Path) -> None:
     for given in extremes(template):
         text = templates.fill(template, given)
@@ -124,6 +125,7 @@ def test_ends_as_it_says(template: Template, seed: int) -> None:
     assert [finding.code for finding in result.warnings if finding.code != "no-behavior"] == []
 
 
+@pytest.mark.slow
 def test_draws(template: Template, tmp_path: Path) -> None:
     result = irsim.render(templates.scenario_file(template.name), tmp_path / "t.png", steps=20, size=300)
     with Image.open(result.files[0]) as picture:
