@@ -5,14 +5,19 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import pickle
+import pkgutil
+import runpy
 import subprocess
 import sys
+import types
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import irsim
 from irsim.compat.finder import OldPathFinder
+from irsim.compat.freezing import hook_folders
 from irsim.compat.names import reference_names
 from irsim.compat.paths import NAMES, SAME, old_paths
 from irsim.compat.stubs import stub_files
@@ -124,9 +129,21 @@ def test_stubs_have_each_path_and_name_existing_homes() -> None:
                 assert names[0] == "*" or hasattr(found, names[0]), line
 
 
-def test_freezing_programs_are_told_where_the_hook_is() -> None:
-    from irsim.compat.freezing import hook_folders
+def test_freezing_programs_are_told_what_nothing_imports_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The hook, with a stand-in for the two functions of PyInstaller that it calls."""
 
+    def collect_submodules(package: str, filter: Any = bool) -> list[str]:
+        found = pkgutil.walk_packages(importlib.import_module(package).__path__, f"{package}.", lambda name: None)
+        return [name for _, name, _ in found if filter(name)]
+
+    hooks = types.ModuleType("PyInstaller.utils.hooks")
+    hooks.collect_submodules, hooks.collect_data_files = collect_submodules, lambda *_, **__: []  # type: ignore[attr-defined]
+    for name in ("PyInstaller", "PyInstaller.utils"):
+        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+    monkeypatch.setitem(sys.modules, hooks.__name__, hooks)
     (folder,) = hook_folders()
-    text = Path(folder, "hook-irsim.py").read_text(encoding="utf-8")
-    assert "hiddenimports" in text
+    told = set(runpy.run_path(str(Path(folder, "hook-irsim.py")))["hiddenimports"])
+    homes = {home.partition(":")[0] for names in NAMES.values() for home in names.values()}
+    ours = {home for home in (homes | set(SAME.values())) if home.startswith("irsim.")}
+    assert sorted(ours - told) == []
+    assert {"irsim.runs.chunks", "isal.igzip_lib"} <= told
