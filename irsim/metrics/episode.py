@@ -98,6 +98,8 @@ def episode_metrics(
         made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
         near, apart = proximity_metrics(track)
         found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made
+        if missing := [key for key in order if key not in found]:
+            raise LookupError(f"no module of irsim/metrics computes {', '.join(missing)}")
         values.append({key: _without_rounding_error(found[key]) for key in order})
         flags.append(odd + apart)
     names = [track.name for track in cut]

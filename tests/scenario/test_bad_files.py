@@ -46,7 +46,7 @@ def test_findings(path: Path) -> None:
         for item in reading.diagnostics
         if item.code not in LATER or any(item.code in line for line in expected)
     ]
-    assert found == expected
+    assert found == expected, f"if this is what should be found, write it into the header of {path}"
     assert (reading.scenario is None) == any(item.severity == "error" for item in reading.diagnostics)
 
 

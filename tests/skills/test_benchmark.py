@@ -194,5 +194,6 @@ def test_verdicts(tmp_path: Path, counts: tuple[int, int], n: int, difference: A
 def test_the_script_knows_what_is_better_without_irsim() -> None:
     script = runpy.run_path(str(VERDICT))
     known = (*METRICS, *EPISODE_METRICS)
-    assert script["BETTER"] == {metric.key: metric.better for metric in known}
+    better = {metric.key: metric.better for metric in known}
+    assert script["BETTER"] == better, f"change MORE, LESS or EITHER in {VERDICT}"
     assert set(script["SHARES"]) == {metric.key for metric in known if metric.unit == "0/1"}
