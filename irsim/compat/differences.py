@@ -214,6 +214,17 @@ KEY_DIFFERENCES: dict[str, str] = {
 }
 """Key -> ids: ``world.KEY``, ``entry.KEY`` of robots and obstacles, ``behavior.KEY``."""
 
+FEATURES: dict[str, tuple[str, ...]] = {
+    "behavior": ("dash", "orca", "rvo", "sfm"),
+    "distribution": ("circle", "manual", "random"),
+    "kinematics": ("acker", "diff", "omni", "omni_angular", "static"),
+    "map": ("image", "perlin"),
+    "planner": ("astar", "informed_rrt_star", "jps", "prm", "rrt", "rrt_star"),
+    "sensor": ("contact2d", "fmcw_lidar2d", "lidar2d"),
+    "shape": ("circle", "compound", "linestring", "polygon", "rectangle"),
+}
+"""Kind -> features that IR-SIM 2.12 has, too; all others are additions."""
+
 EXTENSIONS: dict[str, str] = {
     "world.boundary": "walls at the edge of the world",
     "world.seed": "default seed",

@@ -5,6 +5,11 @@
 //   Vec3    follow(options, wish)        controls that realise a wanted world-frame velocity
 //   Rows    rows(options)                which controls are what
 //   Vec3    constrain(options, control)  limits beyond vel_min, vel_max and acce (optional)
+//
+// The struct has `bool noise`. A field `wheelbase` receives that of the drive, else that of the shape, else 1. `dash`
+// calls `follow` with the top speed toward the goal, unless behaviors/dash.hpp has a law for the drive. Planned paths
+// and `orca` (routes/steering.cpp, behaviors/orca.cpp) take a drive that they do not know for one that turns on the
+// spot.
 #pragma once
 
 #include "geometry/vec.hpp"
@@ -42,7 +47,7 @@ struct Wish {
 /// What the components of a control mean.
 struct Rows {
   int travel;  // number of leading components that are translation: forward, then lateral speed
-  int yaw;     // index of the component that is a yaw rate, -1 without one
+  int yaw;     // index of the component that is a yaw rate, -1 without one: contacts then change the speed only
 };
 
 template <class Options>

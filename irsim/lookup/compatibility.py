@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, KEY_DIFFERENCES, NAME_DIFFERENCES
+from irsim.compat.differences import ABSENT, DIFFERENCES, EXTENSIONS, FEATURES, KEY_DIFFERENCES, NAME_DIFFERENCES
 from irsim.compat.names import reference_names
 from irsim.lookup.schema_walk import Node, mappings
 from irsim.lookup.tables import plain_table
@@ -48,10 +48,12 @@ def _keys(schema: Node) -> list[tuple[str, str]]:
         rows += [_key_row(f"{name}.{key}") for key in keys]
     for kind, registry in REGISTRIES.items():
         for feature in registry.features():
-            rows += [_key_row(f"{kind}.{feature.name}")]
-            rows += [
-                _key_row(f"{kind}.{feature.name}.{key}", kind) for key in feature.options.model_fields if key != "name"
-            ]
+            place = f"{kind}.{feature.name}"
+            keys = [f"{place}.{key}" for key in feature.options.model_fields if key != "name"]
+            if feature.name not in FEATURES[kind]:
+                rows += [(f"`{one}`", f"added: {EXTENSIONS.get(place, 'of irsim')}") for one in (place, *keys)]
+            else:
+                rows += [_key_row(place), *(_key_row(key, kind) for key in keys)]
     return rows
 
 

@@ -17,7 +17,7 @@ from irsim.metrics.outcome import outcome_metrics
 from irsim.metrics.progress import progress_metrics
 from irsim.metrics.proximity import proximity_metrics
 from irsim.metrics.social import social_metrics
-from irsim.metrics.trajectory import HOLONOMIC, Track, tracks
+from irsim.metrics.trajectory import Track, tracks
 from irsim.simulation.events import partner_of
 from irsim.simulation.simulation import Simulation
 
@@ -145,9 +145,7 @@ def _without_rounding_error(value: float) -> float:
 
 
 def _top_speed(vel_max: Sequence[float], kinematics: object) -> float:
-    name = getattr(kinematics, "name", None)
-    if name is None:
+    if kinematics is None:
         return 0.0
-    return float(
-        max(vel_max[:2]) if name in HOLONOMIC else vel_max[0]
-    )  # not their norm: most behaviors never use both at once
+    # not the norm of both: most behaviors never use both at once
+    return float(max(vel_max[:2]) if getattr(kinematics, "speeds", 0) == 2 else vel_max[0])

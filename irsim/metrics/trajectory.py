@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
     from irsim.simulation.trace import Trace
 
-__all__ = ["HOLONOMIC", "Track", "thin_path", "tracks"]
+__all__ = ["Track", "thin_path", "tracks"]
 
-HOLONOMIC = ("omni", "omni_angular")
-"""Drives that need not turn to move in another direction."""
 _POINT_SPACING_M = 0.05
 """Least distance [m] of the path points from which directions and curvatures are computed."""
 
@@ -201,7 +199,7 @@ def tracks(
                 reaches=radii[them],
                 reach=float(radii[robot]),
                 top_speed=top_speeds[place],
-                holonomic=getattr(record.kinematics, "name", None) in HOLONOMIC,
+                holonomic=getattr(record.kinematics, "speeds", 0) == 2,
             )
         )
     return found

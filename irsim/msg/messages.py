@@ -256,7 +256,7 @@ def state_and_control(obj: Any, odometry: Any) -> tuple[list[float], list[float]
         if abs(forward) > _MIN_STEERING_SPEED_M_S:
             state[3] = math.atan(rate * (obj.wheelbase or 1.0) / forward)
         control[1] = state[3]
-    elif obj.kinematics in ("omni", "omni_angular"):
+    elif obj.record.kinematics.speeds == 2:
         control[1:] = [lateral, rate][: len(control) - 1]
     elif len(control) > 1:
         control[1] = rate
@@ -271,7 +271,7 @@ def _body_twist(obj: Any) -> Twist:
     """Return the body-frame twist that the present control of an object produces."""
     control = [*obj.velocity[:, 0].tolist(), 0.0, 0.0]
     forward, lateral, rate = 0.0, 0.0, 0.0
-    if obj.kinematics in ("omni", "omni_angular"):
+    if obj.kinematics is not None and obj.record.kinematics.speeds == 2:
         forward, lateral, rate = control[0], control[1], control[2] if obj.vel_dim > 2 else 0.0
     elif obj.kinematics == "acker":
         forward = control[0]

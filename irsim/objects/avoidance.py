@@ -18,7 +18,6 @@ __all__ = ["ObjectAvoidance"]
 
 MIN_GOAL_DISTANCE = 0.1
 """Distance [m] to the goal below which the desired velocity is zero."""
-_PER_AXIS = ("omni", "omni_angular", None)
 
 
 class ObjectAvoidance(ObjectBody):
@@ -48,7 +47,10 @@ class ObjectAvoidance(ObjectBody):
         if distance <= goal_threshold:
             return column([0.0, 0.0])
         top = self.record.vel_max
-        first, second = (top[0], top[1] if self.kinematics in _PER_AXIS and len(top) > 1 else top[0])
+        first, second = (
+            top[0],
+            top[1] if getattr(self.record.kinematics, "speeds", 2) == 2 and len(top) > 1 else top[0],
+        )
         vx, vy = first * dx / distance, second * dy / distance
         length = math.hypot(vx, vy)
         return column([vx / length, vy / length] if normalized and length > 1 else [vx, vy])

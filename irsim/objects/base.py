@@ -164,7 +164,7 @@ class SimObject:
         """Direction of travel for an ``omni`` drive, heading of the body for others [rad]."""
         if (handler := self._handler) is not None:
             return float(handler.compute_heading(self.state, self.velocity))
-        if self.kinematics == "omni":
+        if not getattr(self.record.kinematics, "turns", True):
             forward, lateral = self._simulation.control[self.row, :2]
             return math.atan2(lateral, forward) + float(self._pose[2])
         return float(self._pose[2])
@@ -189,7 +189,7 @@ class SimObject:
             return 0.0
         if (handler := self._handler) is not None:
             return float(handler.compute_max_speed(self.vel_max))
-        if self.kinematics in ("omni", "omni_angular"):
+        if getattr(self.record.kinematics, "speeds", 0) == 2:
             return math.hypot(*top[:2])
         return float(top[0])
 

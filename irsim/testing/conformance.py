@@ -160,7 +160,15 @@ def check_turned_world(tolerance: float = 1e-6, steps: int = 15, **features: Any
     _, moved = simulate(scenario_with(turn=turn, shift=shift, **features), steps)
     c, s = np.cos(turn), np.sin(turn)
     expected = plain[..., :2] @ np.array([[c, s], [-s, c]]) + np.array(shift)
-    assert np.allclose(moved[..., :2], expected, atol=tolerance), f"{features}: a rotated world gives another motion"
+    off = np.hypot(*np.moveaxis(moved[..., :2] - expected, -1, 0))
+    wrong = np.argwhere(off > tolerance)
+    if len(wrong):
+        step, index = wrong[0].tolist()
+        raise AssertionError(
+            f"{features}: a rotated world gives another motion: from step {step + 1} on, object {index} is elsewhere, "
+            f"by {off[step, index]:.2g} m there and by {off.max():.2g} m at most. Look for a comparison with zero that "
+            "rounding decides"
+        )
     heading = np.angle(np.exp(1j * (moved[..., 2] - plain[..., 2] - turn)))
     assert np.allclose(heading, 0, atol=tolerance), f"{features}: a rotated world gives other headings"
 

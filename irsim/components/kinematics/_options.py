@@ -20,8 +20,16 @@ class KinematicsOptions(Options):
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta")
     """Names of the state rows."""
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "angular")
-    """Names of the control components, in the order of ``vel_max``, ``velocity`` and actions."""
+    """Names of the control components, in the order of ``vel_max``, ``velocity`` and actions. Checks of units look for
+    ``angular``, ``yaw``, ``steer`` and ``lateral`` in them."""
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad/s")
+    speeds: ClassVar[int] = 0
+    """Number of leading controls that are speeds of the body: 1 is forward, 2 are forward and sideways. It is 0 if
+    unknown, as for drives of user code: nothing is then checked about their limits."""
+    turns: ClassVar[bool] = True
+    """Whether a control changes the heading."""
+    steered: ClassVar[bool] = False
+    """Whether the second control steers wheels: the heading changes only while they roll, and the wheelbase matters."""
     usual_vel_max: ClassVar[tuple[float, ...]] = ()
     usual_vel_min: ClassVar[tuple[float, ...]] = ()
     usual_acce: ClassVar[tuple[float, ...]] = ()

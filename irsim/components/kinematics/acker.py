@@ -8,6 +8,7 @@ from pydantic import Field
 
 import irsim._core as core
 from irsim.components.kinematics._options import KinematicsOptions
+from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR
 from irsim.options.registry import KINEMATICS
 from irsim.options.units import Number, Radians
 
@@ -22,6 +23,9 @@ class Acker(KinematicsOptions):
     state_rows: ClassVar[tuple[str, ...]] = ("x", "y", "theta", "steer")
     control_rows: ClassVar[tuple[str, ...]] = ("linear", "steer")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "rad or rad/s")
+    speeds: ClassVar[int] = 1
+    steered: ClassVar[bool] = True
+    usual_colors: ClassVar[tuple[str, str] | None] = (ACKER_COLOR, OBSTACLE_COLOR)
     picture: ClassVar[str | None] = "car_green.png"
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "acker", "wheelbase": 3.0}]}

@@ -15,6 +15,8 @@ from irsim.options.units import Number
 class Diff(KinematicsOptions):
     """Differential drive: controls are forward speed and yaw rate."""
 
+    speeds: ClassVar[int] = 1
+
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "diff"}]}
 
     name: Literal["diff"] = "diff"

@@ -18,6 +18,8 @@ class Omni(KinematicsOptions):
     control_rows: ClassVar[tuple[str, ...]] = ("forward", "lateral")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s")
 
+    speeds: ClassVar[int] = 2
+    turns: ClassVar[bool] = False
     arrow: ClassVar[bool] = False
 
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "omni"}]}

@@ -18,6 +18,8 @@ class OmniAngular(KinematicsOptions):
     control_rows: ClassVar[tuple[str, ...]] = ("forward", "lateral", "yaw_rate")
     control_units: ClassVar[tuple[str, ...]] = ("m/s", "m/s", "rad/s")
 
+    speeds: ClassVar[int] = 2
+
     schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "omni_angular"}]}
 
     name: Literal["omni_angular"] = "omni_angular"

@@ -240,7 +240,7 @@ class ObjectDrawing(SimObject):
         keys = {"arrow_length": arrow_length, "arrow_width": arrow_width, "arrow_color": arrow_color}
         keys = {**kwargs, **keys, "arrow_zorder": arrow_zorder, "show_arrow": True}
         where = state
-        if arrow_theta is None and velocity is not None and self.kinematics == "omni":
+        if arrow_theta is None and velocity is not None and not getattr(self.record.kinematics, "turns", True):
             forward, lateral = np.asarray(velocity, dtype=float).reshape(-1)[:2]
             arrow_theta = float(np.arctan2(lateral, forward)) + self._pose_of(state)[2]
         if arrow_theta is not None:

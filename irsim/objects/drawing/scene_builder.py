@@ -219,7 +219,7 @@ class SceneBuilder:
         return self._grids[view.id]
 
     def _heading(self, view: SimObject, pose: Pose) -> float:
-        if view.kinematics != "omni":
+        if getattr(view.record.kinematics, "turns", True):
             return pose[2]
         vx, vy = self.simulation.twist[view.row, :2].tolist()
         return math.atan2(vy, vx) if math.hypot(vx, vy) > MIN_ARROW_SPEED else pose[2]

@@ -17,6 +17,7 @@ from irsim.functions.drives import (
     omni_kinematics,
 )
 from irsim.options.colors import OBSTACLE_COLOR, PUSHABLE_COLOR
+from irsim.options.registry import KINEMATICS
 
 __all__ = [
     "AckermannKinematics",
@@ -228,7 +229,8 @@ class KinematicsFactory:
         key = (name or "diff").lower()
         maker: Any = KinematicsFactory.get_handler_class(key)
         if maker is None:
-            raise NotImplementedError(f"kinematics {name!r} is not registered")
+            why = "has no class for scripts" if KINEMATICS.get(key) is not None else "is not registered"
+            raise NotImplementedError(f"kinematics {name!r} {why}")
         if key == "acker":
             kwargs |= {"mode": mode or "steer", "wheelbase": wheelbase or shape_wheelbase or 1.0}
         elif key not in _BUILT_IN:

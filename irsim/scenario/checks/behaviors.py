@@ -191,11 +191,11 @@ def _misplaced_keys(context: Context, record: ObjectRecord, key: str, options: A
 
 def _speed_above_limits(context: Context, record: ObjectRecord, key: str, options: Any) -> Iterator[Finding]:
     """Speed options of a behavior that are above the limits of the drive."""
-    drive = getattr(record.kinematics, "name", "")
+    speeds = getattr(record.kinematics, "speeds", 0)
     limits = [max(abs(low), abs(high)) for low, high in zip(record.vel_min, record.vel_max, strict=False)]
-    if drive not in ("diff", "acker", "omni", "omni_angular") or len(limits) < 2 or record.static:
+    if speeds == 0 or len(limits) < 2 or record.static:
         return
-    top = limits[0] if drive in ("diff", "acker") else math.hypot(*limits[:2])
+    top = limits[0] if speeds == 1 else math.hypot(*limits[:2])
     for name in _SPEEDS.get(options.name, ()):
         value, usual = getattr(options, name), type(options).model_fields[name].default
         if name not in options.model_fields_set or value is None or not max(top, usual or 0.0) < value < math.inf:

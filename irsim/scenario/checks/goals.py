@@ -9,7 +9,6 @@ from typing import Any
 
 from irsim.components.behaviors._options import CustomOptions
 from irsim.diagnostics.diagnostic import Edit, Path
-from irsim.options.registry import KINEMATICS
 from irsim.options.vectors import is_vector
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding, error, hint, warning
@@ -58,9 +57,9 @@ def check(context: Context) -> Iterator[Finding]:
 def _heading_not_reached(context: Context, path: Path, records: list[ObjectRecord]) -> Iterator[Finding]:
     """Arrival that requires a heading that the drive never turns to."""
     for record in records:
-        drive = getattr(record.kinematics, "name", None)
+        drive: Any = record.kinematics
         behavior = record.behavior or record.group_behavior
-        steers = drive is None or KINEMATICS.get(drive) is None or drive == "omni_angular"
+        steers = drive is None or drive.speeds == 0 or (drive.speeds == 2 and drive.turns)
         if record.arrive_mode != "state" or steers or record.static or isinstance(behavior, CustomOptions | None):
             continue
         if any(len(goal) > 2 for goal in record.goals[-1:]):

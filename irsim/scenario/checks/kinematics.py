@@ -35,7 +35,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
     if record.kinematics is None:
         return
     options: Any = record.kinematics
-    if options.name == "acker" and not record.wheelbase:
+    if options.steered and not record.wheelbase:
         yield hint(
             "wheelbase-default",
             (*context.entry_path(record, "kinematics"), "name"),
@@ -43,7 +43,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix="add 'wheelbase' to the shape or to the kinematics",
         )
     length = getattr(record.shape, "length", None)
-    if options.name == "acker" and record.wheelbase and length is not None and record.wheelbase > length:
+    if options.steered and record.wheelbase and length is not None and record.wheelbase > length:
         yield hint(
             "wheelbase-over-length",
             context.entry_path(record, "shape" if record.shape.wheelbase is not None else "kinematics"),
@@ -51,7 +51,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix=f"use a length of more than {record.wheelbase:g}, or a wheelbase of about {round(0.6 * length, 3):g}",
         )
     steering = max(abs(record.vel_min[1]), abs(record.vel_max[1])) if record.vel_dim > 1 else 0.0
-    if not wrong and options.name == "acker" and options.mode == "steer" and steering >= math.pi / 2:
+    if not wrong and options.steered and options.mode != "angular" and steering >= math.pi / 2:
         key = "vel_max" if context.is_given(record, "vel_max") else "vel_min"
         yield warning(
             "steering-limit",
@@ -60,7 +60,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, key),
             fix=f"angles are in radians: {steering:g} degrees are {math.radians(steering):.4g}",
         )
-    if options.name == "acker" and options.psi_max is not None and options.psi_max > _QUARTER_TURN:
+    if (getattr(options, "psi_max", None) or 0.0) > _QUARTER_TURN:
         yield warning(
             "steering-limit",
             (*context.entry_path(record, "kinematics"), "psi_max"),
@@ -68,7 +68,7 @@ def _of_object(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=options.psi_max,
             fix=f"angles are in radians: {options.psi_max:g} degrees are {math.radians(options.psi_max):.4g}",
         )
-    if options.name in ("omni", "omni_angular") and options.noise:
+    if options.speeds == 2 and options.noise:
         yield hint(
             "omni-noise",
             (*context.entry_path(record, "kinematics"), "noise"),

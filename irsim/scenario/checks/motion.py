@@ -64,9 +64,9 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
         return
     drive: Any = record.kinematics
     rows: tuple[str, ...] = getattr(drive, "control_rows", ())
-    if context.scenario.world.step_mode == "external" or drive.name not in ("diff", "omni", "omni_angular", "acker"):
+    if context.scenario.world.step_mode == "external" or drive.speeds == 0:
         return
-    moving = 2 if drive.name in ("omni", "omni_angular") else 1
+    moving = drive.speeds
     ranges = list(zip(record.vel_min, record.vel_max, strict=False))
     if len(ranges) < moving or len(rows) != len(ranges) or any(low > high for low, high in ranges):
         return
@@ -80,7 +80,7 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             given=getattr(record, written),
             fix=f"vel_max: {flow([1.0] * len(ranges))}, in m/s and rad/s",
         )
-    elif drive.name == "omni" and (lacking := _missing_direction(record)) is not None:
+    elif moving == 2 and not drive.turns and (lacking := _missing_direction(record)) is not None:
         row, sign, goal = lacking
         key = "vel_max" if sign > 0 else "vel_min"
         way = (("backwards", "forwards"), ("to the right", "to the left"))[row][sign > 0]
@@ -101,7 +101,7 @@ def _cannot_move(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             fix="use a positive first number in 'vel_max'",
         )
     elif moving == 1 and all(value == 0 for value in ranges[1]):
-        what = "steer" if drive.name == "acker" else "turn"
+        what = "steer" if drive.steered else "turn"
         yield warning(
             "no-turning",
             where,

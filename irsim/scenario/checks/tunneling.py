@@ -188,7 +188,7 @@ def _band(context: Context, body: _Body) -> _Band | None:
     side = body.shape.reach + record.goal_threshold + off
     far = side
     if step > 2 * record.goal_threshold:  # it may overshoot the goal and turn back
-        far += step + (_turning_space(record) if getattr(record.kinematics, "name", "") in ("diff", "acker") else 0.0)
+        far += step + (_turning_space(record) if getattr(record.kinematics, "speeds", 0) == 1 else 0.0)
     if not math.isfinite(far):
         return None
     parts: list[Any] = [core.Circle(radius=side, center=list(legs[0][0]))]
@@ -208,15 +208,15 @@ def _deviation(record: ObjectRecord, heading: float, start: Point, end: Point) -
     if length == 0:
         return 0.0
     error = abs(math.remainder(math.atan2(end[1] - start[1], end[0] - start[0]) - heading, 2 * math.pi))
-    name, tolerance = getattr(drive, "name", ""), getattr(record.behavior, "angle_tolerance", 0.0)
+    speeds, tolerance = getattr(drive, "speeds", 0), getattr(record.behavior, "angle_tolerance", 0.0)
     if getattr(drive, "noise", False):
         return math.inf
-    if name in ("omni", "omni_angular"):
-        speeds = {abs(speed) for speed in (*record.vel_min[:2], *record.vel_max[:2])}
-        return 0.0 if len(speeds) == 1 and record.acce[0] == record.acce[1] == math.inf else math.inf
-    if name not in ("diff", "acker"):
+    if speeds == 2:
+        limits = {abs(speed) for speed in (*record.vel_min[:2], *record.vel_max[:2])}
+        return 0.0 if len(limits) == 1 and record.acce[0] == record.acce[1] == math.inf else math.inf
+    if speeds != 1:
         return math.inf
-    if name == "acker" and (error > tolerance or any(record.state[3:])):
+    if getattr(drive, "steered", False) and (error > tolerance or any(record.state[3:])):
         return math.inf
     if error <= tolerance:  # `dash` does not correct errors within its tolerance
         return length * math.sin(min(error, math.pi / 2))
@@ -225,8 +225,8 @@ def _deviation(record: ObjectRecord, heading: float, start: Point, end: Point) -
 
 def _turning_space(record: ObjectRecord) -> float:
     """Space that an object needs to turn at full speed [m]; infinity if unknown."""
-    rate = abs(record.vel_max[1])
-    if getattr(record.kinematics, "name", "") != "diff" or rate == 0 or record.acce[1] < math.inf:
+    rate, drive = abs(record.vel_max[1]), record.kinematics
+    if getattr(drive, "speeds", 0) != 1 or getattr(drive, "steered", True) or rate == 0 or record.acce[1] < math.inf:
         return math.inf
     return _TURNING_RADII * abs(record.vel_max[0]) / rate
 

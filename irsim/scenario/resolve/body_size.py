@@ -106,9 +106,9 @@ def top_speed(record: Any) -> float:
     options = record.behavior if record.group_behavior is None else record.group_behavior
     options = getattr(options, "local", options)
     built_in = not isinstance(options, CustomOptions | None)
-    if drive.name in ("omni", "omni_angular"):  # dash turns the limits into the direction of the goal
+    if drive.speeds == 2:  # dash turns the limits into the direction of the goal
         speed = max(limits[:2]) if getattr(options, "name", "") == "dash" else math.hypot(*limits[:2])
-    elif drive.name in ("diff", "acker"):  # no built-in behavior is faster backwards than forwards
+    elif drive.speeds == 1:  # no built-in behavior is faster backwards than forwards
         speed = abs(record.vel_max[0]) if built_in and record.vel_max else limits[0]
     else:
         return math.inf

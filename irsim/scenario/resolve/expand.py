@@ -12,7 +12,7 @@ from irsim.components.behaviors._options import behavior_fields
 from irsim.components.kinematics._options import KinematicsOptions
 from irsim.components.maps._grid import MapCells, MapGrid, Walls
 from irsim.diagnostics.diagnostic import Path
-from irsim.options.colors import ACKER_COLOR, OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
+from irsim.options.colors import OBSTACLE_COLOR, PUSHABLE_COLOR, ROBOT_COLOR, cycle_color
 from irsim.options.registry import DISTRIBUTIONS
 from irsim.scenario.model.plot import ObjectPlot
 from irsim.scenario.model.scenario import Entry, Scenario, WorldModel
@@ -264,7 +264,7 @@ class _Maker:
             return kinematics.usual_colors[self.role == "obstacle"]
         if self.role == "obstacle":
             return OBSTACLE_COLOR
-        return ACKER_COLOR if kinematics.name == "acker" else ROBOT_COLOR
+        return ROBOT_COLOR
 
 
 SPREAD_KEYS = (

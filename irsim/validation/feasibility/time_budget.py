@@ -113,9 +113,8 @@ def _check_time(mover: Mover, length: float, limit: float, limit_reason: str, sc
 
 def _max_acceleration(mover: Mover) -> float:
     """Greatest acceleration [m/s²]; infinity if it is not limited."""
-    drive = getattr(mover.record.kinematics, "name", "")
-    rates = mover.record.acce[: 2 if drive in ("omni", "omni_angular") else 1]
-    return math.hypot(*rates) if rates and drive in ("diff", "acker", "omni", "omni_angular") else math.inf
+    rates = mover.record.acce[: getattr(mover.record.kinematics, "speeds", 0)]
+    return math.hypot(*rates) if rates else math.inf
 
 
 def _least_time(mover: Mover, length: float, rate: float) -> float:
