@@ -122,6 +122,7 @@ def run_linters(session: nox.Session) -> None:
     timed(session, "clang-format", "clang-format", "--dry-run", "-Werror", *sources)
     timed(session, "mypy", "mypy")
     timed(session, "schema", "irsim", "schema", "--check")
+    timed(session, "schema of eval cases", "irsim-evals", "schema", "--check")
     timed(session, "skill references", "python", "-m", "irsim.lookup.reference", "--check")
 
 

@@ -18,8 +18,8 @@ __all__ = ["OldPathFinder", "install"]
 def install() -> None:
     """Put the finder first in ``sys.meta_path``, once.
 
-    It must come before Python's own finder: that one would look below the folder of an old package's new home, and
-    load a second copy of what it finds there.
+    It must come before Python's own finder, which would search the folder of an old package's new home and load a
+    second copy of what it finds there.
     """
     if not any(isinstance(finder, OldPathFinder) for finder in sys.meta_path):
         sys.meta_path.insert(0, OldPathFinder())

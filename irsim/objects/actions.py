@@ -13,7 +13,7 @@ from irsim.objects.base import SimObject
 __all__ = ["assign_actions", "beyond_limits"]
 
 TOLERANCE = 1e-9
-"""Excess over a limit that counts as a rounding error."""
+"""An excess over a limit below this is a rounding error."""
 Assignments = list[tuple[SimObject, list[float]]]
 
 

@@ -26,7 +26,7 @@ def column(values: Any) -> Floats:
 
 
 class SimObject:
-    """One row of a simulation, the base class of the other parts of an object.
+    """The row of one object in a simulation; base class of the other parts of an object.
 
     Attributes:
         record: The resolved scenario entry of the object.

@@ -59,12 +59,12 @@ def _tag_numbers(value: Any) -> str:
 
 
 def _tag_lists(value: Any) -> str:
-    """Tag for keys that take a list of items: a list that holds lists is one list per object."""
+    """Tag for keys that take a list of items: ``[[a], [b]]`` is one list per object, ``[a, b]`` one for all."""
     return PER_OBJECT if _holds_list(value) else ONE
 
 
 def _tag_paths(value: Any) -> str:
-    """Tag for keys that take a list of vectors: a list that holds lists of vectors is one list per object."""
+    """Tag for keys that take a list of vectors: ``[[[x, y]], [[x, y]]]`` is one per object."""
     return PER_OBJECT if isinstance(value, (list, tuple)) and any(_holds_list(item) for item in value) else ONE
 
 
@@ -100,8 +100,9 @@ class PerObject:
 
     Args:
         item: Type of one value.
-        kind: Kind of one value. ``value``: not a list, or a vector. ``vector``: always a vector. ``number``: a number,
-            so a list of numbers is one number per object. ``list``: a list of items. ``path``: a list of vectors.
+        kind: Kind of one value. ``value``: a single value or a vector. ``vector``: always a vector. ``number``: a
+            number, so a list of numbers is one number per object. ``list``: a list of items. ``path``: a list of
+            vectors.
     """
 
     def __init__(self, item: Any, kind: Literal["value", "vector", "number", "list", "path"] = "value") -> None:

@@ -41,26 +41,31 @@ def wheel_names(wheel: Path) -> set[str]:
 
 
 def test_sdist_holds_what_a_build_needs(sdist_names: set[str]) -> None:
-    needed = files_of("irsim") | files_of("mcp_server") | files_of("templates") | files_of("schema")
+    folders = ("irsim", "mcp_server", "templates", "schema", "evals/irsim_evals", "evals/cases", "evals/golds")
+    needed = {name for folder in folders for name in files_of(folder)}
     assert sorted(needed - sdist_names) == []
     assert {"pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"} <= sdist_names
 
 
 def test_sdist_holds_nothing_else(sdist_names: set[str]) -> None:
     folders = {name.partition("/")[0] for name in sdist_names if "/" in name}
-    assert folders <= {"irsim", "mcp_server", "templates", "schema", "skills"}
+    assert folders <= {"irsim", "mcp_server", "templates", "schema", "skills", "evals"}
     assert not any(name.endswith((".so", ".pyd", ".pyc")) for name in sdist_names)
 
 
-def test_wheel_holds_the_two_packages_and_stubs_only(wheel_names: set[str]) -> None:
+def test_wheel_holds_the_packages_and_stubs_only(wheel_names: set[str]) -> None:
     folders = {name.partition("/")[0] for name in wheel_names}
-    assert {folder for folder in folders if not folder.endswith(".dist-info")} == {"irsim", "irsim_mcp", "irsim-stubs"}
+    ours = {"irsim", "irsim_mcp", "irsim_evals", "irsim-stubs"}
+    assert {folder for folder in folders if not folder.endswith(".dist-info")} == ours
     assert sum(name.startswith("irsim/_core.") and name.endswith((".so", ".pyd")) for name in wheel_names) == 1
 
 
 def test_wheel_holds_data_and_types(wheel_names: set[str]) -> None:
     data = {f"irsim/_bundled/{name}" for name in files_of("templates") | files_of("schema")}
     skills = {f"irsim/.agents/{name}" for name in files_of("skills")}
+    skills |= {
+        name.replace("evals/", "irsim_evals/data/", 1) for k in ("cases", "golds") for name in files_of(f"evals/{k}")
+    }
     assert sorted((data | skills | files_of("irsim/runs/replay")) - wheel_names) == []
     assert {"irsim/py.typed", "irsim/_core.pyi", "irsim_mcp/py.typed"} <= wheel_names
     assert sorted({f"irsim-stubs/{name}" for name in stub_files()} - wheel_names) == []

@@ -33,7 +33,7 @@ class KinematicsOptions(Options):
     usual_vel_max: ClassVar[tuple[float, ...]] = ()
     usual_vel_min: ClassVar[tuple[float, ...]] = ()
     usual_acce: ClassVar[tuple[float, ...]] = ()
-    """Limits if a scenario gives none; empty means 1, -1 and infinity for each control component."""
+    """Limits if a scenario gives none; empty means 1, -1 and infinity, in this order, for each control."""
     usual_colors: ClassVar[tuple[str, str] | None] = None
     """Colours of robots and obstacles if a scenario gives none; None means the common colours."""
     picture: ClassVar[str | None] = None

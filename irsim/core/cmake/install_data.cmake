@@ -9,6 +9,11 @@ if(NOT SKBUILD_STATE STREQUAL "editable")
   if(EXISTS "${IRSIM_ROOT}/skills")
     install(DIRECTORY "${IRSIM_ROOT}/skills/" DESTINATION "irsim/.agents/skills" PATTERN "__pycache__" EXCLUDE)
   endif()
+  foreach(folder cases golds)
+    if(EXISTS "${IRSIM_ROOT}/evals/${folder}")
+      install(DIRECTORY "${IRSIM_ROOT}/evals/${folder}/" DESTINATION "irsim_evals/data/${folder}")
+    endif()
+  endforeach()
   execute_process(
     COMMAND "${Python_EXECUTABLE}" "${IRSIM_ROOT}/irsim/compat/stubs.py" "${CMAKE_CURRENT_BINARY_DIR}/irsim-stubs"
     RESULT_VARIABLE IRSIM_STUBS)

@@ -187,8 +187,8 @@ def contact_step(
     """Push apart pairs of objects where they overlap, as a step with ``collision_mode: contact`` does.
 
     Args:
-        pairs: Pairs of objects of one environment. Pairs with the same distance, counted in contacts, from an object
-            that cannot be pushed are treated in this order.
+        pairs: Pairs of objects of one environment. Pairs that are equally many contacts away from an object that
+            cannot be pushed keep this order.
         iterations: Largest number of sweeps over the pairs.
         slop: Gap that is left between the objects [m].
         margin: Ignored, accepted for compatibility.

@@ -1,0 +1,1 @@
+"""Cases: what is asked, and what must be true of an answer."""

@@ -1,0 +1,105 @@
+"""An instance of a case: the values of its parameters put into every text of the file."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from irsim.bundled.templates.expressions import evaluate
+from irsim_evals.cases.model import Case, Parameter
+from irsim_evals.cases.number_words import in_words
+
+__all__ = ["Instance", "instance_of", "substitute"]
+
+_EXPRESSION = re.compile(r"\$\(((?:[^()]|\((?:[^()]|\([^()]*\))*\))+)\)")
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A case with values.
+
+    Attributes:
+        case: The case, in which every expression is replaced by its value.
+        values: Parameters and derived values.
+        name: Empty for the case as published, else the seed of the instance.
+        prompt: What the agent is asked.
+    """
+
+    case: Case
+    values: Mapping[str, Any]
+    name: str
+    prompt: str
+
+
+def instance_of(raw: Mapping[str, Any], seed: int | None = None) -> Instance:
+    """An instance of a case file.
+
+    Args:
+        raw: Content of the file.
+        seed: Seed of a fresh instance; None for the case as published.
+
+    Raises:
+        ValueError: An expression or a key of the file is wrong.
+    """
+    values: dict[str, Any] = {}
+    rng = random.Random(f"{raw.get('id')} {seed}")
+    for name, data in (raw.get("parameters") or {}).items():
+        parameter = Parameter.model_validate(data)
+        values[name] = parameter.default if seed is None else _draw(parameter, rng)
+    for name, expression in (raw.get("let") or {}).items():
+        values[name] = evaluate(str(expression), values)
+    language = str(raw.get("language", "en"))
+    kept = {"parameters": raw.get("parameters") or {}, "let": raw.get("let") or {}}
+    filled = {key: kept.get(key, substitute(value, values, language)) for key, value in raw.items()}
+    case = Case.model_validate(filled)
+    prompts = [case.prompt, *case.wordings]
+    prompt = case.prompt if seed is None else rng.choice(prompts)
+    return Instance(case, values, "" if seed is None else str(seed), prompt)
+
+
+def substitute(value: Any, values: Mapping[str, Any], language: str = "en") -> Any:
+    """Replace every ``$(expression)`` in a value.
+
+    A text that is nothing but an expression becomes its value; within a text it becomes its shortest form, or a word
+    with ``$(n: words)``.
+    """
+    if isinstance(value, dict):
+        return {substitute(k, values, language): substitute(v, values, language) for k, v in value.items()}
+    if isinstance(value, list):
+        return [substitute(item, values, language) for item in value]
+    if not isinstance(value, str):
+        return value
+    whole = _EXPRESSION.fullmatch(value)
+    if whole is not None and not whole[1].endswith(": words"):
+        return _tidy(evaluate(whole[1], values))
+    return _EXPRESSION.sub(lambda found: _text(found[1], values, language), value)
+
+
+def _text(expression: str, values: Mapping[str, Any], language: str) -> str:
+    if expression.endswith(": words"):
+        return in_words(int(evaluate(expression.removesuffix(": words"), values)), language)
+    found = _tidy(evaluate(expression, values))
+    text = f"{found:g}" if isinstance(found, float) else str(found)
+    return text.replace(".", ",") if isinstance(found, float) and language in ("de", "es") else text
+
+
+def _tidy(value: Any) -> Any:
+    """A number without rounding errors; 3.0 as 3."""
+    if isinstance(value, float):
+        short = round(value, 6)
+        return int(short) if short == int(short) and abs(short) < 1e9 else short
+    if isinstance(value, list):
+        return [_tidy(item) for item in value]
+    return value
+
+
+def _draw(parameter: Parameter, rng: random.Random) -> Any:
+    if parameter.choose is not None:
+        return rng.choice(parameter.choose)
+    low, high = parameter.between or (0.0, 0.0)
+    steps = round((high - low) / parameter.step)
+    value = low + rng.randint(0, steps) * parameter.step
+    return _tidy(float(value))

@@ -1,0 +1,171 @@
+"""The content of a case file: a prompt, and what must be true of an answer to it.
+
+A text of the form ``$(expression)`` stands for a value of the case's parameters: one file yields many instances.
+"""
+
+from __future__ import annotations
+
+import keyword
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_validator
+
+from irsim_evals.grader.matching import Quantity
+from irsim_evals.grader.predicates._base import Predicate, registered
+from irsim_evals.grader.selection import Selector
+
+__all__ = ["Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin"]
+
+Disposition = Literal["build", "ask", "flag"]
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+
+class Parameter(_Record):
+    """A value that differs from instance to instance."""
+
+    default: bool | int | float | str
+    """Its value in the case as published."""
+    choose: list[Any] | None = None
+    """Values that an instance draws from."""
+    between: tuple[float, float] | None = None
+    """Range that an instance draws from."""
+    step: float = 0.1
+    """Values from a range are multiples of this."""
+
+    @model_validator(mode="after")
+    def _one(self) -> Parameter:
+        if (self.choose is None) == (self.between is None):
+            raise ValueError("give either `choose` or `between`")
+        return self
+
+
+class _AssertionBase(_Record):
+    id: str
+    """Name of the assertion, unique in the case."""
+    soft: bool = False
+    """Reported, but not needed for the strict pass."""
+    weight: float = 1.0
+    """Weight in the share of assertions that hold."""
+    when: Literal["always", "built", "unbuilt"] | None = None
+    """Whether it counts only if there is a scenario, or only if there is none; default: with a scenario if it is about
+    the world, else always."""
+
+    @property
+    def predicate(self) -> Predicate:
+        """What it says."""
+        found: Predicate = next(
+            value for name in registered() if (value := getattr(self, _attribute(name))) is not None
+        )
+        return found
+
+    @model_validator(mode="after")
+    def _one_predicate(self) -> Any:
+        given = [name for name in registered() if getattr(self, _attribute(name)) is not None]
+        if len(given) != 1:
+            raise ValueError(f"give exactly one predicate; there are {', '.join(registered())}")
+        return self
+
+
+def _attribute(name: str) -> str:
+    return f"{name}_" if keyword.iskeyword(name) else name
+
+
+_predicates: dict[str, Any] = {
+    _attribute(name): (predicate | None, Field(default=None, alias=name, description=(predicate.__doc__ or "").strip()))
+    for name, predicate in registered().items()
+}
+Assertion: Any = create_model("Assertion", __base__=_AssertionBase, **_predicates)
+
+
+class EpisodePlan(_Record):
+    """Episodes that are simulated, and what must happen in each."""
+
+    seeds: list[int] = [0]
+    """One episode per seed."""
+    seconds: Quantity
+    """Simulated time [s]; an episode goes on after everybody has arrived."""
+    share: Quantity = 1.0
+    """Share of the episodes in which each assertion must hold."""
+    check: Annotated[list[Assertion], Field(alias="assert")]
+    """What must happen."""
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+class Pin(_Record):
+    """What a prompt pins or leaves free, for the proof of the grader."""
+
+    of: str = "all"
+    """Selection of the bodies; ``world`` for the world itself, ``reply`` for the reply."""
+    facts: Annotated[list[str], BeforeValidator(_as_list)]
+    """Facts: ``kinematics``, ``size``, ``shape``, ``pose``, ``goal``, ``behavior``, ``count``, ``sensors``, ``limits``,
+    ``color``, ``name``; of the world ``size``, ``origin``, ``map``, ``times``, ``modes``."""
+    why: str = ""
+    """Reason, where it is not plain from the prompt."""
+
+
+class Case(_Record):
+    """One case."""
+
+    id: str
+    """Name of the case; its file has the same name."""
+    title: str
+    """What it is about, in a few words."""
+    family: str = ""
+    """Cases of one family share a base, so their results are not independent; default: the case itself."""
+    category: list[str]
+    """What it tests: ``basic``, ``geometry``, ``units``, ``kinematics``, ``multi``, ``sensors``, ``maps``, ``social``,
+    ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``."""
+    level: Annotated[int, Field(ge=1, le=4)]
+    """1 is easy, 4 is hard."""
+    language: str = "en"
+    """Language of the prompt."""
+    hard: str = ""
+    """What makes it hard, for cases of level 4."""
+    prompt: str
+    """What the agent is asked."""
+    wordings: list[str] = []
+    """Other ways to ask for the same; a fresh instance draws one."""
+    turns: list[str] = []
+    """What the user says after each reply."""
+    files: dict[str, str] = {}
+    """Files that the folder starts with: name → text."""
+    pictures: dict[str, str] = {}
+    """Pictures that the folder starts with: name → scenario from which they are drawn."""
+    python: Literal["none", "runner"] = "none"
+    """Whether the answer may hold a Python program that runs the scenario."""
+    disposition: list[Disposition] = ["build"]
+    """What the agent may do: build a scenario, ask first, or say that it cannot be done."""
+    seeds: list[int] = [0]
+    """Seeds of the worlds that assertions about the start look at."""
+    overlap: bool = False
+    """Whether bodies may overlap at the start; ``overlap_free`` then says how often."""
+    parameters: dict[str, Parameter] = {}
+    """Name → what an instance may change."""
+    let: dict[str, str] = {}
+    """Name → expression over parameters and names before it."""
+    select: dict[str, Selector] = {}
+    """Name → bodies that assertions speak of."""
+    check: Annotated[list[Assertion], Field(alias="assert")] = []
+    """What must be true of the world at its start, of the files and of the reply."""
+    episodes: list[EpisodePlan] = []
+    """What must happen."""
+    pins: list[Pin] = []
+    """Facts that the prompt pins: a change of one must be noticed."""
+    free: list[Pin] = []
+    """Facts that the prompt leaves free: a change of one must be accepted."""
+    equivalent: str = ""
+    """What else is an answer, for reviewers."""
+
+    @model_validator(mode="after")
+    def _unique(self) -> Case:
+        names = [item.id for item in [*self.check, *(a for plan in self.episodes for a in plan.check)]]
+        twice = {name for name in names if names.count(name) > 1}
+        if twice:
+            raise ValueError(f"ids of assertions occur twice: {', '.join(sorted(twice))}")
+        return self

@@ -1,0 +1,21 @@
+"""The application: its commands in the order of ``irsim-evals --help``."""
+
+from __future__ import annotations
+
+import typer
+
+from irsim.cli.guard import handle_errors
+from irsim_evals.cli import cases, export, grade, prove, schema
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    name="irsim-evals",
+    help="Grade what agents make of prompts, and prove the grader right.",
+    epilog="First steps: irsim-evals export trial, then irsim-evals grade trial",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for _command in (cases.cases, export.export, grade.grade, prove.prove, schema.schema):
+    app.command()(handle_errors(_command))

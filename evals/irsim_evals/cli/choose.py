@@ -1,0 +1,31 @@
+"""Which cases a command is about."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import typer
+
+from irsim.diagnostics.diagnostic import suggestion
+from irsim_evals.cases.store import case_ids, raw_case
+
+__all__ = ["chosen"]
+
+
+def chosen(wanted: Sequence[str] | None) -> list[str]:
+    """Ids of the cases that were asked for, by id or by category; all without a wish.
+
+    Raises:
+        typer.BadParameter: No case has that id or category.
+    """
+    known = case_ids()
+    if not wanted:
+        return known
+    found: list[str] = []
+    for word in wanted:
+        of_category = [name for name in known if word in raw_case(name).get("category", ())]
+        if word not in known and not of_category:
+            hint = suggestion(word, known, None)
+            raise typer.BadParameter(f"no case or category is called {word!r}. {hint or ''}".strip())
+        found += [word] if word in known else of_category
+    return list(dict.fromkeys(found))

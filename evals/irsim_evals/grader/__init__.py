@@ -1,0 +1,1 @@
+"""The grader: a plain library that knows irsim, pydantic and shapely, and no harness."""

@@ -1,0 +1,245 @@
+"""What is true of one object of a world, however the file expresses it: the objects that assertions are about."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from irsim.diagnostics.diagnostic import format_path
+
+if TYPE_CHECKING:
+    from irsim.objects.view import ObjectView
+    from irsim.scenario.resolve.resolved import ResolvedScenario
+
+__all__ = ["Body", "Box", "body_of", "is_terrain"]
+
+_STRAIGHT = 1e-6
+"""Largest deviation [m] of an outline from a rectangle that counts as none."""
+_CROSSWISE = ("omni", "omni_angular")
+"""Drives whose second control is a speed sideways."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangular footprint.
+
+    Attributes:
+        length, width: Sides along and across ``heading`` [m]; a line has the width 0.
+        heading: Direction of the longer side, world frame [rad], in [0, π).
+        center: Middle [m].
+    """
+
+    length: float
+    width: float
+    heading: float
+    center: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Body:
+    """One object at the start of an episode (world frame, m, rad, s).
+
+    Attributes:
+        index: Its row in the simulation.
+        name: Its name.
+        entry: Path of its entry in the file.
+        role: ``robot`` or ``obstacle``.
+        static: Whether it never moves.
+        passable: Whether others pass through it (``unobstructed``).
+        kinematics: Name of its drive; None for a static object.
+        behavior: Name of the behavior that moves it, its own or that of its group.
+        options: Options of that behavior.
+        grouped: Whether the behavior is that of its group.
+        pose: x, y, heading.
+        goals: Its goals in order; those of objects that were given none are left out.
+        footprint: Outline, a shapely geometry.
+        radius: Radius of a disc; None for other shapes.
+        box: The rectangle that the footprint is; None for other shapes.
+        extent: Length and width in the body frame, along and across its heading.
+        forward, backward, sideways, turn, steer: Greatest speeds [m/s], turn rate [rad/s] and steering angle [rad]
+            that its limits allow; None where its drive has no such control.
+        wheelbase: Distance between the axles.
+        sensors: Options of each sensor as the simulator holds them.
+        color: As ``#rrggbb`` where it is a color; None for the color of its role.
+        wander, loop: Whether goals are drawn for ever, or visited again and again.
+        wander_box: x0, y0, x1, y1 of the range of random goals; None if it does not wander.
+        fov, fov_radius: Field of view.
+        threshold, arrive_mode: When a goal counts as reached.
+        tags: Its tags.
+        group: Number of its group.
+    """
+
+    index: int
+    name: str
+    entry: str
+    role: str
+    static: bool
+    passable: bool
+    kinematics: str | None
+    behavior: str | None
+    options: dict[str, Any]
+    grouped: bool
+    pose: tuple[float, float, float]
+    goals: list[list[float]]
+    footprint: Any
+    radius: float | None
+    box: Box | None
+    extent: tuple[float, float]
+    forward: float | None
+    backward: float | None
+    sideways: float | None
+    turn: float | None
+    steer: float | None
+    wheelbase: float | None
+    sensors: list[dict[str, Any]]
+    color: str | None
+    wander: bool
+    loop: bool
+    wander_box: tuple[float, float, float, float] | None
+    fov: float | None
+    fov_radius: float | None
+    threshold: float
+    arrive_mode: str
+    tags: tuple[str, ...]
+    group: int
+    limits: dict[str, list[float]] = field(default_factory=dict)
+
+    @property
+    def position(self) -> tuple[float, float]:
+        """Where it is: the middle of its footprint for a static object, else the origin of its frame."""
+        if self.static:
+            middle = self.footprint.centroid
+            return float(middle.x), float(middle.y)
+        return self.pose[0], self.pose[1]
+
+    @property
+    def goal(self) -> list[float] | None:
+        """Its last goal."""
+        return self.goals[-1] if self.goals else None
+
+    @property
+    def avoids(self) -> bool:
+        """Whether its behavior avoids others."""
+        return self.behavior in ("rvo", "orca", "sfm")
+
+    @property
+    def shape(self) -> str:
+        """``circle``, ``square``, ``rectangle``, ``line``, ``polygon`` or ``compound``, whatever the file calls it."""
+        if self.radius is not None:
+            return "circle"
+        if self.box is not None:
+            if self.box.width == 0:
+                return "line"
+            return "square" if math.isclose(self.box.length, self.box.width, rel_tol=0.02) else "rectangle"
+        if self.footprint.geom_type == "Polygon":
+            return "polygon"
+        return "line" if self.footprint.area == 0 else "compound"
+
+
+def is_terrain(view: ObjectView) -> bool:
+    """Whether an object is the map, or the walls round the world, which nobody counts as an obstacle."""
+    return view.shape in ("map", "walls")
+
+
+def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
+    """What is true of an object."""
+    record: Any = view.record
+    kinematics = None if record.static or record.kinematics is None else str(record.kinematics.name)
+    grouped = record.behavior is None and record.group_behavior is not None and kinematics is not None
+    options = record.group_behavior if grouped else record.behavior
+    given = not scenario.is_parked(record) and scenario.has_written_goal(record)
+    low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
+    footprint = view.geometry
+    radius = view.radius if view.shape == "circle" else None
+    return Body(
+        index=view.index,
+        name=view.name,
+        entry=format_path(record.path),
+        role=record.role,
+        static=record.static or kinematics is None,
+        passable=record.unobstructed,
+        kinematics=kinematics,
+        behavior=None if options is None or kinematics is None else str(options.name),
+        options={} if options is None else options.model_dump(mode="json"),
+        grouped=grouped,
+        pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
+        goals=[goal[:, 0].tolist() for goal in view.goals] if given and kinematics else [],
+        footprint=footprint,
+        radius=radius,
+        box=None if radius is not None else _box(footprint),
+        extent=(view.length, view.width),
+        **_limits(kinematics, low, high),
+        wheelbase=record.wheelbase,
+        sensors=[{**sensor.model_dump(mode="json"), "name": sensor.name} for sensor in record.sensors],
+        color=_color(record.color),
+        wander=record.wander,
+        loop=record.loop,
+        wander_box=_corners(record.range_low, record.range_high) if record.wander else None,
+        fov=record.fov,
+        fov_radius=record.fov_radius,
+        threshold=record.goal_threshold,
+        arrive_mode=record.arrive_mode,
+        tags=record.tags,
+        group=record.group,
+        limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
+    )
+
+
+def _limits(kinematics: str | None, low: list[float], high: list[float]) -> dict[str, float | None]:
+    """Greatest speeds that the limits of the controls allow."""
+    none = dict.fromkeys(("forward", "backward", "sideways", "turn", "steer"))
+    if kinematics is None or not high:
+        return none
+    found: dict[str, float | None] = {**none, "forward": high[0], "backward": max(0.0, -low[0])}
+    if kinematics in _CROSSWISE and len(high) > 1:
+        found["sideways"] = max(high[1], -low[1])
+    if kinematics == "acker" and len(high) > 1:
+        found["steer"] = max(high[1], -low[1])
+    elif kinematics == "diff" and len(high) > 1:
+        found["turn"] = max(high[1], -low[1])
+    elif kinematics == "omni_angular" and len(high) > 2:
+        found["turn"] = max(high[2], -low[2])
+    return found
+
+
+def _corners(low: list[float], high: list[float]) -> tuple[float, float, float, float]:
+    return low[0], low[1], high[0], high[1]
+
+
+def _color(color: Any) -> str | None:
+    from matplotlib.colors import to_hex
+
+    if color is None:
+        return None
+    try:
+        return str(to_hex(color))
+    except ValueError:
+        return str(color)
+
+
+def _box(geometry: Any) -> Box | None:
+    """The rectangle that a footprint is: a polygon with four right angles, or a straight line."""
+    if geometry.geom_type not in ("Polygon", "LineString", "LinearRing"):
+        return None
+    hull = geometry.minimum_rotated_rectangle
+    if hull.geom_type == "LineString":
+        ends = np.asarray(hull.coords)
+        return _oriented(ends[0], ends[1], 0.0, hull.centroid)
+    if hull.geom_type != "Polygon":
+        return None
+    hole = shapely.symmetric_difference(hull, geometry) if geometry.geom_type == "Polygon" else None
+    if hole is None or hole.area > _STRAIGHT * max(1.0, hull.length):
+        return None
+    a, b, c = np.asarray(hull.exterior.coords)[:3]
+    long, short = (b - a, c - b) if np.hypot(*(b - a)) >= np.hypot(*(c - b)) else (c - b, b - a)
+    return _oriented(np.zeros(2), long, float(np.hypot(*short)), hull.centroid)
+
+
+def _oriented(start: Any, end: Any, width: float, middle: Any) -> Box:
+    dx, dy = (float(v) for v in end - start)
+    heading = math.atan2(dy, dx) % math.pi
+    return Box(math.hypot(dx, dy), width, heading, (float(middle.x), float(middle.y)))

@@ -1,0 +1,272 @@
+"""From an answer to a verdict: each stage of the funnel in turn, every assertion with what was observed.
+
+This module trusts the answer with the memory and time of the present process; :mod:`irsim_evals.grader.limited` runs it
+in a process with limits.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.limits import Limits
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import load_text
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Answer
+from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.grader.episode import Episode, run_episode
+from irsim_evals.grader.material import Material
+from irsim_evals.grader.outcome import STAGES, Outcome, Stage, Verdict
+from irsim_evals.grader.predicates._base import Observation
+from irsim_evals.grader.sanity import check_moves, check_scene
+
+__all__ = ["LIMITS", "failed_verdict", "grade"]
+
+LIMITS = Limits(
+    bytes=2_000_000, events=200_000, expansion=50_000, aliases=10_000, objects=5_000, robots=2_000, cells=4_000_000,
+    map_bytes=16_000_000, problems=20, root=str(Path(__file__).parent / "predicates"),
+)  # fmt: skip
+"""What a scenario may ask for. Files are read only below ``root``, where there is no map."""
+_FIRST_STEPS = 3
+"""Steps that every scenario must survive."""
+_MAX_STEPS = 30_000
+"""Steps of an episode."""
+_MOVING_TIME = 8.0
+"""Time [s] within which every body with a goal and a behavior must have moved."""
+
+
+class _Stop(Exception):
+    """Nothing after this stage can be observed."""
+
+
+def grade(instance: Instance, answer: Answer) -> Verdict:
+    """Grade an answer. Never raises: whatever goes wrong is a failed assertion."""
+    begin = time.perf_counter()
+    outcomes: list[Outcome] = []
+    built = False
+    files = dict(answer.files)
+    try:
+        material, built = _open(instance, answer, outcomes)
+        if built:
+            _sanity(instance, material, outcomes)
+        _assertions(instance, material, built, outcomes)
+    except _Stop:
+        _ungraded(instance, outcomes)
+    except Exception as error:  # a fault of the grader must not pass for one of the answer: it is named as such
+        outcomes.append(_fault("grader", "load", error))
+        _ungraded(instance, outcomes)
+    return _verdict(instance, answer, outcomes, built, files, time.perf_counter() - begin)
+
+
+def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, stage: Stage, observed: str) -> Verdict:
+    """The verdict on an answer that could not be looked at."""
+    outcomes = [
+        Outcome(
+            assertion=assertion, stage=stage, passed=False, expected="an answer that can be graded", observed=observed
+        )
+    ]
+    _ungraded(instance, outcomes)
+    files = dict(answer.files) if answer is not None else {}
+    return _verdict(instance, answer or Answer(""), outcomes, False, files, 0.0)
+
+
+def _open(instance: Instance, answer: Answer, outcomes: list[Outcome]) -> tuple[Material, bool]:
+    """Find, read and check the scenario."""
+    case = instance.case
+    found = find_scenario(answer, case.files)
+    material = Material(
+        scenario=None,
+        selectors=case.select,
+        texts=answer.files,
+        given=case.files,
+        reply=answer.reply,
+        replies=list(answer.replies),
+    )
+    if found is None:
+        may = "build" not in case.disposition or len(case.disposition) > 1
+        said = bool(answer.reply.strip())
+        _add(
+            outcomes, "answered", "parse", may and said, "a scenario" + (" or a reply" if may else ""),
+            "a reply and no scenario" if said else "neither a scenario nor a reply",
+        )  # fmt: skip
+        if not (may and said):
+            raise _Stop
+        return material, False
+    material.main, text = found
+    material.texts = {**answer.files, material.main: text}
+    document = load_text(text, limits=LIMITS)
+    _add(
+        outcomes, "parses", "parse", not document.fatal, "a file that a safe YAML loader reads",
+        "; ".join(item.message for item in document.problems[:2]) or material.main,
+    )  # fmt: skip
+    if document.fatal:
+        raise _Stop
+    reading = read(document, limits=LIMITS)
+    errors = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
+    _add(
+        outcomes, "valid", "schema", not errors, "a scenario without errors and unknown keys",
+        "; ".join(f"{'.'.join(map(str, item.path))}: {item.message}" for item in errors[:3]) or "valid",
+    )  # fmt: skip
+    if reading.scenario is None or errors:
+        raise _Stop
+    material.scenario, material.findings = reading.scenario, list(reading.diagnostics)
+    try:
+        scene = material.scene(case.seeds[0])
+        probe = run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
+        _add(outcomes, "loads", "load", True, "a world that can be stepped", f"{len(probe.trace) - 1} steps")
+    except IrsimError as error:
+        _add(outcomes, "loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
+        raise _Stop from None
+    return material, True
+
+
+def _sanity(instance: Instance, material: Material, outcomes: list[Outcome]) -> None:
+    case = instance.case
+    for seed in case.seeds:
+        found = check_scene(material.scene(seed), overlap=not case.overlap)
+        outcomes += [item for item in found if not item.passed] if seed != case.seeds[0] else found
+    if material.scenario is not None:
+        outcomes.append(check_moves(run_episode(material.scenario, case.seeds[0], _MOVING_TIME)))
+
+
+def _assertions(instance: Instance, material: Material, built: bool, outcomes: list[Outcome]) -> None:
+    case: Any = instance.case
+    for item in case.check:
+        predicate = item.predicate
+        when = item.when or ("built" if predicate.subject in ("scene", "seeds") else "always")
+        if (when == "built" and not built) or (when == "unbuilt" and built):
+            continue
+        if predicate.subject == "scene":
+            _observe(outcomes, item, (_in_scene(material, predicate, seed) for seed in case.seeds))
+        else:
+            _observe(outcomes, item, [lambda predicate=predicate: predicate.observe(material)])
+    if built:
+        for plan in case.episodes:
+            _episodes(plan, material, outcomes)
+
+
+def _in_scene(material: Material, predicate: Any, seed: int) -> Any:
+    def look() -> Observation:
+        found: Observation = predicate.observe(material, material.scene(seed))
+        found.seed = seed if found.seed is None else found.seed
+        return found
+
+    return look
+
+
+def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
+    """Run the episodes of a plan one after the other, so that only one is held in memory."""
+    seen: dict[str, list[Observation]] = {item.id: [] for item in plan.check}
+    times = tuple(sorted({t for item in plan.check for t in item.predicate.scan_times()}))
+    for seed in plan.seeds:
+        episode: Episode | None = None
+        why = ""
+        try:
+            step_time = float(material.scene(seed).world.step_time)
+            seconds = min(plan.seconds, _MAX_STEPS * step_time)
+            if material.scenario is not None:
+                episode = run_episode(material.scenario, seed, seconds, times)
+        except IrsimError as error:
+            why = str(error).splitlines()[0]
+        for item in plan.check:
+            if episode is None:
+                seen[item.id].append(Observation(False, "an episode", why, seed=seed))
+                continue
+            look = _guarded(lambda item=item, episode=episode: item.predicate.observe(material, episode))
+            look.seed = seed if look.seed is None else look.seed
+            seen[item.id].append(look)
+    for item in plan.check:
+        found = seen[item.id]
+        bad = [look for look in found if not look.passed]
+        passed = len(found) - len(bad) >= plan.share * len(found) - 1e-9
+        chosen = (bad or found)[0]
+        if plan.share < 1:
+            chosen.observed = f"{len(found) - len(bad)} of {len(found)} episodes; {chosen.observed}"
+        outcomes.append(_outcome(item, chosen, passed))
+
+
+def _observe(outcomes: list[Outcome], item: Any, looks: Iterable[Any]) -> None:
+    """Add the first observation that fails, or else the first."""
+    first: Observation | None = None
+    for look in looks:
+        found = _guarded(look)
+        if not found.passed:
+            outcomes.append(_outcome(item, found, False))
+            return
+        first = first or found
+    if first is not None:
+        outcomes.append(_outcome(item, first, True))
+
+
+def _guarded(look: Any) -> Observation:
+    try:
+        found: Observation = look()
+        return found
+    except Exception as error:  # the grader is total: what cannot be observed does not hold
+        return Observation(False, "something that can be observed", f"{type(error).__name__}: {error}"[:300])
+
+
+def _outcome(item: Any, found: Observation, passed: bool) -> Outcome:
+    return Outcome(
+        assertion=item.id,
+        stage=item.predicate.stage,
+        passed=passed,
+        expected=found.expected,
+        observed=found.observed,
+        yaml_path=found.yaml_path,
+        seed=found.seed,
+        soft=item.soft,
+        weight=item.weight,
+        marks=[] if passed else found.marks,
+    )
+
+
+def _add(outcomes: list[Outcome], name: str, stage: Stage, passed: bool, expected: str, observed: str) -> None:
+    outcomes.append(Outcome(assertion=name, stage=stage, passed=passed, expected=expected, observed=observed))
+
+
+def _fault(name: str, stage: Stage, error: Exception) -> Outcome:
+    return Outcome(
+        assertion=name,
+        stage=stage,
+        passed=False,
+        expected="a grader without faults",
+        observed=f"{type(error).__name__}: {error}"[:300],
+    )
+
+
+def _ungraded(instance: Instance, outcomes: list[Outcome]) -> None:
+    """Count every assertion that was not reached as failed."""
+    done = {outcome.assertion for outcome in outcomes}
+    case: Any = instance.case
+    for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]:
+        if item.id not in done and item.when != "unbuilt":
+            outcomes.append(_outcome(item, Observation(False, "a scenario to look at", "not reached"), False))
+
+
+def _verdict(
+    instance: Instance, answer: Answer, outcomes: list[Outcome], built: bool, files: dict[str, str], seconds: float
+) -> Verdict:
+    hard = [item for item in outcomes if not item.soft]
+    weight = sum(item.weight for item in outcomes)
+    reached: Stage = STAGES[-1]
+    for stage in STAGES:
+        if any(not item.passed for item in hard if item.stage == stage):
+            reached = stage
+            break
+    asks = "?" in answer.reply.replace("?`", "")
+    return Verdict(
+        case=instance.case.id,
+        instance=instance.name,
+        strict=bool(hard) and all(item.passed for item in hard),
+        rate=sum(item.weight for item in outcomes if item.passed) / weight if weight else 0.0,
+        disposition="build" if built else "ask" if asks else "flag" if answer.reply else None,
+        reached=reached,
+        outcomes=outcomes,
+        seconds=round(seconds, 3),
+        files=files,
+    )

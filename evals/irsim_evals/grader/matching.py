@@ -1,0 +1,168 @@
+"""How an assertion says which values it accepts, and the tolerances that apply if it does not say more."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from irsim_evals.grader.units import quantity
+
+__all__ = ["TOLERANCES", "Kind", "Match", "Quantity", "matches", "show"]
+
+Kind = Literal["count", "length", "size", "angle", "heading", "speed", "rate", "time", "share", "name", "flag"]
+"""What a value measures, which decides how closely it must agree."""
+
+TOLERANCES: dict[str, tuple[float, float]] = {
+    "count": (0.0, 0.0),
+    "length": (0.02, 0.05),
+    "size": (0.02, 0.01),
+    "angle": (0.0, math.radians(2)),
+    "heading": (0.0, math.radians(2)),
+    "speed": (0.02, 0.01),
+    "rate": (0.02, 0.01),
+    "time": (0.02, 0.001),
+    "share": (0.02, 0.005),
+}
+"""Relative and absolute tolerance of each kind of number; the larger one applies."""
+_ROUGHLY = 0.2
+"""Relative tolerance of `about`: what a prompt calls about, roughly or circa."""
+
+Quantity = Annotated[float, BeforeValidator(quantity)]
+"""A number in SI units, or a text with a unit."""
+
+
+def _value(value: Any) -> Any:
+    """A text that is a quantity as its number; lists element by element; anything else as it is."""
+    if isinstance(value, list):
+        return [_value(item) for item in value]
+    if isinstance(value, str):
+        try:
+            return quantity(value)
+        except ValueError:
+            return value
+    return value
+
+
+class Match(BaseModel):
+    """Accepted values: one of the keys, or several that must all hold. A bare value stands for ``eq``."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    eq: Annotated[Any, BeforeValidator(_value)] = None
+    """Equal, within `tol` or the tolerance of the kind; a list is compared element by element."""
+    about: Annotated[Any, BeforeValidator(_value)] = None
+    """Equal within 20 %."""
+    among: Annotated[list[Any] | None, BeforeValidator(_value), Field(alias="in")] = None
+    """Equal to one of these."""
+    unlike: Annotated[list[Any] | None, BeforeValidator(_value), Field(alias="not")] = None
+    """Equal to none of these."""
+    ge: Quantity | None = None
+    """At least."""
+    le: Quantity | None = None
+    """At most."""
+    tol: Quantity | None = None
+    """Absolute tolerance of `eq` and `in`, instead of that of the kind."""
+    given: bool | None = None
+    """Whether there is a value at all."""
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: Any) -> Any:
+        """A bare value is allowed, too."""
+        found = handler.resolve_ref_schema(handler(core_schema))
+        return {"anyOf": [found, {"type": ["number", "string", "boolean", "array", "null"]}]}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_value(cls, value: Any) -> Any:
+        return value if isinstance(value, (dict, Match)) else {"eq": value}
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Match:
+        if not self.model_fields_set - {"tol"}:
+            raise ValueError("say which values are accepted: eq, about, in, not, ge, le or given")
+        return self
+
+    def words(self) -> str:
+        """The accepted values, for people."""
+        parts = []
+        if "eq" in self.model_fields_set:
+            parts.append(show(self.eq) + (f" ± {show(self.tol)}" if self.tol is not None else ""))
+        if self.about is not None:
+            parts.append(f"about {show(self.about)}")
+        if self.among is not None:
+            parts.append("one of " + ", ".join(map(show, self.among)))
+        if self.unlike is not None:
+            parts.append("not " + " or ".join(map(show, self.unlike)))
+        if self.ge is not None and self.le is not None:
+            parts.append(f"{show(self.ge)} to {show(self.le)}")
+        elif self.ge is not None:
+            parts.append(f"at least {show(self.ge)}")
+        elif self.le is not None:
+            parts.append(f"at most {show(self.le)}")
+        if self.given is not None:
+            parts.append("any" if self.given else "none")
+        return " and ".join(parts)
+
+
+def matches(match: Match, value: Any, kind: Kind) -> bool:
+    """Whether a value is accepted. A missing value (None) is accepted only by ``given: false`` and ``eq: null``."""
+    if match.given is not None and match.given != (value is not None and value != []):
+        return False
+    if match.given is False or ("eq" in match.model_fields_set and match.eq is None):
+        return value is None or value == []
+    if value is None:
+        return False
+    if "eq" in match.model_fields_set and not _same(value, match.eq, kind, match.tol):
+        return False
+    if match.about is not None and not _near(value, match.about):
+        return False
+    if match.among is not None and not any(_same(value, item, kind, match.tol) for item in match.among):
+        return False
+    if match.unlike is not None and any(_same(value, item, kind, match.tol) for item in match.unlike):
+        return False
+    slack = 1e-9 if kind == "count" else 1e-6
+    if match.ge is not None and not (_is_number(value) and value >= match.ge - slack):
+        return False
+    return match.le is None or (_is_number(value) and value <= match.le + slack)
+
+
+def show(value: Any) -> str:
+    """A value for people: short numbers, lists in brackets."""
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "none"}[value]
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(show, value)) + "]"
+    return str(value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
+
+
+def _same(value: Any, wanted: Any, kind: Kind, tol: float | None) -> bool:
+    if isinstance(wanted, (list, tuple)):
+        return (
+            isinstance(value, Sequence)
+            and not isinstance(value, str)
+            and len(value) == len(wanted)
+            and all(_same(a, b, kind, tol) for a, b in zip(value, wanted, strict=True))
+        )
+    if not (_is_number(value) and _is_number(wanted)):
+        return bool(type(value) is type(wanted) and value == wanted)
+    relative, absolute = TOLERANCES.get(kind, (0.0, 0.0))
+    allowed = max(relative * abs(wanted), absolute) if tol is None else tol
+    apart = abs(value - wanted)
+    if kind == "heading":
+        apart = abs((value - wanted + math.pi) % (2 * math.pi) - math.pi)
+    return bool(apart <= allowed + 1e-9)
+
+
+def _near(value: Any, wanted: Any) -> bool:
+    if isinstance(wanted, (list, tuple)):
+        return len(value) == len(wanted) and all(map(_near, value, wanted))
+    return _is_number(value) and bool(abs(value - wanted) <= _ROUGHLY * abs(wanted) + 1e-9)

@@ -1,0 +1,80 @@
+"""What the grader found out: one outcome for each assertion, and the verdict on an artefact."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+__all__ = ["STAGES", "Cost", "Mark", "Outcome", "Stage", "Verdict"]
+
+Stage = Literal["parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply"]
+STAGES: tuple[Stage, ...] = ("parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply")
+"""The funnel. A failure in one of the first three ends the grading: nothing after it can be observed."""
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Mark(_Record):
+    """A place in the world that a failed assertion is about, for the picture in the report (world frame, m)."""
+
+    points: list[list[float]]
+    """One point, or the corners of a line."""
+    text: str = ""
+
+
+class Outcome(_Record):
+    """One assertion about one artefact."""
+
+    assertion: str
+    """Its id in the case."""
+    stage: Stage
+    passed: bool
+    expected: str
+    observed: str
+    yaml_path: str | None = None
+    """Where in the scenario the observed value comes from."""
+    seed: int | None = None
+    """Seed of the world or episode in which it was observed."""
+    soft: bool = False
+    """Reported, but not needed for the strict pass."""
+    weight: float = 1.0
+    marks: list[Mark] = []
+
+
+class Cost(_Record):
+    """What an answer cost, as far as it is known."""
+
+    calls: int | None = None
+    errors: int | None = None
+    tokens: int | None = None
+    seconds: float | None = None
+
+
+class Verdict(_Record):
+    """The verdict on what an agent made of a case."""
+
+    case: str
+    instance: str = ""
+    """Seed and wording of a fresh instance; empty for the case as published."""
+    strict: bool
+    """Whether every assertion that is not soft holds."""
+    rate: float = Field(ge=0, le=1)
+    """Weighted share of the assertions that hold; what comes after a failed stage counts as failed."""
+    disposition: str | None = None
+    """What the agent did: build, ask or flag."""
+    reached: Stage
+    """Last stage of the funnel in which nothing failed before it."""
+    outcomes: list[Outcome]
+    cost: Cost = Cost()
+    seconds: float = 0.0
+    """How long the grading took."""
+    files: dict[str, str] = {}
+    """The files that were graded."""
+    extra: dict[str, Any] = {}
+
+    def failed(self) -> list[Outcome]:
+        """The assertions that do not hold."""
+        return [outcome for outcome in self.outcomes if not outcome.passed]

@@ -1,0 +1,146 @@
+"""What all predicates have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from irsim_evals.grader.body import Body
+from irsim_evals.grader.matching import show
+from irsim_evals.grader.outcome import Mark, Stage
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.material import Material
+    from irsim_evals.grader.scene import Scene
+
+__all__ = [
+    "AnswerPredicate",
+    "EpisodePredicate",
+    "Observation",
+    "Predicate",
+    "ScenePredicate",
+    "SeedsPredicate",
+    "register",
+    "registered",
+    "summary",
+]
+
+_MAX_NAMED = 4
+"""Number of bodies that an observation names."""
+
+
+@dataclass
+class Observation:
+    """What a predicate saw.
+
+    Attributes:
+        passed: Whether the assertion holds.
+        expected, observed: For people.
+        yaml_path: Where the observed value comes from.
+        seed: Seed of the world in which it was observed.
+        marks: Places that a failed assertion is about.
+    """
+
+    passed: bool
+    expected: str
+    observed: str
+    yaml_path: str | None = None
+    seed: int | None = None
+    marks: list[Mark] = field(default_factory=list)
+
+
+class Predicate(BaseModel):
+    """What an assertion says; the keys of a predicate are the fields of its class."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    stage: ClassVar[Stage] = "facts"
+    """Part of the funnel that it belongs to."""
+    subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]]
+    """What it looks at."""
+    name: ClassVar[str] = ""
+    """Key under which cases use it."""
+
+
+class ScenePredicate(Predicate):
+    """About the world at its start; it must hold for each seed of the case."""
+
+    subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "scene"
+
+    def observe(self, material: Material, scene: Scene) -> Observation:
+        """Look at one world."""
+        raise NotImplementedError
+
+
+class SeedsPredicate(Predicate):
+    """About how worlds differ from seed to seed."""
+
+    subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "seeds"
+
+    def observe(self, material: Material) -> Observation:
+        """Look at several worlds."""
+        raise NotImplementedError
+
+
+class EpisodePredicate(Predicate):
+    """About an episode; it must hold for each seed of the episode."""
+
+    stage: ClassVar[Stage] = "behavior"
+    subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "episode"
+
+    def observe(self, material: Material, episode: Episode) -> Observation:
+        """Look at one episode."""
+        raise NotImplementedError
+
+    def scan_times(self) -> tuple[float, ...]:
+        """Times at which it needs the scans of the sensors [s]."""
+        return ()
+
+
+class AnswerPredicate(Predicate):
+    """About files and words."""
+
+    stage: ClassVar[Stage] = "reply"
+    subject: ClassVar[Literal["scene", "seeds", "episode", "answer"]] = "answer"
+
+    def observe(self, material: Material) -> Observation:
+        """Look at files and words."""
+        raise NotImplementedError
+
+
+_REGISTERED: dict[str, type[Predicate]] = {}
+
+
+def register(name: str) -> Callable[[type[Any]], type[Any]]:
+    """Make a class the predicate of a name."""
+
+    def add(cls: type[Any]) -> type[Any]:
+        cls.name = name
+        _REGISTERED[name] = cls
+        return cls
+
+    return add
+
+
+def registered() -> dict[str, type[Predicate]]:
+    """Name → predicate, in alphabetical order; imports every file of the folder."""
+    import importlib
+    import pkgutil
+
+    import irsim_evals.grader.predicates as folder
+
+    for module in pkgutil.iter_modules(folder.__path__):
+        if not module.name.startswith("_"):
+            importlib.import_module(f"{folder.__name__}.{module.name}")
+    return dict(sorted(_REGISTERED.items()))
+
+
+def summary(pairs: Sequence[tuple[Body, Any]]) -> str:
+    """Values of some bodies: ``robot_1: 0.5, robot_2: none and 3 more``."""
+    shown = ", ".join(f"{body.name}: {show(value)}" for body, value in pairs[:_MAX_NAMED])
+    left = len(pairs) - _MAX_NAMED
+    return shown + (f" and {left} more" if left > 0 else "")

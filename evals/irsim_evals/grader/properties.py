@@ -1,0 +1,178 @@
+"""Properties of a body that selections and assertions name: how each is computed, what it measures, its key."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from irsim_evals.grader.body import Body
+from irsim_evals.grader.matching import Kind
+from irsim_evals.grader.scene import Scene
+
+__all__ = ["PROPERTIES", "Property", "value_of", "yaml_path"]
+
+
+@dataclass(frozen=True)
+class Property:
+    """One property.
+
+    Attributes:
+        kind: What it measures.
+        key: Key of the entry that decides it.
+        of: Computes it; None where the body has no such property.
+    """
+
+    kind: Kind
+    key: str
+    of: Callable[[Scene, Body], Any]
+
+
+def _goal(component: int) -> Callable[[Scene, Body], Any]:
+    def of(_: Scene, body: Body) -> float | None:
+        goal = body.goal
+        return None if goal is None or len(goal) <= component else goal[component]
+
+    return of
+
+
+def _goal_offset(component: int) -> Callable[[Scene, Body], Any]:
+    def of(_: Scene, body: Body) -> float | None:
+        return None if body.goal is None else body.goal[component] - body.pose[component]
+
+    return of
+
+
+def _side(which: int) -> Callable[[Scene, Body], Any]:
+    """The longer (0) or shorter (1) side of a rectangular body."""
+
+    def of(_: Scene, body: Body) -> float | None:
+        if body.box is None:
+            return None
+        return (body.box.length, body.box.width)[which]
+
+    return of
+
+
+def _along(which: int) -> Callable[[Scene, Body], Any]:
+    """Extent of a body that is not a disc along (0) or across (1) its own heading."""
+
+    def of(_: Scene, body: Body) -> float | None:
+        return None if body.radius is not None else float(body.extent[which])
+
+    return of
+
+
+def _way(_: Scene, body: Body) -> float | None:
+    """Straight distance from the start over all goals."""
+    points = [body.pose[:2], *(goal[:2] for goal in body.goals)]
+    return sum(math.dist(a, b) for a, b in itertools.pairwise(points)) if body.goals else None
+
+
+def _straight(_: Scene, body: Body) -> float | None:
+    return None if body.goal is None else math.dist(body.pose[:2], body.goal[:2])
+
+
+def _to_goal(_: Scene, body: Body) -> float | None:
+    """Direction from the start to the last goal."""
+    goal = body.goal
+    return None if goal is None else math.atan2(goal[1] - body.pose[1], goal[0] - body.pose[0])
+
+
+def _top_speed(_: Scene, body: Body) -> float | None:
+    from irsim.scenario.resolve.body_size import top_speed
+
+    return float(top_speed(_.env.scenario.objects[body.index]))
+
+
+def _of_world(component: int) -> Callable[[Scene, Body], Any]:
+    """Position as a share of the extent of the world."""
+
+    def of(scene: Scene, body: Body) -> float:
+        x0, y0, x1, y1 = scene.bounds
+        low, high = ((x0, x1), (y0, y1))[component]
+        return (body.position[component] - low) / (high - low)
+
+    return of
+
+
+def _goal_of_world(component: int) -> Callable[[Scene, Body], Any]:
+    def of(scene: Scene, body: Body) -> float | None:
+        if body.goal is None:
+            return None
+        x0, y0, x1, y1 = scene.bounds
+        low, high = ((x0, x1), (y0, y1))[component]
+        return (body.goal[component] - low) / (high - low)
+
+    return of
+
+
+PROPERTIES: dict[str, Property] = {
+    "name": Property("name", "name", lambda _, body: body.name),
+    "role": Property("name", "role", lambda _, body: body.role),
+    "static": Property("flag", "static", lambda _, body: body.static),
+    "passable": Property("flag", "unobstructed", lambda _, body: body.passable),
+    "kinematics": Property("name", "kinematics", lambda _, body: body.kinematics),
+    "wheelbase": Property("size", "kinematics", lambda _, body: body.wheelbase),
+    "shape": Property("name", "shape", lambda _, body: body.shape),
+    "radius": Property("size", "shape", lambda _, body: body.radius),
+    "long_side": Property("size", "shape", _side(0)),
+    "short_side": Property("size", "shape", _side(1)),
+    "length": Property("size", "shape", _along(0)),
+    "width": Property("size", "shape", _along(1)),
+    "area": Property("size", "shape", lambda _, body: float(body.footprint.area)),
+    "convex": Property(
+        "flag", "shape", lambda _, body: body.footprint.convex_hull.area <= body.footprint.area * (1 + 1e-6)
+    ),
+    "x": Property("length", "state", lambda _, body: body.position[0]),
+    "y": Property("length", "state", lambda _, body: body.position[1]),
+    "x_share": Property("share", "state", _of_world(0)),
+    "y_share": Property("share", "state", _of_world(1)),
+    "heading": Property("heading", "state", lambda _, body: body.pose[2]),
+    "goals": Property("count", "goal", lambda _, body: len(body.goals)),
+    "goal_x": Property("length", "goal", _goal(0)),
+    "goal_y": Property("length", "goal", _goal(1)),
+    "goal_x_share": Property("share", "goal", _goal_of_world(0)),
+    "goal_y_share": Property("share", "goal", _goal_of_world(1)),
+    "goal_heading": Property("heading", "goal", _goal(2)),
+    "goal_dx": Property("length", "goal", _goal_offset(0)),
+    "goal_dy": Property("length", "goal", _goal_offset(1)),
+    "goal_direction": Property("heading", "goal", _to_goal),
+    "goal_distance": Property("length", "goal", _straight),
+    "way": Property("length", "goal", _way),
+    "threshold": Property("length", "goal_threshold", lambda _, body: body.threshold),
+    "arrive_mode": Property("name", "arrive_mode", lambda _, body: body.arrive_mode),
+    "behavior": Property("name", "behavior", lambda _, body: body.behavior),
+    "avoids": Property("flag", "behavior", lambda _, body: body.avoids),
+    "wander": Property("flag", "behavior.wander", lambda _, body: body.wander),
+    "loop": Property("flag", "behavior.loop", lambda _, body: body.loop),
+    "forward": Property("speed", "vel_max", lambda _, body: body.forward),
+    "backward": Property("speed", "vel_min", lambda _, body: body.backward),
+    "sideways": Property("speed", "vel_max", lambda _, body: body.sideways),
+    "turn": Property("rate", "vel_max", lambda _, body: body.turn),
+    "steer": Property("angle", "vel_max", lambda _, body: body.steer),
+    "top_speed": Property("speed", "vel_max", _top_speed),
+    "sensors": Property("count", "sensors", lambda _, body: len(body.sensors)),
+    "fov": Property("angle", "fov", lambda _, body: body.fov),
+    "fov_radius": Property("length", "fov_radius", lambda _, body: body.fov_radius),
+    "color": Property("name", "color", lambda _, body: body.color),
+    "tags": Property("name", "tags", lambda _, body: list(body.tags)),
+    "group": Property("count", "group", lambda _, body: body.group),
+}
+"""Name → property."""
+
+
+def value_of(scene: Scene, body: Body, name: str) -> Any:
+    """The value of a property.
+
+    Raises:
+        KeyError: There is no such property.
+    """
+    return PROPERTIES[name].of(scene, body)
+
+
+def yaml_path(body: Body, name: str) -> str:
+    """Where the value of a property is written: ``robot[0].shape``."""
+    return f"{body.entry}.{PROPERTIES[name].key}"

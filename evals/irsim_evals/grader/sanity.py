@@ -1,0 +1,128 @@
+"""What must hold in every scenario that is built, whether a prompt says so or not."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from irsim_evals.grader.body import Body
+from irsim_evals.grader.outcome import Mark, Outcome
+from irsim_evals.grader.predicates._base import summary
+
+if TYPE_CHECKING:
+    from irsim_evals.grader.episode import Episode
+    from irsim_evals.grader.scene import Scene
+
+__all__ = ["check_moves", "check_scene", "overlaps"]
+
+_TOUCH = 1e-6
+"""Depth [m] up to which two bodies count as touching."""
+_MOVED = 0.05
+"""Distance [m] that a body must come to count as moving."""
+_MAX_PAIRS = 200
+"""Number of overlapping pairs that are collected."""
+
+
+def overlaps(scene: Scene) -> list[tuple[Body, str]]:
+    """Bodies that overlap something they collide with, with the name of the other, at the start."""
+    found: list[tuple[Body, str]] = []
+    bodies = [body for body in scene.bodies if not body.passable]
+    tree = shapely.STRtree([body.footprint for body in bodies])
+    for i, j in tree.query([body.footprint for body in bodies], predicate="intersects").T.tolist():
+        a, b = bodies[i], bodies[j]
+        if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(found) < _MAX_PAIRS:
+            found.append((b if not b.static else a, a.name if not b.static else b.name))
+    terrain = shapely.union_all([view.geometry for view in scene._terrain])
+    for body in bodies:
+        if body.static or terrain.is_empty or len(found) >= _MAX_PAIRS:
+            continue
+        place = (body.pose[0], body.pose[1])
+        inside = body.radius is not None and not scene.is_free(place, body.radius - _TOUCH)
+        if inside or (body.radius is None and shapely.intersects(terrain, body.footprint.buffer(-_TOUCH))):
+            found.append((body, "the map"))
+    return found
+
+
+def _depth(a: Body, b: Body) -> float:
+    """How deep two footprints reach into one another [m], at least."""
+    if a.radius is not None and b.radius is not None:
+        return a.radius + b.radius - math.dist(a.position, b.position)
+    if shapely.intersects(a.footprint.buffer(-_TOUCH), b.footprint):
+        return 2 * _TOUCH
+    return 0.0
+
+
+def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
+    """Everything lies in the world and nothing overlaps."""
+    x0, y0, x1, y1 = scene.bounds
+    moving = [body for body in scene.bodies if not body.static or body.role == "robot"]
+
+    def outside(x: float, y: float) -> bool:
+        return not (x0 - 1e-9 <= x <= x1 + 1e-9 and y0 - 1e-9 <= y <= y1 + 1e-9)
+
+    starts = [(body, list(body.pose[:2])) for body in moving if outside(body.pose[0], body.pose[1])]
+    goals = [(body, goal[:2]) for body in moving for goal in body.goals if outside(goal[0], goal[1])]
+    outcomes = [
+        _outcome(
+            "inside-world",
+            not starts and not goals,
+            "every robot and goal lies in the world",
+            summary(starts + goals) or "all",
+            f"{(starts + goals)[0][0].entry}.{'state' if starts else 'goal'}" if starts or goals else None,
+            scene.seed,
+            [Mark(points=[list(point)], text=body.name) for body, point in starts + goals],
+        )
+    ]
+    if overlap:
+        found = overlaps(scene)
+        outcomes.append(
+            _outcome(
+                "no-overlap",
+                not found,
+                "nothing overlaps at the start",
+                summary([(body, f"overlaps {other}") for body, other in found]) or "nothing",
+                f"{found[0][0].entry}.state" if found else None,
+                scene.seed,
+                [Mark(points=[list(body.position)], text=body.name) for body, _ in found],
+            )
+        )
+    return outcomes
+
+
+def check_moves(episode: Episode) -> Outcome:
+    """Every body with a goal and a behavior moves, unless it is already there."""
+    still = []
+    for body in episode.scene.bodies:
+        if body.static or body.behavior is None or not (body.goals or body.wander):
+            continue
+        near = body.goal is not None and math.dist(body.pose[:2], body.goal[:2]) <= body.threshold + _MOVED
+        path = episode.positions(body.index)
+        if not near and np.hypot(*(path - path[0]).T).max() < _MOVED:
+            still.append((body, "stays where it is"))
+    return _outcome(
+        "moves",
+        not still,
+        "every body with a goal and a behavior moves",
+        summary(still) or "all",
+        f"{still[0][0].entry}.behavior" if still else None,
+        episode.seed,
+        [Mark(points=[list(body.position)], text=body.name) for body, _ in still],
+    )
+
+
+def _outcome(
+    name: str, passed: bool, expected: str, observed: str, path: str | None, seed: int, marks: list[Mark]
+) -> Outcome:
+    return Outcome(
+        assertion=name,
+        stage="sane",
+        passed=passed,
+        expected=expected,
+        observed=observed,
+        yaml_path=path,
+        seed=seed,
+        marks=marks,
+    )

@@ -1,0 +1,146 @@
+"""One world of a scenario at its start: bodies, what is solid, and where robots can get to."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+import irsim._core as core
+from irsim.env import Env
+from irsim.objects.shapely_geometry import core_parts
+from irsim.validation.feasibility.scenes import FAR
+from irsim_evals.grader.body import Body, body_of, is_terrain
+
+if TYPE_CHECKING:
+    from irsim.scenario.resolve.resolved import ResolvedScenario
+
+__all__ = ["Scene", "open_scene"]
+
+Point = tuple[float, float]
+_MAX_CELLS = 150_000
+"""Greatest number of cells of the grid on which paths are searched."""
+_CELLS_PER_RADIUS = 5
+"""Cells along the radius of the body whose path is searched, unless that takes too many cells."""
+_HALF_DIAGONAL = math.sqrt(0.5)
+"""Half the diagonal of a square cell of size 1."""
+
+
+@dataclass
+class Scene:
+    """One world at its start.
+
+    Attributes:
+        seed: Its seed.
+        env: The environment, which nobody has stepped.
+        bodies: Robots and obstacles in the order of the file; neither the map nor the walls round the world.
+    """
+
+    seed: int
+    env: Env
+    bodies: list[Body]
+    _paths: dict[Any, Any] = field(default_factory=dict, repr=False)
+
+    @property
+    def world(self) -> Any:
+        """Options of the world."""
+        return self.env.scenario.world
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 of the world [m]."""
+        x0, y0, x1, y1 = self.world.bounds
+        return float(x0), float(y0), float(x1), float(y1)
+
+    @property
+    def robots(self) -> list[Body]:
+        """Bodies with the role of a robot."""
+        return [body for body in self.bodies if body.role == "robot"]
+
+    @property
+    def solids(self) -> list[Body]:
+        """Bodies that never move and that others cannot pass."""
+        return [body for body in self.bodies if body.static and not body.passable]
+
+    @cached_property
+    def solid(self) -> Any:
+        """Everything that never moves and cannot be passed, the map included, as one geometry."""
+        terrain = [view.geometry for view in self._terrain]
+        return shapely.union_all([*(body.footprint for body in self.solids), *terrain])
+
+    @cached_property
+    def _terrain(self) -> list[Any]:
+        return [view for view in self._views if is_terrain(view) and not view.record.unobstructed]
+
+    @cached_property
+    def _views(self) -> list[Any]:
+        return sorted([*self.env.robot_list, *self.env.obstacle_list], key=lambda view: view.index)
+
+    @cached_property
+    def things(self) -> list[Any]:
+        """Parts and pose of everything solid, as the core takes them."""
+        solid = {body.index for body in self.solids}
+        simulation = self.env.simulation
+        return [
+            (core_parts(simulation, view.row), simulation.pose[view.row].tolist())
+            for view in self._views
+            if view.index in solid or view in self._terrain
+        ]
+
+    @cached_property
+    def terrain(self) -> core.Terrain:
+        """Everything solid, for collision queries of the core."""
+        return core.Terrain(FAR, self.things)
+
+    def is_free(self, place: Point, radius: float) -> bool:
+        """Whether a disc fits at a place."""
+        return not self.terrain.collides([core.Circle(radius=radius, center=[0, 0])], (*place, 0.0))
+
+    def path_width(self, start: Point, goal: Point, radius: float, plugs: tuple[tuple[float, ...], ...] = ()) -> float:
+        """Clearance of the widest path inside the world from one place to another [m]; -infinity without a path.
+
+        Args:
+            start, goal: Both ends.
+            radius: Radius for which the cells are fine enough.
+            plugs: x, y, radius of discs that are put there first, to close gaps.
+        """
+        clearance, half = self._clearance(radius, plugs)
+        width: float = clearance.widest(start, goal, 0.0)[0]
+        return width + half if math.isfinite(width) else -math.inf
+
+    def is_reachable(self, start: Point, goal: Point, radius: float, plugs: tuple[tuple[float, ...], ...] = ()) -> bool:
+        """Whether a disc can get from one place to another inside the world."""
+        return self.path_width(start, goal, radius, plugs) >= radius
+
+    def path(self, start: Point, goal: Point, radius: float) -> Any:
+        """(K, 2) a shortest path of a disc; (0, 2) without a path."""
+        clearance, half = self._clearance(radius, ())
+        return np.asarray(clearance.way(start, goal, radius - half))
+
+    def _clearance(self, radius: float, plugs: tuple[tuple[float, ...], ...]) -> tuple[core.Clearance, float]:
+        x0, y0, x1, y1 = self.bounds
+        width, height = x1 - x0, y1 - y0
+        size = max(radius / _CELLS_PER_RADIUS, math.sqrt(width * height / _MAX_CELLS), 1e-3)
+        nx, ny = max(1, math.ceil(width / size)), max(1, math.ceil(height / size))
+        key = (nx, ny, plugs)
+        if key not in self._paths:
+            discs = [([core.Circle(radius=r, center=[0, 0])], [x, y, 0.0]) for x, y, r in plugs]
+            cells = ((x0, y0), (width / nx, height / ny), nx, ny)
+            terrain = core.Terrain(FAR, [*self.things, *discs]) if discs else self.terrain
+            self._paths[key] = core.Clearance(terrain, cells)
+        return self._paths[key], _HALF_DIAGONAL * max(width / nx, height / ny)
+
+
+def open_scene(scenario: ResolvedScenario, seed: int) -> Scene:
+    """Build one world of a scenario.
+
+    Raises:
+        PlacementError: A random object found no free place.
+    """
+    env = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
+    views = sorted([*env.robot_list, *env.obstacle_list], key=lambda view: view.index)
+    return Scene(seed, env, [body_of(view, env.scenario) for view in views if not is_terrain(view)])

@@ -1,0 +1,109 @@
+"""Which bodies an assertion is about."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict
+
+from irsim_evals.grader.body import Body
+from irsim_evals.grader.matching import Match, Quantity, matches
+from irsim_evals.grader.properties import PROPERTIES, value_of
+from irsim_evals.grader.scene import Scene
+
+__all__ = ["BUILT_IN", "Selector", "select"]
+
+
+def _names(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+Names = Annotated[list[str], BeforeValidator(_names)]
+
+
+class Selector(BaseModel):
+    """Bodies that meet every key that is given."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    role: Literal["robot", "obstacle"] | None = None
+    """Section of the file."""
+    static: bool | None = None
+    """Whether it never moves."""
+    passable: bool | None = None
+    """Whether others pass through it."""
+    kinematics: Names | None = None
+    """Name of its drive, or several."""
+    shape: Names | None = None
+    """``circle``, ``square``, ``rectangle``, ``line``, ``polygon``, ``compound``; a square is a rectangle, too."""
+    named: str | None = None
+    """Regular expression that its name, the name of its group or one of its tags contains, ignoring case."""
+    inside: tuple[Quantity, Quantity, Quantity, Quantity] | None = None
+    """x0, y0, x1, y1 of a region that holds its position [m]."""
+    among: Names | None = None
+    """Other selections that it belongs to."""
+    beyond: Names | None = None
+    """Other selections that it does not belong to."""
+    having: dict[str, Match] = {}
+    """Properties that it has."""
+    any_of: list[Selector] = []
+    """It meets at least one of these."""
+
+
+BUILT_IN: dict[str, Selector] = {
+    "all": Selector(),
+    "robots": Selector(role="robot"),
+    "obstacles": Selector(role="obstacle"),
+    "movers": Selector(static=False),
+    "statics": Selector(static=True),
+    "solids": Selector(static=True, passable=False),
+}
+"""Selections that every case has."""
+
+
+def select(scene: Scene, name: str, selectors: dict[str, Selector]) -> list[Body]:
+    """The bodies of a selection in the order of the file.
+
+    Raises:
+        KeyError: No selection has that name.
+    """
+    selector = selectors.get(name) or BUILT_IN[name]
+    return [body for body in scene.bodies if _meets(scene, body, selector, selectors)]
+
+
+def _meets(scene: Scene, body: Body, selector: Selector, selectors: dict[str, Selector]) -> bool:
+    def belongs(name: str) -> bool:
+        return _meets(scene, body, selectors.get(name) or BUILT_IN[name], selectors)
+
+    if selector.role not in (None, body.role):
+        return False
+    if selector.static not in (None, body.static) or selector.passable not in (None, body.passable):
+        return False
+    if selector.kinematics is not None and body.kinematics not in selector.kinematics:
+        return False
+    shapes = {body.shape, *(("rectangle",) if body.shape == "square" else ())}
+    if selector.shape is not None and not shapes & set(selector.shape):
+        return False
+    if selector.named is not None and not _is_named(scene, body, selector.named):
+        return False
+    if selector.inside is not None and not _is_inside(body, selector.inside):
+        return False
+    if selector.among is not None and not all(map(belongs, selector.among)):
+        return False
+    if selector.beyond is not None and any(map(belongs, selector.beyond)):
+        return False
+    for key, match in selector.having.items():
+        if not matches(match, value_of(scene, body, key), PROPERTIES[key].kind):
+            return False
+    return not selector.any_of or any(_meets(scene, body, item, selectors) for item in selector.any_of)
+
+
+def _is_named(scene: Scene, body: Body, pattern: str) -> bool:
+    group = scene.env.scenario.objects[body.index].group_name
+    return any(re.search(pattern, text, re.IGNORECASE) for text in (body.name, group, *body.tags))
+
+
+def _is_inside(body: Body, region: tuple[float, float, float, float]) -> bool:
+    x, y = body.position
+    return region[0] <= x <= region[2] and region[1] <= y <= region[3]

@@ -1,0 +1,1 @@
+"""The proof of the grader: right answers pass however they are written, wrong ones fail, and nothing passes by luck."""

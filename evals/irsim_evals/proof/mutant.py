@@ -1,0 +1,97 @@
+"""What typed mutants are made of: the record of one, the register of operators, and ways to change an entry."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = [
+    "OPERATORS",
+    "Change",
+    "Data",
+    "Mutant",
+    "each_entry",
+    "entries",
+    "operator",
+    "scale",
+    "shift",
+    "with_entry",
+]
+
+Data = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One changed scenario.
+
+    Attributes:
+        operator: Name of the operator that made it.
+        what: What was changed, for people.
+        data: The scenario.
+    """
+
+    operator: str
+    what: str
+    data: Data
+
+
+Change = Iterator[tuple[str, Data]]
+Operator = Callable[[Data], Change]
+OPERATORS: dict[str, Operator] = {}
+
+
+def operator(function: Operator) -> Operator:
+    """Register an operator under its name."""
+    OPERATORS[function.__name__] = function
+    return function
+
+
+def entries(data: Data) -> Iterator[tuple[str, int, Data]]:
+    """Section, number and mapping of each entry."""
+    for section in ("robot", "obstacle"):
+        found = data.get(section)
+        items = found if isinstance(found, list) else [found] if isinstance(found, dict) else []
+        for number, entry in enumerate(items):
+            if isinstance(entry, dict):
+                yield section, number, entry
+
+
+def with_entry(data: Data, section: str, number: int, change: Callable[[Data], Any]) -> Data | None:
+    """A copy in which one entry was changed in place; None if the change does not apply."""
+    made = copy.deepcopy(data)
+    for other, k, entry in entries(made):
+        if (other, k) == (section, number):
+            return made if change(entry) is not False else None
+    return None
+
+
+def each_entry(data: Data, change: Callable[[Data], Any], what: str) -> Change:
+    for section, number, _ in entries(data):
+        made = with_entry(data, section, number, change)
+        if made is not None:
+            yield f"{section}[{number}]: {what}", made
+
+
+def scale(key: str, factor: float, *, inside: str | None = None) -> Callable[[Data], Any]:
+    def change(entry: Data) -> Any:
+        owner = entry.get(inside) if inside else entry
+        if not isinstance(owner, dict) or not isinstance(owner.get(key), (int, float)):
+            return False
+        owner[key] = owner[key] * factor
+        return True
+
+    return change
+
+
+def shift(key: str, component: int, by: float) -> Callable[[Data], Any]:
+    def change(entry: Data) -> Any:
+        value = entry.get(key)
+        if not isinstance(value, list) or len(value) <= component or not isinstance(value[component], (int, float)):
+            return False
+        value[component] = value[component] + by
+        return True
+
+    return change

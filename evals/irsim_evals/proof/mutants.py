@@ -1,0 +1,22 @@
+"""Typed mutants of a scenario: what a wrong answer looks like that somebody could really give."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator
+
+from irsim_evals.proof import mutants_of_entries, mutants_of_values
+from irsim_evals.proof.mutant import OPERATORS, Data, Mutant
+
+__all__ = ["mutants_of"]
+
+_MODULES = (mutants_of_entries, mutants_of_values)
+"""They register their operators when they are imported."""
+
+
+def mutants_of(data: Data) -> Iterator[Mutant]:
+    """All mutants of a scenario, in a fixed order; none equals the scenario."""
+    for name, make in OPERATORS.items():
+        for what, changed in make(copy.deepcopy(data)):
+            if changed != data:
+                yield Mutant(name, what, changed)

@@ -1,0 +1,216 @@
+"""Mutants with other keys, names, drives, behaviors and numbers of objects."""
+
+from __future__ import annotations
+
+import copy
+from functools import partial
+from typing import Any
+
+from irsim_evals.proof.mutant import Change, Data, each_entry, entries, operator, with_entry
+
+_KINEMATICS = ("diff", "omni", "omni_angular", "acker")
+_BEHAVIORS = ("dash", "rvo", "orca", "sfm")
+
+
+def _drop(key: str, entry: Data) -> None:
+    del entry[key]
+
+
+def _mistype(key: str, entry: Data) -> None:
+    entry[key + "s"] = entry.pop(key)
+
+
+@operator
+def world_size(data: Data) -> Change:
+    """Width or height doubled, or both swapped."""
+    for key in ("width", "height"):
+        made = copy.deepcopy(data)
+        if isinstance(made.get("world"), dict) and isinstance(made["world"].get(key), (int, float)):
+            made["world"][key] *= 2
+            yield f"world.{key} doubled", made
+    made = copy.deepcopy(data)
+    world = made.get("world")
+    if isinstance(world, dict) and "width" in world and "height" in world:
+        world["width"], world["height"] = world["height"], world["width"]
+        yield "width and height swapped", made
+
+
+@operator
+def world_dropped(data: Data) -> Change:
+    """A key of the world left out."""
+    for key in list(data.get("world") or {}):
+        made = copy.deepcopy(data)
+        del made["world"][key]
+        yield f"world.{key} left out", made
+
+
+@operator
+def key_dropped(data: Data) -> Change:
+    """A key of an entry left out."""
+    for section, number, entry in entries(data):
+        for key in entry:
+            made = with_entry(data, section, number, partial(_drop, key))
+            if made is not None:
+                yield f"{section}[{number}].{key} left out", made
+
+
+@operator
+def kinematics_swapped(data: Data) -> Change:
+    """Another drive."""
+    for name in _KINEMATICS:
+
+        def change(entry: Data, name: str = name) -> Any:
+            drive = entry.get("kinematics")
+            if not isinstance(drive, dict) or drive.get("name") == name:
+                return False
+            drive["name"] = name
+            return True
+
+        yield from each_entry(data, change, f"kinematics {name}")
+
+
+@operator
+def behavior_swapped(data: Data) -> Change:
+    """Another behavior."""
+    for name in _BEHAVIORS:
+
+        def change(entry: Data, name: str = name) -> Any:
+            given = entry.get("behavior")
+            if not isinstance(given, dict) or given.get("name") == name:
+                return False
+            kept = {key: given[key] for key in ("wander", "loop", "range_low", "range_high") if key in given}
+            entry["behavior"] = {"name": name, **kept}
+            return True
+
+        yield from each_entry(data, change, f"behavior {name}")
+
+
+@operator
+def number_changed(data: Data) -> Change:
+    """One object more or less in a group."""
+    for by in (1, -1):
+
+        def change(entry: Data, by: int = by) -> Any:
+            if not isinstance(entry.get("number"), int) or entry["number"] + by < 1:
+                return False
+            entry["number"] += by
+            return True
+
+        yield from each_entry(data, change, f"number {by:+d}")
+
+
+@operator
+def entry_dropped(data: Data) -> Change:
+    """An entry left out."""
+    for section, number, _ in entries(data):
+        made = copy.deepcopy(data)
+        if isinstance(made[section], list):
+            del made[section][number]
+        else:
+            del made[section]
+        yield f"{section}[{number}] left out", made
+
+
+@operator
+def entry_doubled(data: Data) -> Change:
+    """An object too many, somewhere free."""
+    for section, number, _ in entries(data):
+        made = copy.deepcopy(data)
+        items = made[section] if isinstance(made[section], list) else [made[section]]
+        extra = copy.deepcopy(items[number])
+        extra.pop("name", None)
+        extra["number"] = 1
+        extra.pop("distribution", None)
+        x, y = _free_corner(made)
+        extra["state"] = [x, y, 0.0]
+        made[section] = [*items, extra]
+        yield f"{section}[{number}] once more", made
+
+
+def _free_corner(data: Data) -> tuple[float, float]:
+    world = data.get("world") or {}
+    x, y = (world.get("offset") or [0.0, 0.0])[:2]
+    return x + 0.93 * world.get("width", 10), y + 0.07 * world.get("height", 10)
+
+
+@operator
+def role_flipped(data: Data) -> Change:
+    """A robot among the obstacles, or the other way round."""
+    for section, number, _ in entries(data):
+        made = copy.deepcopy(data)
+        items = made[section] if isinstance(made[section], list) else [made[section]]
+        entry = items.pop(number)
+        other = "obstacle" if section == "robot" else "robot"
+        there = made.get(other) or []
+        made[other] = [*(there if isinstance(there, list) else [there]), entry]
+        made[section] = items
+        if not items:
+            del made[section]
+        yield f"{section}[{number}] among the {other}s", made
+
+
+@operator
+def key_mistyped(data: Data) -> Change:
+    """A key with a letter too many."""
+    for section, number, entry in entries(data):
+        for key in entry:
+            made = with_entry(data, section, number, partial(_mistype, key))
+            if made is not None:
+                yield f"{section}[{number}].{key}s", made
+
+
+@operator
+def stacked(data: Data) -> Change:
+    """A distribution left out, so that all objects of a group stand in one place."""
+
+    def change(entry: Data) -> Any:
+        if entry.get("number", 1) < 2 or entry.pop("distribution", None) is None:
+            return False
+        if isinstance(entry.get("state"), list) and isinstance((entry["state"] or [None])[0], list):
+            entry["state"] = entry["state"][0]
+        return True
+
+    yield from each_entry(data, change, "without its distribution")
+
+
+@operator
+def plugged(data: Data) -> Change:
+    """A big disc halfway between the start and the goal of a robot."""
+    for section, number, entry in entries(data):
+        a, b = entry.get("state"), entry.get("goal")
+        if section != "robot" or not (isinstance(a, list) and isinstance(b, list) and len(a) > 1 and len(b) > 1):
+            continue
+        if isinstance(a[0], list) or isinstance(b[0], list):
+            continue
+        made = copy.deepcopy(data)
+        there = made.get("obstacle") or []
+        disc = {"shape": {"name": "circle", "radius": 1.0}, "state": [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0.0]}
+        made["obstacle"] = [*(there if isinstance(there, list) else [there]), disc]
+        yield f"a disc between start and goal of {section}[{number}]", made
+
+
+@operator
+def cosmetic(data: Data) -> Change:
+    """Names, colors and a lidar that nobody asked for."""
+
+    def paint(entry: Data) -> Any:
+        if isinstance(entry.get("color"), list) or entry.get("color") == "cycle":
+            return False
+        entry["color"] = "purple"
+        return True
+
+    def rename(entry: Data) -> Any:
+        if entry.get("number", 1) != 1 or "name" in entry:
+            return False
+        entry["name"] = "whatever"
+        return True
+
+    def sense(entry: Data) -> Any:
+        if entry.get("sensors") or "kinematics" not in entry:
+            return False
+        entry["sensors"] = [{"name": "lidar2d", "number": 12, "range_max": 3}]
+        return True
+
+    yield from each_entry(data, paint, "another color")
+    yield from each_entry(data, rename, "a name")
+    yield from each_entry(data, sense, "a lidar")

@@ -1,0 +1,134 @@
+"""Mutants with another number: places, angles, sizes, units, limits, sensors."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from irsim_evals.proof.mutant import Change, Data, each_entry, entries, operator, scale, shift, with_entry
+
+
+@operator
+def start_and_goal_swapped(data: Data) -> Change:
+    """Start and goal exchanged."""
+
+    def change(entry: Data) -> Any:
+        a, b = entry.get("state"), entry.get("goal")
+        if not (
+            isinstance(a, list) and isinstance(b, list) and len(a) > 1 and len(b) > 1 and not isinstance(a[0], list)
+        ):
+            return False
+        a[0], a[1], b[0], b[1] = b[0], b[1], a[0], a[1]
+        return True
+
+    yield from each_entry(data, change, "start and goal swapped")
+
+
+@operator
+def transposed(data: Data) -> Change:
+    """x and y of a start or a goal exchanged."""
+    for key in ("state", "goal"):
+
+        def change(entry: Data, key: str = key) -> Any:
+            value = entry.get(key)
+            if not isinstance(value, list) or len(value) < 2 or isinstance(value[0], list) or value[0] == value[1]:
+                return False
+            value[0], value[1] = value[1], value[0]
+            return True
+
+        yield from each_entry(data, change, f"x and y of {key} swapped")
+
+
+@operator
+def moved(data: Data) -> Change:
+    """A start or a goal a metre away."""
+    for key in ("state", "goal"):
+        for component, by in ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)):
+            yield from each_entry(data, shift(key, component, by), f"{key}[{component}] {by:+g} m")
+
+
+@operator
+def degrees_for_radians(data: Data) -> Change:
+    """Angles in degrees."""
+
+    def heading(entry: Data) -> Any:
+        value = entry.get("state")
+        if not isinstance(value, list) or len(value) < 3 or not isinstance(value[2], (int, float)) or not value[2]:
+            return False
+        value[2] = math.degrees(value[2])
+        return True
+
+    def opening(entry: Data) -> Any:
+        sensors = [s for s in entry.get("sensors") or [] if isinstance(s, dict) and "angle_range" in s]
+        for sensor in sensors:
+            sensor["angle_range"] = math.degrees(sensor["angle_range"])
+        return bool(sensors)
+
+    yield from each_entry(data, heading, "heading in degrees")
+    yield from each_entry(data, opening, "opening angle in degrees")
+
+
+@operator
+def turned(data: Data) -> Change:
+    """A heading a quarter turn off."""
+    yield from each_entry(data, shift("state", 2, math.pi / 2), "a quarter turn to the left")
+    yield from each_entry(data, shift("state", 2, math.pi), "half a turn")
+
+
+@operator
+def size_scaled(data: Data) -> Change:
+    """Half or twice the size: a diameter for a radius, a half length for a length."""
+    for key in ("radius", "length", "width"):
+        for factor in (0.5, 2.0):
+            yield from each_entry(data, scale(key, factor, inside="shape"), f"shape.{key} x {factor:g}")
+
+
+@operator
+def unit_unconverted(data: Data) -> Change:
+    """Centimetres for metres, km/h for m/s."""
+    for key in ("radius", "length", "width"):
+        yield from each_entry(data, scale(key, 100.0, inside="shape"), f"shape.{key} in centimetres")
+
+    def speed(entry: Data) -> Any:
+        if not isinstance(entry.get("vel_max"), list):
+            return False
+        entry["vel_max"][0] *= 3.6
+        return True
+
+    yield from each_entry(data, speed, "speed in km/h")
+
+
+@operator
+def limits_changed(data: Data) -> Change:
+    """Half or twice a limit."""
+    for key in ("vel_max", "vel_min"):
+        for component in range(3):
+            for factor in (0.5, 2.0):
+
+                def change(entry: Data, key: str = key, component: int = component, factor: float = factor) -> Any:
+                    value = entry.get(key)
+                    if not isinstance(value, list) or len(value) <= component or not value[component]:
+                        return False
+                    value[component] *= factor
+                    return True
+
+                yield from each_entry(data, change, f"{key}[{component}] x {factor:g}")
+
+
+@operator
+def sensor_changed(data: Data) -> Change:
+    """Half or twice a parameter of a sensor, or the sensor left out."""
+    for section, number, entry in entries(data):
+        for k, sensor in enumerate(entry.get("sensors") or []):
+            for key in ("range_max", "number", "angle_range"):
+                for factor in (0.5, 2.0):
+                    if not isinstance(sensor, dict) or not isinstance(sensor.get(key), (int, float)):
+                        continue
+
+                    def change(entry: Data, k: int = k, key: str = key, factor: float = factor) -> Any:
+                        value = entry["sensors"][k][key] * factor
+                        entry["sensors"][k][key] = round(value) if key == "number" else value
+
+                    made = with_entry(data, section, number, change)
+                    if made is not None:
+                        yield f"{section}[{number}].sensors[{k}].{key} x {factor:g}", made

@@ -1,0 +1,172 @@
+"""The grader: golds pass, what contradicts a prompt fails with evidence, no answer makes it crash, hang or believe."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from irsim_evals.cases.instance import substitute
+from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of, raw_case
+from irsim_evals.grader.grade import grade
+from irsim_evals.grader.limited import grade_answer, grade_folder
+from irsim_evals.grader.matching import Match, matches
+from irsim_evals.grader.outcome import Verdict
+from irsim_evals.grader.units import quantity
+
+RIGHT = """
+world: {width: 14, height: 9}
+robot:
+  kinematics: {name: diff}
+  shape: {name: circle, radius: 0.35}
+  state: [2, 1.5, 1.5708]
+  goal: [12, 7.5, 0]
+  behavior: {name: dash}
+"""
+
+BOMB = """
+a: &a [x, x]
+b: &b [*a, *a, *a, *a, *a, *a, *a, *a]
+c: &c [*b, *b, *b, *b, *b, *b, *b, *b]
+d: &d [*c, *c, *c, *c, *c, *c, *c, *c]
+world: [*d, *d, *d, *d, *d, *d, *d, *d]
+"""
+
+
+def graded(text: str, case: str = "pub-01", reply: str = "") -> Verdict:
+    return grade(case_of(case), Answer("answer", {"scenario.yaml": text}, reply))
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("5.4km/h", 1.5), ("90deg/s", math.pi / 2), ("100 ft", 30.48), ("35 cm", 0.35), (".5", 0.5), ("-2 m/s", -2.0)],
+)
+def test_quantities(text: str, value: float) -> None:
+    assert quantity(text) == pytest.approx(value)
+
+
+@pytest.mark.parametrize("text", ["", "m", "5 parsecs", "1,5 m", "1 2"])
+def test_what_is_no_quantity(text: str) -> None:
+    with pytest.raises(ValueError, match="is not"):
+        quantity(text)
+
+
+def test_tolerances_go_by_what_is_measured() -> None:
+    assert matches(Match(eq=10), 10.19, "length")
+    assert not matches(Match(eq=10), 10.21, "length")
+    assert matches(Match(eq=0), 0.05, "length")
+    assert not matches(Match(eq=8), 8.01, "count")
+    assert matches(Match(eq=math.pi), -math.pi + 0.01, "heading")
+    assert matches(Match(about=1.0), 1.2, "size")
+    assert not matches(Match(ge=1), None, "count")
+    assert matches(Match(given=False), None, "name")
+
+
+def test_expressions_are_replaced_by_values() -> None:
+    values = {"n": 3, "r": 0.25}
+    assert substitute("$(n)", values) == 3
+    assert substitute("[$(n * 2), $(r)]", values) == "[6, 0.25]"
+    assert substitute("$(n: words) robots of $(r) m", values) == "three robots of 0.25 m"
+    assert substitute("$(r) m", values, "de") == "0,25 m"
+
+
+@pytest.mark.parametrize("case_id", case_ids())
+def test_a_case_is_named_like_its_file_and_every_instance_is_valid(case_id: str) -> None:
+    assert raw_case(case_id)["id"] == case_id
+    instances = [case_of(case_id, seed) for seed in range(8)]
+    assert len({str(instance.values) for instance in instances}) > 1 or not raw_case(case_id).get("parameters")
+    assert not any("$(" in instance.prompt for instance in instances)
+
+
+@pytest.mark.parametrize("case_id", case_ids())
+def test_golds_pass(case_id: str) -> None:
+    for seed in (None, 1):
+        instance = case_of(case_id, seed)
+        golds = golds_of(instance)
+        assert len(golds) >= 2
+        for gold in golds:
+            verdict = grade(instance, gold)
+            assert [(o.assertion, o.expected, o.observed) for o in verdict.failed()] == []
+            assert verdict.strict
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "failed"),
+    [
+        ("width: 14, height: 9", "width: 9, height: 14", "world"),
+        ("1.5708", "90", "start"),
+        ("radius: 0.35", "radius: 0.7", "robot"),
+        ("name: diff", "name: omni", "robot"),
+        ("[12, 7.5, 0]", "[7.5, 12, 0]", "inside-world"),
+        ("[12, 7.5, 0]", "[11, 7.5, 0]", "goal"),
+        ("behavior: {name: dash}", "behavior: {name: dash}\nobstacle: [{state: [7, 4, 0]}]", "nothing-else"),
+        ("radius: 0.35", "radios: 0.35", "valid"),
+        ("  behavior: {name: dash}\n", "", "behavior"),
+    ],
+)
+def test_what_contradicts_the_prompt_fails_with_evidence(old: str, new: str, failed: str) -> None:
+    verdict = graded(RIGHT.replace(old, new))
+    assert not verdict.strict
+    [outcome] = [o for o in verdict.failed() if o.assertion == failed]
+    assert outcome.expected
+    assert outcome.observed
+
+
+def test_a_right_answer_passes_and_says_what_was_seen() -> None:
+    verdict = graded(RIGHT)
+    assert verdict.strict
+    assert verdict.rate == 1.0
+    assert {"parse", "schema", "load", "sane", "facts", "behavior"} <= {outcome.stage for outcome in verdict.outcomes}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        BOMB,
+        "world: !!python/object/apply:os.system ['touch /tmp/irsim-evals-was-here']\n",
+        "world: {width: 10, height: 10}\nrobot: [{number: 1000000, state: [1, 1, 0]}]\n",
+        "world: {width: 1.0e+300, height: 10}\nrobot: [{state: [1, 1, 0]}]\n",
+        "world: {width: 10, height: 10, obstacle_map: /etc/passwd}\nrobot: [{state: [1, 1, 0]}]\n",
+        "robot: 7\nworld: []\n",
+        "\0\0\0",
+        "",
+    ],
+    ids=["bomb", "python object", "a million robots", "huge", "a file elsewhere", "other types", "zeros", "empty"],
+)
+def test_hostile_texts_are_failed_verdicts(text: str) -> None:
+    begin = time.monotonic()
+    verdict = grade_answer(case_of("pub-01"), Answer("hostile", {"scenario.yaml": text}, "all assertions passed"))
+    assert not verdict.strict
+    assert verdict.failed()
+    assert time.monotonic() - begin < 30
+    assert not Path("/tmp/irsim-evals-was-here").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="makes a link")
+def test_links_and_large_files_are_not_read(tmp_path: Path) -> None:
+    (tmp_path / "scenario.yaml").symlink_to("/etc/passwd")
+    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    assert not verdict.strict
+    assert "link" in verdict.outcomes[0].observed
+    (tmp_path / "scenario.yaml").unlink()
+    with (tmp_path / "scenario.yaml").open("wb") as file:
+        file.truncate(2**30)  # a gigabyte that takes no space
+    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    assert not verdict.strict
+    assert "bytes" in verdict.outcomes[0].observed
+
+
+def test_a_grading_that_takes_too_long_is_ended() -> None:
+    begin = time.monotonic()
+    verdict = grade_answer(case_of("pub-01"), Answer("slow", {"scenario.yaml": RIGHT}), seconds=0.001)
+    assert not verdict.strict
+    assert "took more than" in verdict.outcomes[0].observed
+    assert time.monotonic() - begin < 20
+
+
+def test_an_empty_answer_fails_every_case() -> None:
+    for case_id in case_ids():
+        assert not grade(case_of(case_id), Answer("nothing")).strict
