@@ -135,10 +135,6 @@ class Case(_Record):
     """What the user says after each reply."""
     files: dict[str, str] = {}
     """Files that the folder starts with: name → text."""
-    pictures: dict[str, str] = {}
-    """Pictures that the folder starts with: name → scenario from which they are drawn."""
-    python: Literal["none", "runner"] = "none"
-    """Whether the answer may hold a Python program that runs the scenario."""
     disposition: list[Disposition] = ["build"]
     """What the agent may do: build a scenario, ask first, or say that it cannot be done."""
     seeds: list[int] = [0]

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from irsim.common.angles import wrap
 from irsim_evals.grader.units import quantity
 
 __all__ = ["TOLERANCES", "Kind", "Match", "Quantity", "matches", "show"]
@@ -158,7 +159,7 @@ def _same(value: Any, wanted: Any, kind: Kind, tol: float | None) -> bool:
     allowed = max(relative * abs(wanted), absolute) if tol is None else tol
     apart = abs(value - wanted)
     if kind == "heading":
-        apart = abs((value - wanted + math.pi) % (2 * math.pi) - math.pi)
+        apart = abs(wrap(value - wanted))
     return bool(apart <= allowed + 1e-9)
 
 

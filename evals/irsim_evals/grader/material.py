@@ -12,7 +12,6 @@ from irsim_evals.grader.selection import Selector, select
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
-    from irsim_evals.grader.episode import Episode
 
 __all__ = ["Material"]
 
@@ -58,12 +57,3 @@ class Material:
     def bodies(self, scene: Scene, name: str) -> list[Body]:
         """The bodies of a selection."""
         return select(scene, name, dict(self.selectors))
-
-
-def episode_of(material: Material, seed: int, seconds: float) -> Episode:
-    """Simulate an episode of the scenario."""
-    from irsim_evals.grader.episode import run_episode
-
-    if material.scenario is None:
-        raise LookupError("there is no scenario that the simulator can read")
-    return run_episode(material.scenario, seed, seconds)

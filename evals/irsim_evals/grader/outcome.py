@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -73,7 +73,6 @@ class Verdict(_Record):
     """How long the grading took."""
     files: dict[str, str] = {}
     """The files that were graded."""
-    extra: dict[str, Any] = {}
 
     def failed(self) -> list[Outcome]:
         """The assertions that do not hold."""

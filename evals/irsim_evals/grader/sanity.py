@@ -35,7 +35,7 @@ def overlaps(scene: Scene) -> list[tuple[Body, str]]:
         a, b = bodies[i], bodies[j]
         if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(found) < _MAX_PAIRS:
             found.append((b if not b.static else a, a.name if not b.static else b.name))
-    terrain = shapely.union_all([view.geometry for view in scene._terrain])
+    terrain = shapely.union_all([view.geometry for view in scene.terrain_views])
     for body in bodies:
         if body.static or terrain.is_empty or len(found) >= _MAX_PAIRS:
             continue

@@ -69,11 +69,12 @@ class Scene:
     @cached_property
     def solid(self) -> Any:
         """Everything that never moves and cannot be passed, the map included, as one geometry."""
-        terrain = [view.geometry for view in self._terrain]
+        terrain = [view.geometry for view in self.terrain_views]
         return shapely.union_all([*(body.footprint for body in self.solids), *terrain])
 
     @cached_property
-    def _terrain(self) -> list[Any]:
+    def terrain_views(self) -> list[Any]:
+        """The map and the walls round the world, unless others pass through them."""
         return [view for view in self._views if is_terrain(view) and not view.record.unobstructed]
 
     @cached_property
@@ -88,7 +89,7 @@ class Scene:
         return [
             (core_parts(simulation, view.row), simulation.pose[view.row].tolist())
             for view in self._views
-            if view.index in solid or view in self._terrain
+            if view.index in solid or view in self.terrain_views
         ]
 
     @cached_property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -10,6 +11,15 @@ from irsim_evals.proof.mutant import Change, Data, each_entry, entries, operator
 
 _KINEMATICS = ("diff", "omni", "omni_angular", "acker")
 _BEHAVIORS = ("dash", "rvo", "orca", "sfm")
+
+
+def _each_key(data: Data, change: Callable[[str, Data], None], what: str) -> Change:
+    """A change of each key of each entry."""
+    for section, number, entry in entries(data):
+        for key in entry:
+            made = with_entry(data, section, number, partial(change, key))
+            if made is not None:
+                yield f"{section}[{number}].{key} {what}", made
 
 
 def _drop(key: str, entry: Data) -> None:
@@ -47,11 +57,7 @@ def world_dropped(data: Data) -> Change:
 @operator
 def key_dropped(data: Data) -> Change:
     """A key of an entry left out."""
-    for section, number, entry in entries(data):
-        for key in entry:
-            made = with_entry(data, section, number, partial(_drop, key))
-            if made is not None:
-                yield f"{section}[{number}].{key} left out", made
+    yield from _each_key(data, _drop, "left out")
 
 
 @operator
@@ -152,11 +158,7 @@ def role_flipped(data: Data) -> Change:
 @operator
 def key_mistyped(data: Data) -> Change:
     """A key with a letter too many."""
-    for section, number, entry in entries(data):
-        for key in entry:
-            made = with_entry(data, section, number, partial(_mistype, key))
-            if made is not None:
-                yield f"{section}[{number}].{key}s", made
+    yield from _each_key(data, _mistype, "with an s")
 
 
 @operator

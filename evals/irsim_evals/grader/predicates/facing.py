@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
+from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Quantity, show
 from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register, summary
 
@@ -63,4 +64,4 @@ class Facing(ScenePredicate):
 
 
 def _apart(a: float, b: float) -> float:
-    return abs((a - b + math.pi) % (2 * math.pi) - math.pi)
+    return float(abs(wrap(a - b)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from irsim.common.angles import wrap
 from irsim_evals.grader.matching import Quantity, show
 from irsim_evals.grader.outcome import Mark
 from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
@@ -62,7 +63,7 @@ class OnCircle(ScenePredicate):
                     marks.append(Mark(points=[list(there)], text=f"opposite of {body.name}"))
             if self.facing is not None:
                 off = math.atan2(cy - place[1], cx - place[0]) - body.pose[2]
-                off = abs((off + math.pi) % (2 * math.pi) - math.pi)
+                off = abs(wrap(off))
                 if off > self.facing + 1e-9:
                     wrong.append(f"{body.name} looks {math.degrees(off):.0f}° past the middle")
         if self.even is not None:

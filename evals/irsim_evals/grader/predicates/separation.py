@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -57,7 +56,5 @@ def _moved(body: Body, pose: Any) -> Any:
     if body.static:
         return body.footprint
     x, y, heading = body.pose
-    turned = shapely.affinity.rotate(
-        body.footprint, float(pose[2]) - heading, origin=(x, y), use_radians=not math.isnan(heading)
-    )
+    turned = shapely.affinity.rotate(body.footprint, float(pose[2]) - heading, origin=(x, y), use_radians=True)
     return shapely.affinity.translate(turned, float(pose[0]) - x, float(pose[1]) - y)
