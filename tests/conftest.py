@@ -16,6 +16,7 @@ from hypothesis import HealthCheck, settings
 from irsim.options.registry import CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS, REGISTRIES, is_built_in
 from irsim.scenario.model import json_schema
 from tests import warm
+from tests.browser import chromium, watched  # noqa: F401  # fixtures
 from tests.warm import schema
 
 # How fast a machine draws and runs examples is no property of the code.

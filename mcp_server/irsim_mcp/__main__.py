@@ -30,13 +30,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         _parser().error(f"--workspace: there is no folder {workspace}")
     limits = replace(ServerLimits(), robots=options.max_robots, objects=options.max_objects, work=options.max_work)
 
+    from irsim_mcp.call_log import CallLog, CallLogRefused
     from irsim_mcp.http import HttpRefused, serve, token_from
     from irsim_mcp.server import build_server
     from irsim_mcp.worker import missing_limits
 
     for missing in missing_limits():
         print(f"irsim-mcp: {missing}", file=sys.stderr)
-    server = build_server(workspace, limits, writing=options.enable_write)
+    try:
+        calls = None if options.log_calls is None else CallLog(options.log_calls)
+    except CallLogRefused as refused:
+        _parser().error(str(refused))
+    server = build_server(workspace, limits, writing=options.enable_write, calls=calls)
     if options.http is not None:
         try:
             serve(server, options.http, token_from(options.token_file), options.allow_host)
@@ -66,6 +71,13 @@ def _parser() -> argparse.ArgumentParser:
         "--enable-write",
         action="store_true",
         help="offer the tool write_scenario, which saves valid scenarios in the workspace",
+    )
+    parser.add_argument(
+        "--log-calls",
+        type=Path,
+        metavar="FILE",
+        help="append one line of JSON to FILE for each call of a tool: arguments, whether it failed, and the size of "
+        "the answer in characters, pictures and tokens",
     )
     parser.add_argument(
         "--http",

@@ -18,6 +18,7 @@ from pydantic import AnyUrl
 from irsim import __version__
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import suggestion
+from irsim_mcp.call_log import CallLog
 from irsim_mcp.completions import add_completions
 from irsim_mcp.docs import add_docs
 from irsim_mcp.errors import failure
@@ -64,12 +65,34 @@ _MINUTE_MS = 60_000
 
 
 class IrsimServer(MCPServer[Any]):
-    """A server that suggests similar names for unknown tools and checks the arguments of prompts."""
+    """A server that suggests similar names for unknown tools and checks the arguments of prompts.
+
+    Attributes:
+        calls: Where calls of tools are recorded; None if nowhere.
+    """
+
+    calls: CallLog | None = None
 
     async def call_tool(
         self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None
     ) -> CallToolResult | InputRequiredResult:
-        """Call a tool, or suggest a similar name if there is no such tool."""
+        """Call a tool, or suggest a similar name if there is no such tool; record the call if that is wanted."""
+        if self.calls is None:
+            return await self._call(name, arguments, context)
+        begin = self.calls.now()
+        answer: object = None
+        try:
+            answer = result = await self._call(name, arguments, context)
+        except BaseException as error:  # a call that was cancelled is recorded, too
+            answer = error
+            raise
+        finally:
+            self.calls.record(name, arguments, answer, begin)
+        return result
+
+    async def _call(
+        self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None
+    ) -> CallToolResult | InputRequiredResult:
         names = [tool.name for tool in await self.list_tools()]
         if name not in names:
             fix = suggestion(name, names, f"the tools are {', '.join(names)}")
@@ -111,13 +134,16 @@ class IrsimServer(MCPServer[Any]):
         return await super().get_prompt(name, arguments, context)
 
 
-def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing: bool = False) -> IrsimServer:
+def build_server(
+    workspace: Path, limits: ServerLimits | None = None, *, writing: bool = False, calls: CallLog | None = None
+) -> IrsimServer:
     """Build the server of a workspace.
 
     Args:
         workspace: The folder from which scenarios are read.
         limits: Limits of a call.
         writing: Whether scenarios may also be written to the workspace.
+        calls: Where calls of tools are recorded.
     """
     limits = limits or ServerLimits()
     folder = Workspace(workspace)
@@ -141,6 +167,7 @@ def build_server(workspace: Path, limits: ServerLimits | None = None, *, writing
         extensions=[Skills(), replay_app()],
         log_level="WARNING",
     )
+    server.calls = calls
     add_resources(server, services)
     add_docs(server)
     add_run_resources(server, services)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from irsim_evals.cases.instance import substitute
+from irsim_evals.cases.instance import instance_of, substitute
 from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of, raw_case
 from irsim_evals.grader.grade import grade
 from irsim_evals.grader.limited import grade_answer, grade_folder
@@ -170,3 +170,57 @@ def test_a_grading_that_takes_too_long_is_ended() -> None:
 def test_an_empty_answer_fails_every_case() -> None:
     for case_id in case_ids():
         assert not grade(case_of(case_id), Answer("nothing")).strict
+
+
+def test_a_map_beside_the_scenario_is_graded_with_it(tmp_path: Path) -> None:
+    from PIL import Image
+
+    picture = Image.new("L", (140, 90), 255)
+    picture.paste(0, (65, 0, 75, 60))
+    (tmp_path / "scenario.yaml").write_text(
+        RIGHT.replace("height: 9}", "height: 9, obstacle_map: walls.png}").replace("dash", "follow")
+    )
+    verdict = grade_folder(case_of("pub-01"), tmp_path)
+    assert "walls.png" in next(o for o in verdict.outcomes if o.assertion == "valid").observed
+    picture.save(tmp_path / "walls.png")
+    assert [(o.assertion, o.observed) for o in grade_folder(case_of("pub-01"), tmp_path).failed()] == []
+    (tmp_path / "walls.png").write_bytes(b"\x89PNG no picture")
+    assert not grade_folder(case_of("pub-01"), tmp_path).strict
+
+
+def test_an_episode_may_be_driven_by_another_behavior() -> None:
+    raw = {
+        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
+        "episodes": [
+            {"seconds": 30, "assert": [{"id": "as-written", "arrive": {"of": "robots"}}]},
+            {
+                "seconds": 30,
+                "behavior": "{name: dash}",
+                "assert": [{"id": "dash", "arrive": {"of": "robots", "share": 0}}],
+            },
+        ],
+    }  # fmt: skip
+    wall = "obstacle: [{shape: {name: rectangle, length: 0.5, width: 5}, state: [7, 4.5, 0]}]\n"
+    text = RIGHT.replace("dash", "follow") + wall
+    verdict = grade(instance_of(raw), Answer("answer", {"scenario.yaml": text}))
+    assert [(o.assertion, o.observed) for o in verdict.failed()] == []
+
+
+def test_every_goal_of_an_empty_world_is_reachable() -> None:
+    raw = {
+        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
+        "assert": [{"id": "way", "reachable": {"of": "robots"}}],
+    }  # fmt: skip
+    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": RIGHT})).strict
+
+
+@pytest.mark.parametrize(
+    ("behavior", "avoids"), [("{name: follow, local: orca}", True), ("{name: follow}", False), ("{name: sfm}", True)]
+)
+def test_a_planner_avoids_others_if_what_drives_it_does(behavior: str, avoids: bool) -> None:
+    raw = {
+        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x",
+        "assert": [{"id": "avoids", "each": {"of": "robots", "has": {"avoids": True}}}],
+    }  # fmt: skip
+    text = RIGHT.replace("{name: dash}", behavior)
+    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": text})).strict == avoids

@@ -1,28 +1,36 @@
-"""The evals of the skills: well formed, an answer can meet them and none does not, triggers are balanced."""
+"""The tasks of the skills are cases of the grader: right answers pass, empty ones do not. Triggers are balanced."""
 
 from __future__ import annotations
 
 import json
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
-from evals.skills.assertions import evals_of, form_of, passes
+from irsim_evals.cases.store import Answer, all_case_ids, case_ids, case_of, folder, raw_case
+from irsim_evals.cli.export import write_case
+from irsim_evals.grader.artefact import from_folder
+from irsim_evals.grader.grade import grade
+from irsim_evals.grader.outcome import NOT_REACHED, Verdict
 from tests.evals.conftest import EVALS, ROOT, SKILLS
+from tests.evals.test_grade_command import irsim_evals
 from tests.warm import warm
 
 ANSWERS: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
     (Path(__file__).parent / "answers.yaml").read_text(encoding="utf-8")
 )
+TASKS = {skill: sorted(path.stem for path in folder("cases").glob(f"skills/{skill}/*.yaml")) for skill in SKILLS}
+"""Skill → ids of its tasks."""
 each = pytest.mark.parametrize("skill", SKILLS)
+each_task = pytest.mark.parametrize("task", [task for tasks in TASKS.values() for task in tasks])
 
 
 def triggers(skill: str) -> list[dict[str, Any]]:
@@ -33,104 +41,185 @@ def triggers(skill: str) -> list[dict[str, Any]]:
 
 
 @each
-def test_evals_are_well_formed(skill: str) -> None:
-    folder = EVALS / "skills" / skill
-    told = json.loads((folder / "evals.json").read_text(encoding="utf-8"))
-    assert (set(told), told["skill_name"]) == ({"skill_name", "evals"}, skill)
-    assert len(told["evals"]) >= 5
-    assert len({item["id"] for item in told["evals"]}) == len(told["evals"])
-    for item in told["evals"]:
-        assert set(item) == {"id", "prompt", "expected_output", "files", "assertions"}
-        assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", item["id"])
-        assert len(item["assertions"]) >= 2
-        assert all(form_of(assertion) for assertion in item["assertions"]), item["id"]
-        assert all((folder / name).is_file() for name in item["files"])
-    used = {name for item in told["evals"] for name in item["files"]}
-    assert {f"files/{path.name}" for path in folder.glob("files/*")} == used
-    assert not used & {path.name for path in ROOT.glob("skills/*/examples/*")}
+def test_a_skill_has_tasks_that_are_no_examples_of_it(skill: str) -> None:
+    assert len(TASKS[skill]) >= 5
+    for task in TASKS[skill]:
+        case = case_of(task).case
+        assert (case.id, case.category) == (task, [skill])
+        assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", task)
+        assert case.check
+        assert not set(case.files) & {path.name for path in ROOT.glob("skills/*/examples/*")}
 
 
-@each
-def test_an_empty_folder_and_a_shrug_do_not_pass(skill: str, tmp_path: Path) -> None:
-    for item in evals_of(skill):
-        plain = [assertion for assertion in item["assertions"] if not re.match(r"`\w+ ", assertion)]
-        assert not all(passes(assertion, tmp_path, "Done.")[0] for assertion in plain), item["id"]
+def test_tasks_are_cases_that_only_count_if_they_are_named() -> None:
+    tasks = [task for tasks in TASKS.values() for task in tasks]
+    assert not set(tasks) & set(case_ids())
+    assert sorted([*tasks, *case_ids()]) == all_case_ids()
+    assert len(list(folder("cases").rglob("*.yaml"))) == len(all_case_ids())
+    assert "library-aisle" not in irsim_evals("cases")[1]
+    assert "library-aisle" in irsim_evals("cases", "irsim-scenario")[1]
+
+
+@each_task
+def test_an_empty_folder_and_a_shrug_do_not_pass(task: str) -> None:
+    instance = case_of(task)
+    for reply in ("", "Done."):
+        assert not grade(instance, Answer("nothing", instance.case.files, reply, (reply,))).strict
 
 
 def test_there_is_an_answer_to_each_but_one() -> None:
     known = {(skill, name) for skill, answers in ANSWERS.items() for name in answers}
-    asked = {(skill, item["id"]) for skill in SKILLS for item in evals_of(skill)}
-    assert asked - known == {("irsim-dev", "ellipse")}  # which is a change of the whole tree
+    asked = {(skill, task) for skill, tasks in TASKS.items() for task in tasks}
+    assert asked - known == {
+        ("irsim-dev", "ellipse"),  # a change of the whole tree
+        ("irsim-scenario", "larger-world"),  # its answer is a transcript, and so is that of the next
+        ("irsim-benchmark", "three-densities"),
+    }
     assert known <= asked
 
 
-def runs_programs(skill: str, name: str) -> bool:
-    [item] = [item for item in evals_of(skill) if item["id"] == name]
-    return "run" in ANSWERS[skill][name] or any(re.match(r"`\w+ ", assertion) for assertion in item["assertions"])
+def runs_programs(skill: str, task: str) -> bool:
+    return "run" in ANSWERS[skill][task] or any("command" in item for item in raw_case(task)["assert"])
 
 
-@pytest.mark.parametrize(
-    ("skill", "name"),
-    [
-        pytest.param(skill, name, id=name, marks=[pytest.mark.slow] if runs_programs(skill, name) else [])
-        for skill, answers in ANSWERS.items()
-        for name in answers
-    ],
-)
-def test_the_assertions_can_be_met(skill: str, name: str, tmp_path: Path) -> None:
-    [item] = [item for item in evals_of(skill) if item["id"] == name]
-    answer, given = ANSWERS[skill][name], EVALS / "skills" / skill / "files"
-    for path in item["files"]:
-        shutil.copy(EVALS / "skills" / skill / path, tmp_path)
+def written(skill: str, task: str, where: Path) -> None:
+    """Write the known answer to a task into a new folder, as an agent would leave it."""
+    answer = ANSWERS[skill][task]
+    write_case(where, case_of(task))
     for path, text in answer.get("files", {}).items():
-        (tmp_path / path).write_text(text, encoding="utf-8")
-    if "replace" in answer:
-        text = (given / answer["given"]).read_text(encoding="utf-8")
-        for old, new in answer["replace"].items():
-            text = text.replace(old, new)
-        (tmp_path / answer["given"]).write_text(text, encoding="utf-8")
+        (where / path).write_text(text, encoding="utf-8")
+    for old, new in answer.get("replace", {}).items():
+        text = (where / answer["given"]).read_text(encoding="utf-8")
+        assert old in text
+        (where / answer["given"]).write_text(text.replace(old, new), encoding="utf-8")
     for line in answer.get("run", []):
         command, _, target = line.partition(" > ")
         words = shlex.split(command)
         module = words[1:] if words[0] == "python" else ["-m", *words]
         started = warm([sys.executable, *module])
-        done = subprocess.run(started, cwd=tmp_path, capture_output=True, text=True, check=False)
+        done = subprocess.run(started, cwd=where, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         if target:
-            (tmp_path / target).write_text(done.stdout, encoding="utf-8")
-    for assertion in item["assertions"]:
-        assert passes(assertion, tmp_path, answer.get("reply", ""), given) == (True, ""), assertion
+            (where / target).write_text(done.stdout, encoding="utf-8")
+    if "reply" in answer:
+        (where / "reply.md").write_text(answer["reply"], encoding="utf-8")
+
+
+def failures(verdict: Verdict) -> list[tuple[str, str, str]]:
+    return [(one.assertion, one.expected, one.observed) for one in verdict.failed()]
 
 
 @pytest.mark.parametrize(
-    ("change", "fails"),
+    ("skill", "task"),
     [
-        (("range_max: 4", "range_max: 5"), "`lobby.yaml` holds `robot[0].sensors[0].range_max` = 4"),
-        (("radius: 0.35", "radius: 0.3"), "`lobby.yaml` differs from the given one only in "),
-        (("   (keep this line)", ""), ""),
-        (("# forward", ""), "`lobby.yaml` keeps the comments of the given one"),
-        (("vel_max: ", "velmax: "), "`lobby.yaml` is valid"),
-        (("[7, 7, 0]", "[7, 4.5, 0]"), "`lobby.yaml` ends in success"),
+        pytest.param(skill, task, id=task, marks=[pytest.mark.slow] if runs_programs(skill, task) else [])
+        for skill, answers in ANSWERS.items()
+        for task in answers
     ],
 )
-def test_a_wrong_edit_is_seen(tmp_path: Path, change: tuple[str, str], fails: str) -> None:
-    given = EVALS / "skills" / "irsim-scenario" / "files"
-    text = (given / "lobby.yaml").read_text(encoding="utf-8")
-    text = text.replace("range_max: 6", "range_max: 4").replace("number: 121", "number: 61")
-    assert change[0] in text
-    (tmp_path / "lobby.yaml").write_text(text.replace(*change), encoding="utf-8")
-    [item] = [item for item in evals_of("irsim-scenario") if item["id"] == "shorter-sight"]
-    failed = [line for line in item["assertions"] if not passes(line, tmp_path, "", given)[0]]
-    assert any(line.startswith(fails) for line in failed) if fails else failed == []
+def test_a_task_can_be_solved(skill: str, task: str, tmp_path: Path) -> None:
+    written(skill, task, tmp_path / task)
+    answer = replace(from_folder(tmp_path / task), trusted_folder=tmp_path / task)
+    verdict = grade(case_of(task), answer)
+    assert failures(verdict) == []
+    assert verdict.strict
 
 
-def test_an_answer_is_graded_by_one_command(tmp_path: Path) -> None:
-    reply = tmp_path / "reply.txt"
-    reply.write_text(ANSWERS["irsim-scenario"]["sardines"]["reply"], encoding="utf-8")
-    command = [sys.executable, "-m", "evals.skills.assertions", "irsim-scenario", "sardines", str(tmp_path)]
-    for words, code, passed in (([], 1, 0), (["--reply", str(reply)], 0, 3)):
-        done = subprocess.run(warm([*command, *words]), cwd=ROOT, capture_output=True, text=True, check=False)
-        assert (done.returncode, json.loads(done.stdout)["passed"]) == (code, passed), done.stderr
+@pytest.mark.parametrize(
+    ("change", "failed"),
+    [
+        (("range_max: 4", "range_max: 5"), {"edit", "scanner"}),
+        (("radius: 0.35", "radius: 0.3"), {"edit"}),
+        (("   (keep this line)", ""), set()),
+        (("# forward", ""), {"edit"}),
+        (("vel_max: ", "velmax: "), {"valid", "edit", "scanner", "arrives", "no-collision"}),
+        (("[7, 7, 0]", "[7, 4.5, 0]"), {"edit", "arrives", "no-collision"}),
+    ],
+)
+def test_a_wrong_edit_is_seen(change: tuple[str, str], failed: set[str]) -> None:
+    instance = case_of("shorter-sight")
+    right = (
+        instance.case.files["lobby.yaml"].replace("range_max: 6", "range_max: 4").replace("number: 121", "number: 61")
+    )
+    assert change[0] in right
+    verdict = grade(instance, Answer("edit", {"lobby.yaml": right.replace(*change)}))
+    assert {one.assertion for one in verdict.failed()} == failed
+
+
+@pytest.mark.parametrize(
+    ("task", "old", "new", "failed"),
+    [
+        ("library-aisle", "[[1.05, 5.5, 0], [2.95, 5.5, 0]]", "[[1.04, 5.5, 0], [2.96, 5.5, 0]]", set()),
+        ("library-aisle", "[[1.05, 5.5, 0], [2.95, 5.5, 0]]", "[[0.8, 5.5, 0], [2.95, 5.5, 0]]", {"aisle"}),
+        ("library-aisle", "length: 0.4, width: 10", "length: 0.6, width: 10", {"depth", "aisle"}),
+        ("library-aisle", "length: 0.4, width: 10", "length: 0.4, width: 7", {"depth", "aisle"}),
+        ("library-aisle", "vel_max: [1.0, 1.5]", "vel_max: [3.6, 1.5]", {"robot"}),
+        ("library-aisle", "[2, 0.8, 1.5708]", "[2, 0.8, 90]", {"robot"}),
+        ("library-aisle", "[2, 10.2]", "[2, 5]", {"aisle"}),
+        ("library-aisle", "name: diff", "name: omni", {"robot"}),
+        ("shuttle-fleet", "number: 12", "number: 11", {"robots"}),
+        ("shuttle-fleet", "width: 11, height: 7", "width: 7, height: 11", {"hall", "inside-world"}),
+        ("shuttle-fleet", ", boundary: walls", "", {"hall"}),
+        ("shuttle-fleet", "vel_max: [0.8, 0.8]", "vel_max: [0.8, 1.2]", {"shuttles"}),
+        ("shuttle-fleet", "name: orca, timeHorizon: 3, timeHorizonObst: 1", "name: dash", {"shuttles", "no-collision"}),
+        ("shuttle-fleet", "radius: 0.2", "radius: 20", {"valid"}),
+        ("night-watch", "loop: true", "loop: false", {"robot", "to-and-fro"}),
+        ("night-watch", "goal: [9, 3]", "goal: [8, 3]", {"to-and-fro"}),
+        ("night-watch", "time_limit: 120", "time_limit: 2", {"world"}),
+        ("night-watch", "[0.5, 0.5]", "[0.5, 0.9]", {"limit"}),
+        ("saeulenhalle", "[1.5, 2, 0.507]", "[1, 5, 2]", {"robot"}),
+        ("saeulenhalle", "length: 0.8, width: 0.8", "length: 0.8, width: 0.4", {"squares"}),
+        ("saeulenhalle", "[6, 7.5, 0]", "[6, 4.5, 0]", {"arrives", "no-collision"}),
+        ("saeulenhalle", "radius: 0.3", "radius: 0.6", {"robot"}),
+    ],
+)
+def test_a_wrong_answer_is_seen(task: str, old: str, new: str, failed: set[str]) -> None:
+    [(name, right)] = ANSWERS["irsim-scenario"][task]["files"].items()
+    assert old in right
+    verdict = grade(case_of(task), Answer("wrong", {name: right.replace(old, new)}))
+    assert failed <= {one.assertion for one in verdict.failed() if one.observed != NOT_REACHED}, failures(verdict)
+    assert verdict.strict == (not failed)
+
+
+def test_an_answer_of_several_scenarios_is_graded_one_by_one() -> None:
+    text = "world: {width: 20, height: 20}\nrobot: [{goal: [9, 9], behavior: {name: orca}, kinematics: {name: diff}}]\n"
+    place = "distribution: {name: random, range_low: [2, 11, 0], range_high: [18, 18, 0]}"
+    crowd = f"obstacle: [{{number: %d, shape: {{name: circle, radius: 0.2}}, {place}}}]\n"
+    files = {f"crowd-{n}.yaml": text + crowd % n for n in (5, 25)}
+    files["crowd-15.yaml"] = text.replace("kinematics", "cinematics") + crowd % 15
+    result = {"behaviors": ["orca", "dash"], "rows": [{"success": {"n": 10}}, {"success": {"n": 9}}]}
+    files["result.json"] = json.dumps(result)
+    verdict = grade(case_of("three-crowds"), Answer("crowds", files, "orca 90 % [60, 98]"))
+    seen = {one.assertion: (one.passed, one.observed) for one in verdict.outcomes}
+    assert not seen["valid"][0]
+    del files["crowd-15.yaml"]
+    files["crowd-30.yaml"] = text + "obstacle: 7\n"
+    verdict = grade(case_of("three-crowds"), Answer("crowds", files, "crowd-5.yaml: orca 90 % [60, 98]"))
+    seen = {one.assertion: (one.passed, one.observed) for one in verdict.outcomes}
+    assert seen["five"] == (True, "obstacles: 5")
+    assert seen["twenty-five"] == (True, "obstacles: 25")
+    assert seen["fifteen"] == (False, "LookupError: there is no file crowd-15.yaml")
+    assert seen["behaviors"] == (True, "behaviors: [orca, dash]")
+    assert seen["seeds"] == (False, "rows[*].success.n: 10, 9")
+
+
+def test_programs_run_only_where_that_is_allowed(tmp_path: Path) -> None:
+    where = tmp_path / "compass"
+    written("irsim-dev", "compass", where)
+    marker = where / "was-run"
+    (where / "compass.py").write_text(
+        (where / "compass.py").read_text(encoding="utf-8") + f"\nopen({str(marker)!r}, 'w').close()\n", encoding="utf-8"
+    )
+    code, text = irsim_evals("grade", where)
+    assert code == 1
+    assert 'loads: expected `python -c "import compass"` succeeds; observed it was not run' in text
+    assert not marker.exists()
+    assert irsim_evals("grade", where, "--run-programs")[0] == 0
+    assert marker.exists()
+    (where / "compass.py").write_text("SENSORS.register\nraise SystemExit('no compass')\n", encoding="utf-8")
+    code, text = irsim_evals("grade", where, "--run-programs")
+    assert code == 1
+    assert "no compass" in text or "NameError" in text
 
 
 @each

@@ -11,7 +11,8 @@ import pytest
 from mcp import Client
 from mcp.types import TextContent
 
-from evals.skills.assertions import form_of, passes
+from irsim_evals.cases.store import Answer, all_case_ids, case_of
+from irsim_evals.grader.grade import grade
 from irsim_mcp.server import build_server
 from tests.evals.conftest import EVALS
 
@@ -46,7 +47,7 @@ class Caller:
 
 
 def lines(path: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """What was asked, and what was done."""
+    """The case and the files that make up the answer, and what was done."""
     first, *rest = (json.loads(line) for line in path.read_text(encoding="utf-8").splitlines())
     return first, rest
 
@@ -55,11 +56,10 @@ def lines(path: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 @pytest.mark.parametrize("path", TRANSCRIPTS, ids=lambda path: path.stem)
 async def test_a_transcript_still_leads_to_its_end(path: Path, tmp_path: Path) -> None:
     asked, steps = lines(path)
-    workspace, given = tmp_path / "workspace", tmp_path / "given"
-    for folder in (workspace, given):
-        folder.mkdir()
-        for name, text in asked["given"].items():
-            (folder / name).write_text(text, encoding="utf-8")
+    workspace = tmp_path / "workspace"
+    workspace.mkdir()
+    for name, text in case_of(asked["case"]).case.files.items():
+        (workspace / name).write_text(text, encoding="utf-8")
     wrong = []  # told after the client is closed, which would wrap it
     async with Client(build_server(workspace)) as client:
         call = Caller(client)
@@ -71,8 +71,21 @@ async def test_a_transcript_still_leads_to_its_end(path: Path, tmp_path: Path) -
             if failed or not all(expected in text for expected in step["expect"]):
                 wrong.append({**step, "text": text})
     assert wrong == []
-    for assertion in asked["assertions"]:
-        assert passes(assertion, workspace, given=given) == (True, ""), assertion
+    assert {name: (workspace / name).read_text(encoding="utf-8") for name in asked["answer"]} == answer_of(path)
+
+
+def answer_of(path: Path) -> dict[str, str]:
+    """Name → last text of each file of the answer."""
+    asked, steps = lines(path)
+    last = {step["file"]: step["text"] for step in steps if "file" in step}
+    return {name: last[name] for name in asked["answer"]}
+
+
+@pytest.mark.parametrize("path", TRANSCRIPTS, ids=lambda path: path.stem)
+def test_the_answer_of_a_transcript_passes_its_case(path: Path) -> None:
+    verdict = grade(case_of(lines(path)[0]["case"]), Answer(path.stem, answer_of(path)))
+    assert [(one.assertion, one.expected, one.observed) for one in verdict.failed()] == []
+    assert verdict.strict
 
 
 def test_transcripts_are_varied_and_well_formed() -> None:
@@ -80,8 +93,8 @@ def test_transcripts_are_varied_and_well_formed() -> None:
     tools: set[str] = set()
     for path in TRANSCRIPTS:
         asked, steps = lines(path)
-        assert set(asked) == {"prompt", "given", "assertions"}
-        assert all(form_of(assertion) for assertion in asked["assertions"])
+        assert set(asked) == {"case", "answer"}
+        assert asked["case"] in all_case_ids()
         assert all(set(step) in ({"file", "text"}, {"tool", "arguments", "expect"}) for step in steps)
         assert all(step["expect"] for step in steps if "tool" in step)
         tools |= {step["tool"] for step in steps if "tool" in step}

@@ -84,6 +84,7 @@ def test_version_and_help() -> None:
         "--http",
         "--token-file",
         "--enable-write",
+        "--log-calls",
     ):
         assert option in told
 

@@ -10,11 +10,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_validator
 
+from irsim_evals.cases.drawing import Drawing
 from irsim_evals.grader.matching import Quantity
 from irsim_evals.grader.predicates._base import Predicate, registered
 from irsim_evals.grader.selection import Selector
 
-__all__ = ["Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin"]
+__all__ = ["Assertion", "Case", "Disposition", "EpisodePlan", "Parameter", "Pin", "Waiver"]
 
 Disposition = Literal["build", "ask", "flag"]
 
@@ -52,6 +53,8 @@ class _AssertionBase(_Record):
     when: Literal["always", "built", "unbuilt"] | None = None
     """Whether it counts only if there is a scenario, or only if there is none; default: with a scenario if it is about
     the world, else always."""
+    file: str = ""
+    """Scenario that an assertion about the start is about, where an answer has several; default: the main one."""
 
     @property
     def predicate(self) -> Predicate:
@@ -89,6 +92,10 @@ class EpisodePlan(_Record):
     """Simulated time [s]; an episode goes on after everybody has arrived."""
     share: Quantity = 1.0
     """Share of the episodes in which each assertion must hold."""
+    behavior: str | None = None
+    """Behavior that drives the robots instead of theirs, as ``irsim run --behavior`` does."""
+    speed: dict[str, Quantity] = {}
+    """Selection → factor of the speed limits of its bodies, such as 0.5 for half as fast."""
     check: Annotated[list[Assertion], Field(alias="assert")]
     """What must happen."""
 
@@ -101,12 +108,25 @@ class Pin(_Record):
     """What a prompt pins or leaves free, for the proof of the grader."""
 
     of: str = "all"
-    """Selection of the bodies; ``world`` for the world itself, ``reply`` for the reply."""
+    """Selection of the bodies; ``world`` for the world itself, ``reply`` and ``text`` for the words of the answer."""
     facts: Annotated[list[str], BeforeValidator(_as_list)]
-    """Facts: ``kinematics``, ``size``, ``shape``, ``pose``, ``goal``, ``behavior``, ``count``, ``sensors``, ``limits``,
-    ``color``, ``name``; of the world ``size``, ``origin``, ``map``, ``times``, ``modes``."""
+    """Facts: ``count``, ``kinematics``, ``size``, ``shape``, ``pose`` (``position``, ``heading``), ``goal``,
+    ``behavior``, ``limits`` (``forward``, ``backward``, ``turn``, …), ``sensors`` (``range``, ``beams``, ``opening``,
+    …), ``color``, ``name``; of the world ``size``, ``origin``, ``map``, ``times``, ``modes``, and where they are free
+    ``mirror_x`` and ``mirror_y``; of the reply ``reply``, ``replies``; of the text ``comments``, ``layout``."""
     why: str = ""
     """Reason, where it is not plain from the prompt."""
+
+
+class Waiver(_Record):
+    """Mutants that change a pinned fact and are right all the same."""
+
+    operator: str
+    """Name of the operator that makes them."""
+    what: str = ""
+    """Regular expression that what was changed contains."""
+    why: str
+    """Reason."""
 
 
 class Case(_Record):
@@ -120,7 +140,8 @@ class Case(_Record):
     """Cases of one family share a base, so their results are not independent; default: the case itself."""
     category: list[str]
     """What it tests: ``basic``, ``geometry``, ``units``, ``kinematics``, ``multi``, ``sensors``, ``maps``, ``social``,
-    ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``."""
+    ``rl``, ``bench``, ``edit``, ``ambiguous``, ``impossible``, ``i18n``, ``adversarial``,
+    or the name of the skill whose task it is."""
     level: Annotated[int, Field(ge=1, le=4)]
     """1 is easy, 4 is hard."""
     language: str = "en"
@@ -135,6 +156,13 @@ class Case(_Record):
     """What the user says after each reply."""
     files: dict[str, str] = {}
     """Files that the folder starts with: name → text."""
+    drawings: dict[str, Drawing] = {}
+    """Pictures that the folder starts with: name → what is drawn."""
+    scenario: bool = True
+    """Whether the answer is a scenario; without it only files and the reply are looked at."""
+    python: Literal["none", "runner", "any"] = "none"
+    """Programs that the agent may leave: none, ones that only run scenarios, or any, which are run only where
+    ``irsim-evals grade --run-programs`` says so."""
     disposition: list[Disposition] = ["build"]
     """What the agent may do: build a scenario, ask first, or say that it cannot be done."""
     seeds: list[int] = [0]
@@ -155,6 +183,8 @@ class Case(_Record):
     """Facts that the prompt pins: a change of one must be noticed."""
     free: list[Pin] = []
     """Facts that the prompt leaves free: a change of one must be accepted."""
+    waived: list[Waiver] = []
+    """Mutants that the proof leaves out, with reasons."""
     equivalent: str = ""
     """What else is an answer, for reviewers."""
 

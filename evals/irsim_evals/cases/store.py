@@ -10,9 +10,24 @@ from typing import Any
 
 import yaml
 
+from irsim_evals.cases.drawing import draw
 from irsim_evals.cases.instance import Instance, instance_of, substitute
 
-__all__ = ["Answer", "case_ids", "case_of", "folder", "golds_of", "raw_case"]
+__all__ = [
+    "BINARY",
+    "Answer",
+    "all_case_ids",
+    "case_ids",
+    "case_of",
+    "folder",
+    "given_pictures",
+    "golds_of",
+    "raw_case",
+    "write_given",
+]
+
+BINARY = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".npy", ".npz")
+"""Endings of files that hold a picture or an array."""
 
 
 @dataclass(frozen=True)
@@ -24,12 +39,16 @@ class Answer:
         files: Path in the folder → text.
         reply: Last message.
         replies: Message after each turn.
+        blobs: Path in the folder → content of a picture or an array.
+        trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
     """
 
     name: str
     files: Mapping[str, str] = field(default_factory=dict)
     reply: str = ""
     replies: tuple[str, ...] = ()
+    blobs: Mapping[str, bytes] = field(default_factory=dict)
+    trusted_folder: Path | None = None
 
 
 def folder(kind: str) -> Path:
@@ -39,8 +58,19 @@ def folder(kind: str) -> Path:
 
 
 def case_ids() -> list[str]:
-    """Ids of all cases, sorted."""
+    """Ids of the cases that count: those that commands are about if nobody names others."""
     return sorted(path.stem for path in folder("cases").glob("*.yaml"))
+
+
+def all_case_ids() -> list[str]:
+    """Ids of all cases, those of the tasks of the skills included, which lie in folders of their own."""
+    return sorted(_case_files())
+
+
+@functools.cache
+def _case_files() -> dict[str, Path]:
+    """Id → file of each case."""
+    return {path.stem: path for path in sorted(folder("cases").rglob("*.yaml"))}
 
 
 @functools.cache
@@ -50,10 +80,7 @@ def raw_case(case_id: str) -> Any:
     Raises:
         KeyError: There is no such case.
     """
-    path = folder("cases") / f"{case_id}.yaml"
-    if not path.is_file():
-        raise KeyError(case_id)
-    return yaml.safe_load(path.read_text(encoding="utf-8"))
+    return yaml.safe_load(_case_files()[case_id].read_text(encoding="utf-8"))
 
 
 def case_of(case_id: str, seed: int | None = None) -> Instance:
@@ -67,12 +94,31 @@ def golds_of(instance: Instance) -> list[Answer]:
     return [_gold(path, instance) for path in sorted(root.iterdir()) if path.is_dir()] if root.is_dir() else []
 
 
+def given_pictures(instance: Instance) -> dict[str, bytes]:
+    """The pictures that the folder of a case starts with: name → content of the file."""
+    return {name: draw(drawing) for name, drawing in instance.case.drawings.items()}
+
+
+def write_given(folder: Path, instance: Instance) -> None:
+    """Write the files and pictures that the folder of a case starts with."""
+    for name, text in instance.case.files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    for name, content in given_pictures(instance).items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
 def _gold(path: Path, instance: Instance) -> Answer:
-    texts = {
-        str(file.relative_to(path)): substitute(file.read_text(encoding="utf-8") + "\0", instance.values).rstrip("\0")
-        for file in sorted(path.rglob("*"))
-        if file.is_file()
-    }
+    texts, blobs = {}, given_pictures(instance)
+    for file in sorted(path.rglob("*")):
+        name = file.relative_to(path).as_posix()
+        if file.suffix.lower() in BINARY:
+            blobs[name] = file.read_bytes()
+        elif file.is_file():
+            texts[name] = substitute(file.read_text(encoding="utf-8") + "\0", instance.values).rstrip("\0")
     replies = tuple(texts.pop(name) for name in sorted(texts) if name.startswith("reply-"))
     reply = texts.pop("reply.md", "")
-    return Answer(path.name, {**instance.case.files, **texts}, reply, (*replies, reply))
+    return Answer(path.name, {**instance.case.files, **texts}, reply, (*replies, reply), blobs)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from irsim.cli.guard import handle_errors
-from irsim_evals.cli import cases, export, grade, prove, schema
+from irsim_evals.cli import cases, compare, export, grade, prove, report, run, schema
 
 __all__ = ["app"]
 
@@ -17,5 +17,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for _command in (cases.cases, export.export, grade.grade, prove.prove, schema.schema):
+for _command in (
+    *(cases.cases, export.export, grade.grade, run.run),
+    *(report.report, compare.compare, prove.prove, schema.schema),
+):
     app.command()(handle_errors(_command))

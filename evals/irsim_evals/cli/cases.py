@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from irsim.cli.output import console
+from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of
 from irsim_evals.cli.choose import chosen
 
@@ -36,8 +37,13 @@ def cases(
         sys.stdout.write(json.dumps(rows, ensure_ascii=False) + "\n")
         return
     out = console()
+    widths = [max(len(text) for text in column) for column in zip(*map(_columns, instances), strict=True)]
     for instance in instances:
-        case = instance.case
-        out.print(f"{case.id:8} level {case.level}  {', '.join(case.category):24} {case.title}")
+        name, category = (text.ljust(width) for text, width in zip(_columns(instance), widths, strict=True))
+        out.print(f"{name}  level {instance.case.level}  {category}  {instance.case.title}", soft_wrap=True)
         if wanted:
             out.print(f"\n{instance.prompt.strip()}\n", soft_wrap=True)
+
+
+def _columns(instance: Instance) -> tuple[str, str]:
+    return instance.case.id, ", ".join(instance.case.category)

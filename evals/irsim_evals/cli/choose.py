@@ -7,20 +7,20 @@ from collections.abc import Sequence
 import typer
 
 from irsim.diagnostics.diagnostic import suggestion
-from irsim_evals.cases.store import case_ids, raw_case
+from irsim_evals.cases.store import all_case_ids, case_ids, raw_case
 
 __all__ = ["chosen"]
 
 
 def chosen(wanted: Sequence[str] | None) -> list[str]:
-    """Ids of the cases that were asked for, by id or by category; all without a wish.
+    """Ids of the cases that were asked for, by id or by category; without a wish all that count.
 
     Raises:
         typer.BadParameter: No case has that id or category.
     """
-    known = case_ids()
     if not wanted:
-        return known
+        return case_ids()
+    known = all_case_ids()
     found: list[str] = []
     for word in wanted:
         of_category = [name for name in known if word in raw_case(name).get("category", ())]

@@ -10,7 +10,7 @@ import typer
 
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import case_of
+from irsim_evals.cases.store import case_of, write_given
 from irsim_evals.cli.choose import chosen
 
 __all__ = ["export", "write_case"]
@@ -48,7 +48,4 @@ def write_case(folder: Path, instance: Instance) -> None:
     (folder / "prompt.md").write_text(instance.prompt.strip() + "\n", encoding="utf-8")
     for number, turn in enumerate(instance.case.turns, 2):
         (folder / f"prompt-{number}.md").write_text(turn.strip() + "\n", encoding="utf-8")
-    for name, text in instance.case.files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+    write_given(folder, instance)

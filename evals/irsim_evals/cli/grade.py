@@ -2,99 +2,160 @@
 
 from __future__ import annotations
 
-import json
 import re
-import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import typer
 
-from irsim.cli.output import console
 from irsim.diagnostics.errors import ArgumentError
-from irsim_evals.cases.store import case_ids, case_of
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import all_case_ids, case_of
+from irsim_evals.cli.verdicts import show_verdicts
+from irsim_evals.cli.watch import Changes
+from irsim_evals.grader.artefact import ArtefactError, from_folder
 from irsim_evals.grader.limited import grade_folder
 from irsim_evals.grader.outcome import Verdict
+from irsim_evals.results import results_of, trial_of, write_results
 
 __all__ = ["grade"]
 
-_EXPORTED = re.compile(r"([\w-]+?)(?:@(\d+))?")
-_PERIOD_S = 1.0
-"""Time between two looks at the folders with ``--watch``."""
+_EXPORTED = re.compile(r"([\w-]+?)(?:@(\d{1,18}))?")
+_PERIOD_S = 0.5
+"""Time between two looks at the folders with ``--watch`` [s]."""
+
+
+class _Work(NamedTuple):
+    """What is graded: the folder of a case, and the seed of its instance."""
+
+    folder: Path
+    case: str
+    seed: int | None
 
 
 def grade(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Exported folder, or the folder of one case in it.")],
     case: Annotated[str | None, typer.Option(help="Case of a folder with another name.")] = None,
+    calls: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="What irsim-mcp --log-calls wrote; default: calls.jsonl in the folder."),
+    ] = None,
+    run_programs: Annotated[
+        bool,
+        typer.Option("--run-programs", help="Run commands of a case, and with them programs of the answer, unguarded."),
+    ] = False,
     watch: Annotated[bool, typer.Option(help="Grade again whenever a file changes, until Ctrl-C.")] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE", help="File of results to write, for report.")
+    ] = None,
+    arm: Annotated[str | None, typer.Option(help="Who answered, in that file; default: the name of DIR.")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Grade what was left in the folders of an export.
 
     Exits with 0 if every case passes, with 1 if one does not, with 2 if there is nothing to grade.
     """
-    verdicts = _grade(folder, case)
-    _show(verdicts, json_output)
+    works = _works(folder, case)
+    if calls is not None and not calls.is_file():
+        raise ArgumentError(f"--calls: there is no file {calls}", "irsim-mcp --log-calls FILE writes one")
+    if calls is not None and len(works) > 1:
+        raise ArgumentError(
+            f"--calls belongs to one case, and {folder} holds {len(works)}",
+            "give the folder of one case, or put each file into its folder as calls.jsonl",
+        )
+    grader = _Grader(None if calls is None else calls.resolve(), run_programs)
+    changes = Changes(work.folder for work in works)
+    verdicts = {work.folder: grader.grade(work) for work in works}
+    show_verdicts(list(verdicts.values()), json_output)
+    if output is not None:
+        _write(output, arm or folder.resolve().name, works, verdicts)
     if watch:
-        _watch(folder, case, json_output)
-    if not all(verdict.strict for verdict in verdicts):
+        _watch(folder, case, grader, verdicts, changes, json_output)
+    if not all(verdict.strict for verdict in verdicts.values()):
         raise typer.Exit(1)
 
 
-def _folders(folder: Path, case: str | None) -> list[tuple[Path, str, int | None]]:
-    """Folders to grade, with their case and the seed of its instance."""
-    known = set(case_ids())
+def _write(output: Path, arm: str, works: list[_Work], verdicts: Mapping[Path, Verdict]) -> None:
+    instances = [case_of(work.case, work.seed) for work in works]
+    trials = [
+        trial_of(instance, verdicts[work.folder], arm, reply=_reply(instance, work.folder))
+        for instance, work in zip(instances, works, strict=True)
+    ]
+    write_results(results_of(trials), output)
+
+
+def _reply(instance: Instance, folder: Path) -> str:
+    try:
+        return from_folder(folder, turns=1 + len(instance.case.turns)).reply
+    except (ArtefactError, OSError):  # the verdict says so already
+        return ""
+
+
+def _works(folder: Path, case: str | None) -> list[_Work]:
+    """What there is to grade.
+
+    Raises:
+        ArgumentError: There is nothing to grade.
+    """
+    if not folder.is_dir():
+        raise ArgumentError(f"there is no folder {folder}", "write some with irsim-evals export DIR")
+    known = set(all_case_ids())
     if case is not None:
         if case not in known:
             raise ArgumentError(f"no case is called {case!r}", "list them with irsim-evals cases")
-        return [(folder, case, None)]
-    candidates = [folder, *sorted(folder.iterdir())] if folder.is_dir() else []
+        return [_Work(folder, case, None)]
     found = []
-    for path in candidates:
+    for path in (folder, *sorted(folder.iterdir())):
         name = _EXPORTED.fullmatch(path.resolve().name)
         if path.is_dir() and name is not None and name[1] in known:
-            found.append((path, name[1], int(name[2]) if name[2] else None))
+            found.append(_Work(path, name[1], int(name[2]) if name[2] else None))
     if not found:
         raise ArgumentError(f"{folder} holds no exported case", "write some with irsim-evals export DIR")
     return found
 
 
-def _grade(folder: Path, case: str | None) -> list[Verdict]:
-    return [grade_folder(case_of(name, seed), path) for path, name, seed in _folders(folder, case)]
+class _Grader(NamedTuple):
+    """How folders are graded: with another file of calls, and with programs run."""
+
+    calls: Path | None
+    run_programs: bool
+
+    def grade(self, work: _Work) -> Verdict:
+        instance = case_of(work.case, work.seed)
+        return grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
 
 
-def _show(verdicts: list[Verdict], json_output: bool) -> None:
-    if json_output:
-        sys.stdout.write(json.dumps([v.model_dump(mode="json") for v in verdicts], ensure_ascii=False) + "\n")
+def _watch(
+    folder: Path,
+    case: str | None,
+    grader: _Grader,
+    verdicts: dict[Path, Verdict],
+    changes: Changes,
+    json_output: bool,
+) -> None:
+    """Grade folders again after their files have changed, until Ctrl-C.
+
+    Args:
+        folder: The folder that was asked for.
+        case: Its case, if it has another name.
+        grader: Grades a folder.
+        verdicts: Folder of a case → its verdict, kept up to date.
+        changes: Finds what has changed.
+        json_output: Print JSON.
+    """
+    try:
+        while True:
+            time.sleep(_PERIOD_S)
+            try:
+                works = {work.folder: work for work in _works(folder, case)}
+            except (ArgumentError, OSError):  # folders may come and go meanwhile
+                continue
+            changed = changes.look(works)
+            for path in changed:
+                verdicts[path] = grader.grade(works[path])
+            if changed:
+                show_verdicts([verdicts[path] for path in changed], json_output)
+    except KeyboardInterrupt:
         return
-    out = console()
-    for verdict in verdicts:
-        mark = "PASS" if verdict.strict else "FAIL"
-        out.print(f"{mark} {verdict.case}: {verdict.rate:.0%} of the assertions hold", soft_wrap=True)
-        for one in verdict.failed():
-            where = f" ({one.yaml_path})" if one.yaml_path else ""
-            out.print(f"     {one.assertion}: expected {one.expected}; observed {one.observed}{where}", soft_wrap=True)
-    passed = sum(verdict.strict for verdict in verdicts)
-    out.print(f"{passed} of {len(verdicts)} cases pass")
-
-
-def _watch(folder: Path, case: str | None, json_output: bool) -> None:
-    seen = _stamp(folder)
-    while True:
-        time.sleep(_PERIOD_S)
-        now = _stamp(folder)
-        if now != seen:
-            seen = now
-            _show(_grade(folder, case), json_output)
-
-
-def _stamp(folder: Path) -> list[tuple[str, int, int]]:
-    found = []
-    for path in sorted(folder.rglob("*")):
-        try:
-            state = path.lstat()
-        except OSError:
-            continue
-        found.append((str(path), state.st_mtime_ns, state.st_size))
-    return found

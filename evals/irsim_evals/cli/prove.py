@@ -11,13 +11,15 @@ import typer
 
 from irsim.cli.output import console, progress
 from irsim_evals.cli.choose import chosen
-from irsim_evals.proof.prove import Proof, as_rows
+from irsim_evals.proof.prove import Disagreement, Proof, as_case_rows, as_rows
 from irsim_evals.proof.prove import prove as run_proof
 
 __all__ = ["prove"]
 
 _BAR = 0.01
 """Greatest share of wrong verdicts."""
+MIN_REWRITES, MIN_MUTANTS = 10, 30
+"""Numbers of trials of each case below which the proof says so."""
 
 
 def prove(
@@ -30,11 +32,12 @@ def prove(
 ) -> None:
     """Prove the grader: golds and their rewrites pass, mutants of pinned facts and null agents fail.
 
-    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted.
+    Exits with 1 if more than 1 % of the right answers are rejected, or of the wrong ones accepted, or
+    if the second implementation of the commonest predicates disagrees.
     """
     begin = time.perf_counter()
-    with progress("grading") as report:
-        proof = run_proof(chosen(wanted), quick=quick, seed=seed, progress=report)
+    with progress("grading") as show:
+        proof = run_proof(chosen(wanted), quick=quick, seed=seed, progress=show)
     seconds = time.perf_counter() - begin
     if json_output:
         wrong = [
@@ -42,15 +45,29 @@ def prove(
              "failed": [f"{o.assertion}: {o.observed}" for o in v.failed()]}
             for t, v in proof.wrong
         ]  # fmt: skip
-        told = {"rows": as_rows(proof), "wrong": wrong, "left_out": dict(proof.left_out), "seconds": round(seconds, 1)}
-        sys.stdout.write(json.dumps(told, ensure_ascii=False) + "\n")
+        report = {
+            "rows": as_rows(proof), "cases": as_case_rows(proof), "wrong": wrong, "left_out": dict(proof.left_out),
+            "compared": dict(proof.compared),
+            "disagreements": [_words_of(item) for item in proof.disagreements],
+            "seconds": round(seconds, 1),
+        }  # fmt: skip
+        sys.stdout.write(json.dumps(report, ensure_ascii=False) + "\n")
     else:
-        _show(proof, seconds)
-    if any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects)):
+        _show(proof, seconds, quick)
+    if proof.disagreements or any(wrong > _BAR * count for wrong, count in (proof.false_accepts, proof.false_rejects)):
         raise typer.Exit(1)
 
 
-def _show(proof: Proof, seconds: float) -> None:
+def _words_of(item: Disagreement) -> str:
+    """A disagreement for people."""
+    trial, said = item.trial, "holds" if item.passed else "does not hold"
+    return (
+        f"{trial.case}/{trial.gold} {trial.kind}, {trial.operator}: {trial.what}: {item.assertion} ({item.predicate}) "
+        f"{said} for the grader only: {item.observed}"
+    )
+
+
+def _show(proof: Proof, seconds: float, quick: bool) -> None:
     out = console()
     for row in as_rows(proof):
         out.print(f"{row['kind']:14} {row['operator']:24} {row['trials']:5} {row['wrong'] or '':>4}")
@@ -62,4 +79,11 @@ def _show(proof: Proof, seconds: float) -> None:
         )
     for name, (wrong, count) in (("false accepts", proof.false_accepts), ("false rejects", proof.false_rejects)):
         out.print(f"{name}: {wrong} of {count}" + (f" ({wrong / count:.2%})" if count else ""))
+    for item in proof.disagreements:
+        out.print(f"DISAGREE {_words_of(item)}", soft_wrap=True)
+    judged = ", ".join(f"{name} {number}" for name, number in sorted(proof.compared.items()))
+    out.print(f"second implementation: {len(proof.disagreements)} disagreements, judged: {judged or 'nothing'}")
+    for row in as_case_rows(proof):
+        if not quick and (row["rewrites"] < MIN_REWRITES or row["mutants"] < MIN_MUTANTS):
+            out.print(f"FEW {row['case']}: {row['rewrites']} rewrites, {row['mutants']} mutants")
     out.print(f"{sum(proof.left_out.values())} mutants of facts that no prompt pins or leaves free; {seconds:.0f} s")

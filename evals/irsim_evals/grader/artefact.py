@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from irsim_evals.cases.store import Answer
+from irsim_evals.cases.store import BINARY, Answer
 
 __all__ = ["ArtefactError", "find_scenario", "from_folder", "scenarios_in"]
 
@@ -14,31 +14,37 @@ _MAX_FILE_BYTES = 2_000_000
 """Size of a text file that is read."""
 _MAX_FILES = 200
 """Number of files that are looked at."""
-_TEXT = (".yaml", ".yml", ".py", ".md", ".json", ".jsonl", ".txt", ".toml", ".csv", ".sh")
-_REPLY = re.compile(r"reply(?:-(\d+))?\.md")
-_FENCE = re.compile(r"```(?:ya?ml)?[^\n]*\n(.*?)```", re.DOTALL)
-_SECTIONS = re.compile(r"^\s*[{\"']?(?:world|robot|obstacle)[\"']?\s*:", re.MULTILINE)
-_IGNORED = ("prompt.md", "log.jsonl", "calls.jsonl")
+_MAX_BLOB_BYTES = 16_000_000
+"""Size of a picture or an array that is read."""
+_TEXT = (
+    ".yaml", ".yml", ".md", ".json", ".jsonl", ".txt", ".toml", ".csv", ".py", ".ipynb", ".sh", ".js", ".pl", ".rb",
+    ".bat", ".ps1", ".patch",
+)  # fmt: skip
+_REPLY = re.compile(r"reply(?:-(\d{1,3}))?\.md")
+_FENCE = re.compile(r"```(?:ya?ml)?[^\n`]*\n(.*?)```", re.DOTALL)
+_SECTIONS = re.compile(r"^[ \t]*[{\"']?(?:world|robot|obstacle)[\"']?[ \t]*:", re.MULTILINE)
+_IGNORED = re.compile(r"prompt(?:-\d+)?\.md|log\.jsonl|calls\.jsonl")
 
 
 class ArtefactError(ValueError):
     """The folder holds something that is not graded: a file that is too large, a link that leads out of it."""
 
 
-def from_folder(folder: Path, name: str = "") -> Answer:
+def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
     """Read what an agent left.
 
     Args:
-        folder: Its files, and ``reply.md`` (``reply-1.md``, ``reply-2.md`` … after each turn).
+        folder: Its files, and its last message in ``reply.md``, those before in ``reply-1.md``, ``reply-2.md`` …
         name: Name of the answer; default: that of the folder.
+        turns: Number of turns of the case. The last message may also be numbered.
 
     Raises:
         ArtefactError: A file is too large, a link leads out of the folder, or there are too many files.
     """
     root = folder.resolve()
     texts: dict[str, str] = {}
+    blobs: dict[str, bytes] = {}
     replies: dict[int, str] = {}
-    reply = ""
     seen = 0
     for path in sorted(folder.rglob("*")):
         relative = path.relative_to(folder)
@@ -46,23 +52,34 @@ def from_folder(folder: Path, name: str = "") -> Answer:
             continue
         if path.is_symlink() or not path.resolve().is_relative_to(root):
             raise ArtefactError(f"{relative} is a link, and links are not followed")
-        if not path.is_file() or path.suffix.lower() not in _TEXT or relative.name in _IGNORED:
+        ending = path.suffix.lower()
+        if not path.is_file() or ending not in (*_TEXT, *BINARY) or _IGNORED.fullmatch(relative.name):
             continue
         seen += 1
         if seen > _MAX_FILES:
             raise ArtefactError(f"there are more than {_MAX_FILES} files")
-        if path.stat().st_size > _MAX_FILE_BYTES:
-            raise ArtefactError(f"{relative} has {path.stat().st_size:,} bytes; at most {_MAX_FILE_BYTES:,} are read")
+        most = _MAX_BLOB_BYTES if ending in BINARY else _MAX_FILE_BYTES
+        if path.stat().st_size > most:
+            raise ArtefactError(f"{relative} has {path.stat().st_size:,} bytes; at most {most:,} are read")
+        if ending in BINARY:
+            blobs[relative.as_posix()] = path.read_bytes()
+            continue
         text = path.read_bytes().decode("utf-8", errors="replace")
-        found = _REPLY.fullmatch(relative.as_posix())
-        if found is None:
+        number = _turn_of(relative.as_posix(), turns)
+        if number is None:
             texts[relative.as_posix()] = text
-        elif found[1]:
-            replies[int(found[1])] = text
         else:
-            reply = text
-    before = tuple(replies[number] for number in sorted(replies))
-    return Answer(name or folder.name, texts, reply, (*before, reply) if reply else before)
+            replies[number] = text
+    said = tuple(replies.get(number, "") for number in range(1, turns + 1))
+    return Answer(name or folder.name, texts, said[-1], said, blobs)
+
+
+def _turn_of(name: str, turns: int) -> int | None:
+    """The turn to which a file holds the reply; None for a file that is no reply."""
+    found = _REPLY.fullmatch(name)
+    if found is None or (found[1] and not 1 <= int(found[1]) <= turns):
+        return None
+    return int(found[1]) if found[1] else turns
 
 
 def scenarios_in(texts: Mapping[str, str]) -> list[str]:

@@ -19,6 +19,8 @@ __all__ = ["Body", "Box", "body_of", "is_terrain"]
 
 _STRAIGHT = 1e-6
 """Largest deviation [m] of an outline from a rectangle that counts as none."""
+_AVOIDING = ("rvo", "orca", "sfm")
+"""Behaviors that avoid others."""
 _CROSSWISE = ("omni", "omni_angular")
 """Drives whose second control is a speed sideways."""
 
@@ -123,8 +125,10 @@ class Body:
 
     @property
     def avoids(self) -> bool:
-        """Whether its behavior avoids others."""
-        return self.behavior in ("rvo", "orca", "sfm")
+        """Whether its behavior, or the one that drives it between the turns of its path, avoids others."""
+        local = self.options.get("local")
+        inner = local.get("name") if isinstance(local, dict) else local
+        return self.behavior in _AVOIDING or inner in _AVOIDING
 
     @property
     def shape(self) -> str:
@@ -172,7 +176,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
         radius=radius,
         box=None if radius is not None else _box(footprint),
         extent=(view.length, view.width),
-        **_limits(kinematics, low, high),
+        **_limits(record.kinematics if kinematics else None, low, high),
         wheelbase=record.wheelbase,
         sensors=[{**sensor.model_dump(mode="json"), "name": sensor.name} for sensor in record.sensors],
         color=_color(record.color),
@@ -189,16 +193,19 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
     )
 
 
-def _limits(kinematics: str | None, low: list[float], high: list[float]) -> dict[str, float | None]:
-    """Greatest speeds that the limits of the controls allow."""
+def _limits(drive: Any, low: list[float], high: list[float]) -> dict[str, float | None]:
+    """Greatest speeds that the limits of the controls allow, and the greatest steering angle."""
     none = dict.fromkeys(("forward", "backward", "sideways", "turn", "steer"))
-    if kinematics is None or not high:
+    if drive is None or not high:
         return none
+    kinematics = str(drive.name)
     found: dict[str, float | None] = {**none, "forward": high[0], "backward": max(0.0, -low[0])}
     if kinematics in _CROSSWISE and len(high) > 1:
         found["sideways"] = max(high[1], -low[1])
     if kinematics == "acker" and len(high) > 1:
-        found["steer"] = max(high[1], -low[1])
+        angles = [drive.psi_max] if drive.psi_max is not None else []
+        angles += [max(high[1], -low[1])] if drive.mode == "steer" else []
+        found["steer"] = min(angles, default=None)
     elif kinematics == "diff" and len(high) > 1:
         found["turn"] = max(high[1], -low[1])
     elif kinematics == "omni_angular" and len(high) > 2:

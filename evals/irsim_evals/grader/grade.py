@@ -6,23 +6,28 @@ in a process with limits.
 
 from __future__ import annotations
 
+import tempfile
 import time
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from irsim.diagnostics.errors import IrsimError
+from irsim.scenario.checks import KEY_CODES
 from irsim.scenario.limits import Limits
-from irsim.scenario.read import read
-from irsim.scenario.yaml.document import load_text
+from irsim.scenario.read import Reading, read
+from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import Answer
 from irsim_evals.grader.artefact import find_scenario
 from irsim_evals.grader.episode import Episode, run_episode
 from irsim_evals.grader.material import Material
-from irsim_evals.grader.outcome import STAGES, Outcome, Stage, Verdict
+from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
 from irsim_evals.grader.predicates._base import Observation
-from irsim_evals.grader.sanity import check_moves, check_scene
+from irsim_evals.grader.programs import problems_in
+from irsim_evals.grader.sanity import check_goals, check_moves, check_scene
+from irsim_evals.grader.speed_limits import with_speeds
 
 __all__ = ["LIMITS", "failed_verdict", "grade"]
 
@@ -49,8 +54,9 @@ def grade(instance: Instance, answer: Answer) -> Verdict:
     outcomes: list[Outcome] = []
     built = False
     files = dict(answer.files)
+    workplace = tempfile.TemporaryDirectory(prefix="irsim-evals-", ignore_cleanup_errors=True)
     try:
-        material, built = _open(instance, answer, outcomes)
+        material, built = _open(instance, answer, outcomes, Path(workplace.name))
         if built:
             _sanity(instance, material, outcomes)
         _assertions(instance, material, built, outcomes)
@@ -59,6 +65,8 @@ def grade(instance: Instance, answer: Answer) -> Verdict:
     except Exception as error:  # a fault of the grader must not pass for one of the answer: it is named as such
         outcomes.append(_fault("grader", "load", error))
         _ungraded(instance, outcomes)
+    finally:
+        workplace.cleanup()
     return _verdict(instance, answer, outcomes, built, files, time.perf_counter() - begin)
 
 
@@ -74,10 +82,17 @@ def failed_verdict(instance: Instance, answer: Answer | None, assertion: str, st
     return _verdict(instance, answer or Answer(""), outcomes, False, files, 0.0)
 
 
-def _open(instance: Instance, answer: Answer, outcomes: list[Outcome]) -> tuple[Material, bool]:
+def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace: Path) -> tuple[Material, bool]:
     """Find, read and check the scenario."""
     case = instance.case
     found = find_scenario(answer, case.files)
+    if case.python != "any":
+        problems = problems_in(answer.files, case.files, case.python)
+        _add(
+            outcomes, "only-yaml", "parse", not problems,
+            "no program" if case.python == "none" else "programs that only run scenarios",
+            "; ".join(problems[:3]) or "so it is",
+        )  # fmt: skip
     material = Material(
         scenario=None,
         selectors=case.select,
@@ -85,7 +100,12 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome]) -> tuple[
         given=case.files,
         reply=answer.reply,
         replies=list(answer.replies),
+        blobs=answer.blobs,
+        workplace=workplace,
+        trusted_folder=answer.trusted_folder,
     )
+    if not case.scenario:
+        return material, False
     if found is None:
         may = "build" not in case.disposition or len(case.disposition) > 1
         said = bool(answer.reply.strip())
@@ -98,22 +118,23 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome]) -> tuple[
         return material, False
     material.main, text = found
     material.texts = {**answer.files, material.main: text}
-    document = load_text(text, limits=LIMITS)
+    document, limits = _load(material, material.main)
     _add(
         outcomes, "parses", "parse", not document.fatal, "a file that a safe YAML loader reads",
         "; ".join(item.message for item in document.problems[:2]) or material.main,
     )  # fmt: skip
     if document.fatal:
         raise _Stop
-    reading = read(document, limits=LIMITS)
-    errors = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
+    reading = read(document, limits=limits)
+    errors = _errors(reading)
     _add(
         outcomes, "valid", "schema", not errors, "a scenario without errors and unknown keys",
         "; ".join(f"{'.'.join(map(str, item.path))}: {item.message}" for item in errors[:3]) or "valid",
     )  # fmt: skip
     if reading.scenario is None or errors:
         raise _Stop
-    material.scenario, material.findings = reading.scenario, list(reading.diagnostics)
+    material.scenario, material.document = reading.scenario, document
+    material.findings = list(reading.diagnostics)
     try:
         scene = material.scene(case.seeds[0])
         probe = run_episode(material.scenario, case.seeds[0], _FIRST_STEPS * float(scene.world.step_time))
@@ -124,12 +145,26 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome]) -> tuple[
     return material, True
 
 
+def _load(material: Material, file: str) -> tuple[Document, Limits]:
+    """Read a file of the answer, and say what it may ask for. Maps beside it are read from a copy of the answer."""
+    limits, path = LIMITS, None
+    if material.blobs:
+        limits, path = replace(LIMITS, root=str(material.workplace)), str(material.folder() / file)
+    return load_text(material.texts[file], path=path, limits=limits), limits
+
+
+def _errors(reading: Reading) -> list[Any]:
+    """What makes a scenario invalid for a case."""
+    return [item for item in reading.diagnostics if item.severity == "error" or item.code in KEY_CODES]
+
+
 def _sanity(instance: Instance, material: Material, outcomes: list[Outcome]) -> None:
     case = instance.case
     for seed in case.seeds:
         found = check_scene(material.scene(seed), overlap=not case.overlap)
         outcomes += [item for item in found if not item.passed] if seed != case.seeds[0] else found
     if material.scenario is not None:
+        outcomes.append(check_goals(material.scene(case.seeds[0])))
         outcomes.append(check_moves(run_episode(material.scenario, case.seeds[0], _MOVING_TIME)))
 
 
@@ -141,17 +176,39 @@ def _assertions(instance: Instance, material: Material, built: bool, outcomes: l
         if (when == "built" and not built) or (when == "unbuilt" and built):
             continue
         if predicate.subject == "scene":
-            _observe(outcomes, item, (_in_scene(material, predicate, seed) for seed in case.seeds))
+            _observe(outcomes, item, (_in_scene(material, item, seed) for seed in case.seeds))
         else:
-            _observe(outcomes, item, [lambda predicate=predicate: predicate.observe(material)])
+            _observe(outcomes, item, [lambda item=item: item.predicate.observe(_about(material, item.file))])
     if built:
         for plan in case.episodes:
             _episodes(plan, material, outcomes)
 
 
-def _in_scene(material: Material, predicate: Any, seed: int) -> Any:
+def _about(material: Material, file: str) -> Material:
+    """The material for assertions about another scenario of the answer.
+
+    Raises:
+        LookupError: There is no such file, or it is no valid scenario.
+    """
+    if not file or file == material.main:
+        return material
+    if file not in material.beside:
+        if file not in material.texts:
+            raise LookupError(f"there is no file {file}")
+        document, limits = _load(material, file)
+        reading = None if document.fatal else read(document, limits=limits)
+        if reading is None or reading.scenario is None or _errors(reading):
+            raise LookupError(f"{file} is no valid scenario; irsim validate says why")
+        material.beside[file] = replace(
+            material, scenario=reading.scenario, document=document, main=file, beside={}, _scenes={}
+        )
+    return material.beside[file]
+
+
+def _in_scene(material: Material, item: Any, seed: int) -> Any:
     def look() -> Observation:
-        found: Observation = predicate.observe(material, material.scene(seed))
+        about = _about(material, item.file)
+        found: Observation = item.predicate.observe(about, about.scene(seed))
         found.seed = seed if found.seed is None else found.seed
         return found
 
@@ -168,8 +225,8 @@ def _episodes(plan: Any, material: Material, outcomes: list[Outcome]) -> None:
         try:
             step_time = float(material.scene(seed).world.step_time)
             seconds = min(plan.seconds, _MAX_STEPS * step_time)
-            if material.scenario is not None:
-                episode = run_episode(material.scenario, seed, seconds, times)
+            scenario = with_speeds(material.driven_by(plan.behavior), material, seed, plan.speed)
+            episode = run_episode(scenario, seed, seconds, times)
         except IrsimError as error:
             why = str(error).splitlines()[0]
         for item in plan.check:
@@ -215,7 +272,7 @@ def _outcome(item: Any, found: Observation, passed: bool) -> Outcome:
         assertion=item.id,
         stage=item.predicate.stage,
         passed=passed,
-        expected=found.expected,
+        expected=f"{item.file}: {found.expected}" if item.file else found.expected,
         observed=found.observed,
         yaml_path=found.yaml_path,
         seed=found.seed,
@@ -245,7 +302,7 @@ def _ungraded(instance: Instance, outcomes: list[Outcome]) -> None:
     case: Any = instance.case
     for item in [*case.check, *(one for plan in case.episodes for one in plan.check)]:
         if item.id not in done and item.when != "unbuilt":
-            outcomes.append(_outcome(item, Observation(False, "a scenario to look at", "not reached"), False))
+            outcomes.append(_outcome(item, Observation(False, "a scenario to look at", NOT_REACHED), False))
 
 
 def _verdict(

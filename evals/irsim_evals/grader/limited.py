@@ -6,86 +6,229 @@ cannot fork, each is started anew.
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 import os
+import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import Answer
 from irsim_evals.grader.artefact import ArtefactError, from_folder
+from irsim_evals.grader.cost import CALLS_FILE, cost_of
 from irsim_evals.grader.outcome import Verdict
 
-__all__ = ["SECONDS", "grade_all", "grade_answer", "grade_folder"]
+__all__ = [
+    "SECONDS",
+    "LimitError",
+    "Worker",
+    "grade_all",
+    "grade_answer",
+    "grade_folder",
+    "preload",
+    "run_all",
+    "run_limited",
+]
 
 SECONDS = 60.0
 """Time [s] after which the grading of one answer is ended."""
+_PROGRAM_SECONDS = 300.0
+"""The same where commands may run programs of the answer."""
 _MEMORY_BYTES = 6 * 1024**3
 """Address space of a grading process."""
 _FILE_BYTES = 64 * 1024**2
 """Size of a file that a grading process may write."""
 
 
+class LimitError(RuntimeError):
+    """A limited process took too long, or ended without a result."""
+
+
 def grade_answer(instance: Instance, answer: Answer, seconds: float = SECONDS) -> Verdict:
     """Grade an answer in a limited process; a process that dies or takes too long is a failed verdict."""
-    context = _context()
-    here, there = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(there, instance, answer, seconds), daemon=True)
-    process.start()
-    there.close()
     try:
-        if here.poll(seconds):
-            with suppress(EOFError):
-                return Verdict.model_validate(here.recv())
-            return _failed(instance, answer, f"the grading process ended with {_exit(process)}")
-        return _failed(instance, answer, f"the grading took more than {seconds:g} s")
+        return Verdict.model_validate(run_limited(_grade, (instance, answer), seconds, "grading"))
+    except LimitError as error:
+        return _failed(instance, answer, str(error))
+
+
+def run_limited(work: Callable[..., Any], arguments: tuple[Any, ...], seconds: float, what: str) -> Any:
+    """Call a function in a process with limits of memory, time and files, and without the network.
+
+    Args:
+        work: Function of a module; what it takes and returns can be pickled.
+        arguments: What it takes.
+        seconds: Time after which the process is ended [s].
+        what: What it does, for the message.
+
+    Raises:
+        LimitError: The process took too long, or ended without a result.
+    """
+    worker = Worker(cpu_seconds=int(seconds) + 5)
+    try:
+        return worker.call(work, arguments, seconds, what)
     finally:
-        here.close()
-        if process.is_alive():
-            process.kill()
-        process.join()
+        worker.close()
 
 
-def grade_folder(instance: Instance, folder: Path, seconds: float = SECONDS) -> Verdict:
-    """Grade what an agent left in a folder."""
+def grade_folder(
+    instance: Instance, folder: Path, seconds: float = SECONDS, calls: Path | None = None, run_programs: bool = False
+) -> Verdict:
+    """Grade what an agent left in a folder, and read what it cost.
+
+    Args:
+        instance: The case.
+        folder: The folder.
+        seconds: Time [s] after which the grading is ended.
+        calls: File that ``irsim-mcp --log-calls`` wrote; default: ``calls.jsonl`` in the folder.
+        run_programs: Whether commands of the case may run programs of the answer, with the rights of this process.
+    """
     try:
-        answer = from_folder(folder)
+        answer = from_folder(folder, turns=1 + len(instance.case.turns))
     except (ArtefactError, OSError) as error:
-        return _failed(instance, None, str(error))
-    return grade_answer(instance, answer, seconds)
+        verdict = _failed(instance, None, str(error))
+    else:
+        if run_programs:
+            answer = replace(answer, trusted_folder=folder.resolve())
+            seconds = max(seconds, _PROGRAM_SECONDS)
+        verdict = grade_answer(instance, answer, seconds)
+    verdict.cost = cost_of(calls or folder / CALLS_FILE)
+    return verdict
 
 
 def grade_all(
     pairs: Iterable[tuple[Instance, Answer]], workers: int | None = None, seconds: float = SECONDS
 ) -> Iterator[Verdict]:
-    """Grade many answers, as many at a time as there are processors; verdicts come in the order of the answers."""
-    with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        yield from pool.map(lambda pair: grade_answer(pair[0], pair[1], seconds), pairs)
+    """Grade many answers, as many at a time as there are processors; verdicts come in the order of the answers.
+
+    A process grades one answer after the other, and a new one takes its place if it dies or takes too long.
+    """
+    given, to_grade = itertools.tee(pairs)
+    for (instance, answer), found in zip(given, run_all(_grade, to_grade, workers, seconds, "grading"), strict=True):
+        yield _failed(instance, answer, str(found)) if isinstance(found, LimitError) else Verdict.model_validate(found)
+
+
+def run_all(
+    work: Callable[..., Any], jobs: Iterable[tuple[Any, ...]], workers: int | None, seconds: float, what: str
+) -> Iterator[Any]:
+    """Call a function for each tuple of arguments in limited processes; see :func:`run_limited`.
+
+    A process does one job after the other, and a new one takes its place if it dies or takes too long.
+
+    Returns:
+        Its results in the order of the jobs; a :class:`LimitError` in place of one that is missing.
+    """
+    count = workers or os.cpu_count() or 1
+    idle: SimpleQueue[Worker] = SimpleQueue()
+    crew = [Worker() for _ in range(count)]
+    for worker in crew:
+        idle.put(worker)
+
+    def one(job: tuple[Any, ...]) -> Any:
+        worker = idle.get()
+        try:
+            return worker.call(work, job, seconds, what)
+        except LimitError as error:
+            return error
+        finally:
+            idle.put(worker)
+
+    try:
+        with ThreadPoolExecutor(count) as pool:
+            yield from pool.map(one, jobs)
+    finally:
+        for worker in crew:
+            worker.close()
+
+
+class Worker:
+    """A limited process that does jobs; it is started when it is needed first, and again after it has been ended.
+
+    Args:
+        cpu_seconds: Processor time that the process gets; None for no limit.
+    """
+
+    def __init__(self, cpu_seconds: int | None = None) -> None:
+        self._cpu_seconds = cpu_seconds
+        self._process: Any = None
+        self._pipe: Any = None
+
+    def call(self, work: Callable[..., Any], arguments: tuple[Any, ...], seconds: float, what: str) -> Any:
+        """Call a function there.
+
+        Raises:
+            LimitError: The process took too long, or ended without a result; it has been ended.
+        """
+        if self._process is None:
+            self._start()
+        try:
+            self._pipe.send((work, arguments))
+            if self._pipe.poll(seconds):
+                return self._pipe.recv()
+            why = f"the {what} took more than {seconds:g} s"
+        except (EOFError, OSError):
+            why = f"the {what} process ended with {_exit(self._process)}"
+        self.close()
+        raise LimitError(why)
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is None:
+            return
+        self._pipe.close()
+        self._process.kill()
+        self._process.join()
+        self._process = None
+
+    def _start(self) -> None:
+        context = _context()
+        self._pipe, there = context.Pipe()
+        self._process = context.Process(target=_do_jobs, args=(there, self._cpu_seconds), daemon=True)
+        self._process.start()
+        there.close()
+
+
+def preload(*modules: str) -> None:
+    """Import modules once for all limited processes that are started after the first call; call it before that."""
+    _preloaded.extend(name for name in modules if name not in _preloaded)
+
+
+_preloaded = ["irsim_evals.grader.preload"]
 
 
 def _context() -> Any:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["irsim_evals.grader.grade", "irsim.env", "shapely.affinity"])
+    context.set_forkserver_preload(_preloaded)
     return context
 
 
-def _work(there: Connection, instance: Instance, answer: Answer, seconds: float) -> None:
-    """Grade one answer; runs in the limited process."""
-    _limit(seconds)
+def _do_jobs(there: Connection, cpu_seconds: int | None) -> None:
+    """Do jobs until there are no more; runs in the limited process, which its parent ends after Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _limit(cpu_seconds)
+    with suppress(EOFError, BrokenPipeError):
+        while True:
+            work, arguments = there.recv()
+            there.send(work(*arguments))
+
+
+def _grade(instance: Instance, answer: Answer) -> Any:
     from irsim_evals.grader.grade import grade
 
-    there.send(grade(instance, answer).model_dump(mode="json"))
-    there.close()
+    return grade(instance, answer).model_dump(mode="json")
 
 
-def _limit(seconds: float) -> None:
+def _limit(cpu_seconds: int | None) -> None:
     """Limit memory, processor time and files of this process, and take away the network."""
     import socket
 
@@ -97,13 +240,13 @@ def _limit(seconds: float) -> None:
     if os.name != "nt":
         import resource
 
-        cpu = int(seconds) + 5
-        for what, most in (
-            (resource.RLIMIT_AS, _MEMORY_BYTES),
-            (resource.RLIMIT_CPU, cpu),
-            (resource.RLIMIT_FSIZE, _FILE_BYTES),
-            (resource.RLIMIT_CORE, 0),
-        ):
+        limits = {
+            resource.RLIMIT_AS: _MEMORY_BYTES,
+            resource.RLIMIT_FSIZE: _FILE_BYTES,
+            resource.RLIMIT_CORE: 0,
+            **({} if cpu_seconds is None else {resource.RLIMIT_CPU: cpu_seconds}),
+        }
+        for what, most in limits.items():
             with suppress(ValueError, OSError):
                 resource.setrlimit(what, (most, most))
 

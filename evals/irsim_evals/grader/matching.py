@@ -13,7 +13,7 @@ from irsim_evals.grader.units import quantity
 
 __all__ = ["TOLERANCES", "Kind", "Match", "Quantity", "matches", "show"]
 
-Kind = Literal["count", "length", "size", "angle", "heading", "speed", "rate", "time", "share", "name", "flag"]
+Kind = Literal["count", "length", "size", "angle", "heading", "axis", "speed", "rate", "time", "share", "name", "flag"]
 """What a value measures, which decides how closely it must agree."""
 
 TOLERANCES: dict[str, tuple[float, float]] = {
@@ -22,6 +22,7 @@ TOLERANCES: dict[str, tuple[float, float]] = {
     "size": (0.02, 0.01),
     "angle": (0.0, math.radians(2)),
     "heading": (0.0, math.radians(2)),
+    "axis": (0.0, math.radians(2)),
     "speed": (0.02, 0.01),
     "rate": (0.02, 0.01),
     "time": (0.02, 0.001),
@@ -160,6 +161,8 @@ def _same(value: Any, wanted: Any, kind: Kind, tol: float | None) -> bool:
     apart = abs(value - wanted)
     if kind == "heading":
         apart = abs(wrap(value - wanted))
+    elif kind == "axis":  # a direction and its opposite are the same axis
+        apart = abs(wrap(2 * (value - wanted))) / 2
     return bool(apart <= allowed + 1e-9)
 
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim_evals.grader.body import Body
 from irsim_evals.grader.scene import Scene, open_scene
 from irsim_evals.grader.selection import Selector, select
 
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.scenario.yaml.document import Document
 
-__all__ = ["Material"]
+__all__ = ["Material", "write_files"]
 
 
 @dataclass
@@ -28,7 +31,12 @@ class Material:
         given: Text of each file that the folder started with.
         reply: Last message of the agent.
         replies: Its message after each turn.
+        document: The scenario as written.
         findings: What the checker said about the scenario.
+        blobs: Content of each picture or array that the agent left.
+        workplace: Temporary folder of this grading.
+        trusted_folder: Folder in which programs of the answer may be run; None if they must not be.
+        beside: Path of another scenario of the answer → the same for assertions about that one.
     """
 
     scenario: ResolvedScenario | None
@@ -38,7 +46,12 @@ class Material:
     given: Mapping[str, str] = field(default_factory=dict)
     reply: str = ""
     replies: list[str] = field(default_factory=list)
+    document: Document | None = None
     findings: list[Any] = field(default_factory=list)
+    blobs: Mapping[str, bytes] = field(default_factory=dict)
+    workplace: Path | None = None
+    trusted_folder: Path | None = None
+    beside: dict[str, Material] = field(default_factory=dict, repr=False)
     _scenes: dict[int, Scene] = field(default_factory=dict, repr=False)
 
     def scene(self, seed: int) -> Scene:
@@ -54,6 +67,41 @@ class Material:
             self._scenes[seed] = open_scene(self.scenario, seed)
         return self._scenes[seed]
 
+    def driven_by(self, behavior: str | None) -> ResolvedScenario:
+        """The scenario in which the robots follow another behavior; without one as it is.
+
+        Raises:
+            IrsimError: The behavior is unknown or cannot drive these robots.
+            LookupError: There is no scenario.
+        """
+        if self.scenario is None or self.document is None:
+            raise LookupError("there is no scenario that the simulator can read")
+        if behavior is None:
+            return self.scenario
+        return with_behavior(self.document, parse_behavior(behavior), strict=False)
+
+    def folder(self) -> Path:
+        """A folder with a copy of every file of the answer."""
+        if self.workplace is None:
+            raise LookupError("there is no folder to work in")
+        write_files(self.workplace, self.texts, self.blobs)
+        return self.workplace
+
     def bodies(self, scene: Scene, name: str) -> list[Body]:
         """The bodies of a selection."""
         return select(scene, name, dict(self.selectors))
+
+
+def write_files(folder: Path, texts: Mapping[str, str], blobs: Mapping[str, bytes]) -> None:
+    """Write files into a folder.
+
+    Raises:
+        ValueError: A name leads out of the folder.
+    """
+    contents = {**{name: text.encode("utf-8", errors="replace") for name, text in texts.items()}, **blobs}
+    for name, content in contents.items():
+        path = folder / name
+        if not path.resolve().is_relative_to(folder.resolve()):
+            raise ValueError(f"{name} leads out of the folder")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)

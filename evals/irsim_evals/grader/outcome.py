@@ -6,11 +6,13 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["STAGES", "Cost", "Mark", "Outcome", "Stage", "Verdict"]
+__all__ = ["NOT_REACHED", "STAGES", "Cost", "Mark", "Outcome", "Stage", "Verdict"]
 
 Stage = Literal["parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply"]
 STAGES: tuple[Stage, ...] = ("parse", "schema", "load", "sane", "facts", "relations", "behavior", "edits", "reply")
 """The funnel. A failure in one of the first three ends the grading: nothing after it can be observed."""
+NOT_REACHED = "not reached"
+"""What is observed of an assertion after the grading has ended."""
 
 
 class _Record(BaseModel):
@@ -48,9 +50,22 @@ class Cost(_Record):
     """What an answer cost, as far as it is known."""
 
     calls: int | None = None
+    """Number of calls of tools."""
     errors: int | None = None
+    """How many of them failed."""
     tokens: int | None = None
     seconds: float | None = None
+    turns: int | None = None
+    """Answers of the model, with or without calls of tools."""
+    input_tokens: int | None = None
+    """Tokens that the model read for the first time."""
+    output_tokens: int | None = None
+    cache_tokens: int | None = None
+    """Tokens that the model read from its cache or wrote to it."""
+    dollars: float | None = None
+    """Price [US dollar], where that of the model is known."""
+    notes: list[str] = []
+    """What could not be counted, and why."""
 
 
 class Verdict(_Record):

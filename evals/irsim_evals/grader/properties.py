@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from irsim_evals.grader.body import Body
+from irsim_evals.grader.hues import hue_of
 from irsim_evals.grader.matching import Kind
 from irsim_evals.grader.scene import Scene
 
@@ -54,6 +55,18 @@ def _side(which: int) -> Callable[[Scene, Body], Any]:
         return (body.box.length, body.box.width)[which]
 
     return of
+
+
+def _axis(_: Scene, body: Body) -> float | None:
+    """Direction of the longer side of a rectangular body; None for squares and other shapes."""
+    return None if body.box is None or body.shape == "square" else body.box.heading
+
+
+def _aspect(_: Scene, body: Body) -> float | None:
+    """The longer side of a rectangular body divided by the shorter one; infinite for a line."""
+    if body.box is None:
+        return None
+    return body.box.length / body.box.width if body.box.width > 0 else math.inf
 
 
 def _along(which: int) -> Callable[[Scene, Body], Any]:
@@ -109,6 +122,30 @@ def _goal_of_world(component: int) -> Callable[[Scene, Body], Any]:
     return of
 
 
+def _limit(kinematics: tuple[str, ...], component: int, sign: int) -> Callable[[Scene, Body], Any]:
+    """Greatest control of a component in one direction (1: forward, left; -1: backward, right)."""
+
+    def of(_: Scene, body: Body) -> float | None:
+        values = body.limits.get("vel_max" if sign > 0 else "vel_min", [])
+        if body.kinematics not in kinematics or len(values) <= component:
+            return None
+        return max(0.0, sign * values[component])
+
+    return of
+
+
+def _local(_: Scene, body: Body) -> str | None:
+    """Name of the behavior that drives a planning body from corner to corner."""
+    local = body.options.get("local")
+    return str(local["name"]) if isinstance(local, dict) and "name" in local else None
+
+
+def _turn(scene: Scene, body: Body, sign: int) -> float | None:
+    component = 1 if body.kinematics == "diff" else 2
+    found: float | None = _limit(("diff", "omni_angular"), component, sign)(scene, body)
+    return found
+
+
 PROPERTIES: dict[str, Property] = {
     "name": Property("name", "name", lambda _, body: body.name),
     "role": Property("name", "role", lambda _, body: body.role),
@@ -120,6 +157,8 @@ PROPERTIES: dict[str, Property] = {
     "radius": Property("size", "shape", lambda _, body: body.radius),
     "long_side": Property("size", "shape", _side(0)),
     "short_side": Property("size", "shape", _side(1)),
+    "axis": Property("axis", "state", _axis),
+    "aspect": Property("size", "shape", _aspect),
     "length": Property("size", "shape", _along(0)),
     "width": Property("size", "shape", _along(1)),
     "area": Property("size", "shape", lambda _, body: float(body.footprint.area)),
@@ -145,6 +184,8 @@ PROPERTIES: dict[str, Property] = {
     "threshold": Property("length", "goal_threshold", lambda _, body: body.threshold),
     "arrive_mode": Property("name", "arrive_mode", lambda _, body: body.arrive_mode),
     "behavior": Property("name", "behavior", lambda _, body: body.behavior),
+    "options": Property("name", "behavior", lambda _, body: sorted(body.options.items(), key=str)),
+    "local": Property("name", "behavior.local", _local),
     "avoids": Property("flag", "behavior", lambda _, body: body.avoids),
     "wander": Property("flag", "behavior.wander", lambda _, body: body.wander),
     "loop": Property("flag", "behavior.loop", lambda _, body: body.loop),
@@ -153,11 +194,18 @@ PROPERTIES: dict[str, Property] = {
     "sideways": Property("speed", "vel_max", lambda _, body: body.sideways),
     "turn": Property("rate", "vel_max", lambda _, body: body.turn),
     "steer": Property("angle", "vel_max", lambda _, body: body.steer),
+    "leftward": Property("speed", "vel_max", _limit(("omni", "omni_angular"), 1, 1)),
+    "rightward": Property("speed", "vel_min", _limit(("omni", "omni_angular"), 1, -1)),
+    "turn_left": Property("rate", "vel_max", lambda s, b: _turn(s, b, 1)),
+    "turn_right": Property("rate", "vel_min", lambda s, b: _turn(s, b, -1)),
+    "steer_left": Property("angle", "vel_max", _limit(("acker",), 1, 1)),
+    "steer_right": Property("angle", "vel_min", _limit(("acker",), 1, -1)),
     "top_speed": Property("speed", "vel_max", _top_speed),
     "sensors": Property("count", "sensors", lambda _, body: len(body.sensors)),
     "fov": Property("angle", "fov", lambda _, body: body.fov),
     "fov_radius": Property("length", "fov_radius", lambda _, body: body.fov_radius),
     "color": Property("name", "color", lambda _, body: body.color),
+    "hue": Property("name", "color", lambda _, body: hue_of(body.color)),
     "tags": Property("name", "tags", lambda _, body: list(body.tags)),
     "group": Property("count", "group", lambda _, body: body.group),
 }

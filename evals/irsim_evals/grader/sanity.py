@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from irsim.scenario.resolve.body_size import top_speed
 from irsim_evals.grader.body import Body
 from irsim_evals.grader.outcome import Mark, Outcome
 from irsim_evals.grader.predicates._base import summary
@@ -16,12 +17,14 @@ if TYPE_CHECKING:
     from irsim_evals.grader.episode import Episode
     from irsim_evals.grader.scene import Scene
 
-__all__ = ["check_moves", "check_scene", "overlaps"]
+__all__ = ["check_goals", "check_moves", "check_scene", "overlaps"]
 
 _TOUCH = 1e-6
 """Depth [m] up to which two bodies count as touching."""
 _MOVED = 0.05
 """Distance [m] that a body must come to count as moving."""
+_NEAR, _NEAR_SHARE = 1.0, 0.2
+"""A goal may count as reached at this distance [m], or at this share of the way to it, whichever is more."""
 _MAX_PAIRS = 200
 """Number of overlapping pairs that are collected."""
 
@@ -30,12 +33,12 @@ def overlaps(scene: Scene) -> list[tuple[Body, str]]:
     """Bodies that overlap something they collide with, with the name of the other, at the start."""
     found: list[tuple[Body, str]] = []
     bodies = [body for body in scene.bodies if not body.passable]
-    tree = shapely.STRtree([body.footprint for body in bodies])
-    for i, j in tree.query([body.footprint for body in bodies], predicate="intersects").T.tolist():
+    footprints = np.array([body.footprint for body in bodies], dtype=object)
+    for i, j in shapely.STRtree(footprints).query(footprints, predicate="intersects").T.tolist():
         a, b = bodies[i], bodies[j]
         if i < j and not (a.static and b.static) and _depth(a, b) > _TOUCH and len(found) < _MAX_PAIRS:
             found.append((b if not b.static else a, a.name if not b.static else b.name))
-    terrain = shapely.union_all([view.geometry for view in scene.terrain_views])
+    terrain = scene.terrain_area
     for body in bodies:
         if body.static or terrain.is_empty or len(found) >= _MAX_PAIRS:
             continue
@@ -90,6 +93,36 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
             )
         )
     return outcomes
+
+
+def check_goals(scene: Scene) -> Outcome:
+    """Goals mean something: they count as reached only near them, and some robot has time enough for its way."""
+    limit = scene.world.time_limit
+    bodies = [b for b in scene.bodies if not b.static and b.behavior is not None and b.goals and not b.wander]
+    ways = [(body, math.dist(body.pose[:2], body.goals[-1][:2])) for body in bodies]
+    odd = [
+        (body, f"has arrived {body.threshold:g} m away", f"{body.entry}.goal_threshold")
+        for body, way in ways
+        if body.threshold > max(_NEAR, _NEAR_SHARE * way)
+    ]
+    robots = [(body, way) for body, way in ways if body.role == "robot"]
+    reach = [math.inf if limit is None else limit * _speed(scene, body) + body.threshold for body, _ in robots]
+    late = [(body, way) for (body, way), far in zip(robots, reach, strict=True) if way > far]
+    if late and len(late) == len(robots):
+        odd += [(body, f"has {limit:g} s for {way:.1f} m", "world.time_limit") for body, way in late]
+    return _outcome(
+        "goals-count",
+        not odd,
+        "goals count as reached only near them, and the time limit leaves room for the way",
+        summary([(body, text) for body, text, _ in odd]) or "so it is",
+        odd[0][2] if odd else None,
+        scene.seed,
+        [],
+    )
+
+
+def _speed(scene: Scene, body: Body) -> float:
+    return float(top_speed(scene.env.scenario.objects[body.index]))
 
 
 def check_moves(episode: Episode) -> Outcome:

@@ -69,8 +69,16 @@ class Scene:
     @cached_property
     def solid(self) -> Any:
         """Everything that never moves and cannot be passed, the map included, as one geometry."""
-        terrain = [view.geometry for view in self.terrain_views]
-        return shapely.union_all([*(body.footprint for body in self.solids), *terrain])
+        footprints = [*(body.footprint for body in self.solids), self.terrain_area]
+        return shapely.union_all(np.array(footprints, dtype=object))  # an empty list alone would be an error
+
+    @cached_property
+    def terrain_area(self) -> Any:
+        """The occupied cells of the map, filled, and the lines of the walls round the world."""
+        shapes = [
+            view.geometry if view.shape == "walls" else shapely.build_area(view.geometry) for view in self.terrain_views
+        ]
+        return shapely.union_all(np.array(shapes, dtype=object))
 
     @cached_property
     def terrain_views(self) -> list[Any]:
@@ -111,7 +119,7 @@ class Scene:
         """
         clearance, half = self._clearance(radius, plugs)
         width: float = clearance.widest(start, goal, 0.0)[0]
-        return width + half if math.isfinite(width) else -math.inf
+        return width + half  # infinite where nothing solid is in the way, minus infinite without a path
 
     def is_reachable(self, start: Point, goal: Point, radius: float, plugs: tuple[tuple[float, ...], ...] = ()) -> bool:
         """Whether a disc can get from one place to another inside the world."""

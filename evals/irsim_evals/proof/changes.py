@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import shapely
@@ -12,70 +13,101 @@ from irsim_evals.grader.body import Body
 from irsim_evals.grader.scene import Scene
 from irsim_evals.grader.selection import select
 
-__all__ = ["FACTS", "WORLD_FACTS", "changed_facts", "touches"]
+__all__ = ["FACTS", "GROUPS", "WORLD_FACTS", "changed_facts", "touches"]
 
 FACTS = (
     "count", "role", "kinematics", "shape", "size", "position", "heading", "goal", "goal_heading", "behavior",
-    "options", "limits", "sensors", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
+    "options", "forward", "backward", "sideways", "turn", "steer", "acce", "sensor_count", "sensor_kind", "range",
+    "beams", "opening", "sensor_options", "color", "name", "threshold", "passable", "wheelbase", "fov", "tags",
+    "driven", "random",
 )  # fmt: skip
-"""Kinds of facts of a body."""
+"""Kinds of facts of a body; ``driven`` is whether it has a behavior, ``random`` whether its place is drawn."""
+GROUPS = {
+    "pose": ("position", "heading"),
+    "limits": ("forward", "backward", "sideways", "turn", "steer", "acce"),
+    "sensors": ("sensor_count", "sensor_kind", "range", "beams", "opening", "sensor_options"),
+}
+"""Short names for several kinds of facts."""
 WORLD_FACTS = ("size", "origin", "times", "modes", "map", "fog")
 """Kinds of facts of the world."""
 _SAME = 1e-6
 """Difference of two numbers that counts as none."""
+_FULL_TURN = 6.2
+"""Opening angle [rad] of a sensor from which on it sees all round."""
 
 
 def changed_facts(before: Scene, after: Scene) -> set[tuple[str, str]]:
     """(name of a body of the first world, kind of fact) pairs that differ; ``world`` stands for the world itself.
 
-    Bodies are matched by their place in the file. A body without a counterpart has changed its ``count``; one that is
-    only in the second world is named ``+``.
+    A body without a counterpart has changed its ``count``; one that is only in the second world has a ``+`` before its
+    name.
     """
     found = {("world", kind) for kind in WORLD_FACTS if not _alike(_of_world(before, kind), _of_world(after, kind))}
     pairs = _matched(before.bodies, after.bodies)
+    drawn, drawn_after = _drawn(before), _drawn(after)
     for body, other in pairs:
         if body is None:
-            found.add(("+", "count"))
+            found.add((f"+{other.name}" if other is not None else "+", "count"))
         elif other is None:
             found.add((body.name, "count"))
         else:
+            if (body.index in drawn) != (other.index in drawn_after):
+                found.add((body.name, "random"))
             found |= {
-                (body.name, kind) for kind in FACTS[1:] if not _alike(_of_body(body, kind), _of_body(other, kind))
+                (body.name, kind) for kind in FACTS[1:-1] if not _alike(_of_body(body, kind), _of_body(other, kind))
             }
     return found
 
 
-def touches(case: Case, scene: Scene, changed: set[tuple[str, str]], pins: list[Pin]) -> set[tuple[str, str]]:
-    """The changes that one of the pins names."""
+def _drawn(scene: Scene) -> set[int]:
+    """Rows of the bodies whose places are drawn anew with each seed."""
+    return {row for placement in scene.env.scenario.placements for row in placement.objects}
+
+
+def touches(
+    case: Case, scenes: tuple[Scene, Scene], changed: set[tuple[str, str]], pins: list[Pin]
+) -> set[tuple[str, str]]:
+    """The changes that one of the pins names.
+
+    Args:
+        case: The case.
+        scenes: The first world and the second one.
+        changed: What differs, as :func:`changed_facts` says it.
+        pins: Pinned or free facts.
+    """
     selectors = dict(case.select)
     found: set[tuple[str, str]] = set()
     for pin in pins:
-        kinds = set(pin.facts)
+        kinds = {kind for fact in pin.facts for kind in GROUPS.get(fact, (fact,))}
+        if pin.of in ("reply", "text"):
+            continue
         if pin.of == "world":
             found |= {(name, kind) for name, kind in changed if name == "world" and kind in kinds}
             continue
-        names = {body.name for body in select(scene, pin.of, selectors)}
-        if "pose" in kinds:
-            kinds |= {"position", "heading"}
-        found |= {(name, kind) for name, kind in changed if kind in kinds and (name in names or name == "+")}
+        names = {body.name for body in select(scenes[0], pin.of, selectors)}
+        names |= {f"+{body.name}" for body in select(scenes[1], pin.of, selectors)}
+        found |= {(name, kind) for name, kind in changed if kind in kinds and name in names}
     return found
 
 
 def _matched(first: list[Body], second: list[Body]) -> list[tuple[Body | None, Body | None]]:
-    """Bodies in pairs: by name if names agree, else by place."""
-    if len(first) == len(second):
+    """Bodies in pairs: in the order of the files if that fits, else by place and name, the surest pairs first."""
+    if len(first) == len(second) and all(a.role == b.role for a, b in zip(first, second, strict=True)):
         return list(zip(first, second, strict=True))
-    left = list(second)
-    pairs: list[tuple[Body | None, Body | None]] = []
-    for body in first:
-        same = [other for other in left if other.name == body.name and other.role == body.role]
-        near = sorted(left, key=lambda other: (other.role != body.role, math.dist(other.position, body.position)))
-        likely = same or [other for other in near[:1] if other.role == body.role]
-        match = likely[0] if likely else None
-        if match is not None:
-            left.remove(match)
-        pairs.append((body, match))
-    return [*pairs, *((None, other) for other in left)]
+    right, pairs = list(second), dict[int, Body]()
+    tests: list[Callable[[Body, Body], bool]] = [
+        lambda a, b: a.name == b.name and math.dist(a.position, b.position) <= _SAME,
+        lambda a, b: math.dist(a.position, b.position) <= _SAME,
+        lambda a, b: a.name == b.name and a.role == b.role,
+        lambda a, b: a.role == b.role,
+    ]
+    for test in tests:
+        for number, body in enumerate(first):
+            likely = [other for other in right if number not in pairs and test(body, other)]
+            if likely:
+                pairs[number] = min(likely, key=lambda other: math.dist(other.position, body.position))
+                right.remove(pairs[number])
+    return [*((body, pairs.get(number)) for number, body in enumerate(first)), *((None, other) for other in right)]
 
 
 def _of_world(scene: Scene, kind: str) -> Any:
@@ -100,7 +132,7 @@ def _of_body(body: Body, kind: str) -> Any:
     if kind == "position":
         return list(body.position)
     if kind == "heading":
-        return [math.cos(body.pose[2]), math.sin(body.pose[2])] if not body.static or body.role == "robot" else None
+        return _heading(body)
     if kind == "goal":
         return [goal[:2] for goal in body.goals]
     if kind == "goal_heading":
@@ -109,15 +141,41 @@ def _of_body(body: Body, kind: str) -> Any:
         return [body.shape, round(float(shapely.area(body.footprint)) > 0)]
     if kind == "behavior":
         return [body.behavior, body.wander, body.loop]
+    if kind == "driven":
+        return body.behavior is not None
     if kind == "options":
         return body.options
     if kind == "passable":
         return body.passable
+    if kind in GROUPS["sensors"]:
+        return _of_sensors(body.sensors, kind)
+    if kind == "acce":
+        return body.limits["acce"]
     if kind == "fov":
-        return [body.fov, body.fov_radius]
+        return [None if body.fov is None else min(body.fov, _FULL_TURN), body.fov_radius]
     if kind == "tags":
         return list(body.tags)
     return getattr(body, kind)
+
+
+def _heading(body: Body) -> list[float]:
+    """Cosine and sine of the heading; of a fixed rectangle, of the multiple that a turn into itself does not change."""
+    times, heading = 1, body.pose[2]
+    if body.static and body.role == "obstacle" and body.box is not None:
+        times, heading = (4 if body.shape == "square" else 2), body.box.heading
+    return [math.cos(times * heading), math.sin(times * heading)]
+
+
+def _of_sensors(sensors: list[dict[str, Any]], kind: str) -> Any:
+    """A kind of fact of each sensor of a body."""
+    known = {"sensor_kind": "name", "range": "range_max", "beams": "number", "opening": "angle_range"}
+    if kind == "sensor_count":
+        return len(sensors)
+    if kind == "opening":
+        return [min(float(sensor.get("angle_range") or 0.0), _FULL_TURN) for sensor in sensors]
+    if kind in known:
+        return [sensor.get(known[kind]) for sensor in sensors]
+    return [{key: value for key, value in sensor.items() if key not in known.values()} for sensor in sensors]
 
 
 def _alike(a: Any, b: Any) -> bool:

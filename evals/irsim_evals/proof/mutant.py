@@ -15,6 +15,7 @@ __all__ = [
     "each_entry",
     "entries",
     "operator",
+    "plain",
     "scale",
     "shift",
     "with_entry",
@@ -47,6 +48,14 @@ def operator(function: Operator) -> Operator:
     """Register an operator under its name."""
     OPERATORS[function.__name__] = function
     return function
+
+
+def plain(value: Any) -> Any:
+    """A copy in which no two keys share a mapping, as they do where a file uses anchors, so that a change of one entry
+    changes no other."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    return [plain(item) for item in value] if isinstance(value, list) else value
 
 
 def entries(data: Data) -> Iterator[tuple[str, int, Data]]:

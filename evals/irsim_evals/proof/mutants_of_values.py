@@ -90,7 +90,7 @@ def unit_unconverted(data: Data) -> Change:
         yield from each_entry(data, scale(key, 100.0, inside="shape"), f"shape.{key} in centimetres")
 
     def speed(entry: Data) -> Any:
-        if not isinstance(entry.get("vel_max"), list):
+        if not isinstance(entry.get("vel_max"), list) or not isinstance(entry["vel_max"][0], (int, float)):
             return False
         entry["vel_max"][0] *= 3.6
         return True
@@ -108,6 +108,8 @@ def limits_changed(data: Data) -> Change:
                 def change(entry: Data, key: str = key, component: int = component, factor: float = factor) -> Any:
                     value = entry.get(key)
                     if not isinstance(value, list) or len(value) <= component or not value[component]:
+                        return False
+                    if not isinstance(value[component], (int, float)):
                         return False
                     value[component] *= factor
                     return True

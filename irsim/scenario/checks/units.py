@@ -106,7 +106,7 @@ def _lengths(context: Context, record: ObjectRecord) -> Iterator[Finding]:
             "looks-like-centimetres",
             context.entry_path(record, "shape"),
             f"'{record.name}' is about {2 * reach:.3g} m long and {why}",
-            fix=f"lengths are in metres: {width:.3g} cm are {width / 100:.3g}",
+            fix=f"lengths are in metres: {2 * reach:.3g} cm are {2 * reach / 100:.3g}",
         )
 
 

@@ -13,8 +13,8 @@ import pytest
 import irsim_mcp.run_resources
 from irsim.runs import open_run
 from irsim_mcp.replay_page import PAGE
+from tests.browser import Watched, until
 from tests.mcp.conftest import connected
-from tests.replay.browser.conftest import Watched, until
 from tests.replay.conftest import scene
 
 pytestmark = pytest.mark.browser

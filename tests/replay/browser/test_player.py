@@ -12,7 +12,7 @@ import pytest
 import irsim
 import irsim.runs.replay.data as packing
 from irsim.runs import Run
-from tests.replay.browser.conftest import Watched, until
+from tests.browser import Watched, until
 from tests.replay.conftest import HOSTILE, scene
 
 pytestmark = pytest.mark.browser

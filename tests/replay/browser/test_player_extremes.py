@@ -11,7 +11,7 @@ import pytest
 import irsim
 import irsim.runs.replay.data as packing
 from irsim.runs import Run, open_run
-from tests.replay.browser.conftest import Watched
+from tests.browser import Watched
 from tests.replay.browser.test_player import ALL, FRAMES, SHARE, scrub, settled
 from tests.replay.conftest import recorded, scene
 

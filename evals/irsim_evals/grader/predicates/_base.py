@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -126,6 +127,7 @@ def register(name: str) -> Callable[[type[Any]], type[Any]]:
     return add
 
 
+@functools.cache
 def registered() -> dict[str, type[Predicate]]:
     """Name → predicate, in alphabetical order; imports every file of the folder."""
     import importlib

@@ -24,6 +24,8 @@ class Edits(AnswerPredicate):
 
     base: str = "scenario.yaml"
     """The file that was given."""
+    file: str | None = None
+    """The file that was left; default: the scenario of the answer."""
     only: list[str] | None = None
     """Paths that may change: ``robot[0].sensors[0].range_max``; what lies below one may change, too. ``*`` stands for
     any index. A path with ``world:`` before it names a fact of the world instead of a key, as ``irsim diff`` does."""
@@ -40,7 +42,7 @@ class Edits(AnswerPredicate):
 
     def observe(self, material: Material) -> Observation:
         """Compare the files."""
-        before, after = material.given.get(self.base), material.texts.get(material.main or "")
+        before, after = material.given.get(self.base), material.texts.get(self.file or material.main or "")
         expected = self._words()
         if before is None or after is None:
             return Observation(False, expected, "there is nothing to compare")

@@ -20,6 +20,8 @@ _STEP = 0.02
 """Distance [m] between the sections that measure the depth."""
 _BEFORE = 0.1
 """Distance [m] of the first section from the back of the pocket."""
+_RAYS = 91
+"""Directions in which gaps between the walls are looked for."""
 
 
 @register("pocket")
@@ -54,6 +56,11 @@ class Pocket(ScenePredicate):
             width = sorted(widths)[len(widths) // 2]
             if not (matches(self.width, width, "length") and matches(self.depth, depth, "length")):
                 return Observation(False, expected, f"{show(width)} m wide, {show(depth)} m deep")
+            gap = _gap(scene, along(start, heading, back - depth / 2), heading, math.hypot(width, depth))
+            if gap is not None:
+                return Observation(
+                    False, expected, "its walls leave a gap", marks=[Mark(points=[list(gap)], text="gap")]
+                )
         return Observation(True, expected, "so it is")
 
     def _go_out(self, scene: Scene, start: Point, heading: float, back: float) -> tuple[list[float], float]:
@@ -68,3 +75,12 @@ class Pocket(ScenePredicate):
             widths.append(sum(sides))
             depth += _STEP
         return widths, depth - _STEP / 2
+
+
+def _gap(scene: Scene, inside: Point, heading: float, far: float) -> Point | None:
+    """A place where one sees out of the pocket from its inside other than through its opening; None without one."""
+    for k in range(_RAYS):
+        direction = heading + math.pi * (k / (_RAYS - 1) - 0.5)
+        if free_length(scene.solid, inside, direction, far) >= far:
+            return along(inside, direction, far)
+    return None

@@ -1,0 +1,69 @@
+"""The MCP server as a process of its own, called by the client of the MCP SDK over standard input and output."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from typing import Any
+
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+from mcp import Client, StdioServerParameters
+from mcp.client.stdio import stdio_client
+from mcp.types import TextContent
+
+__all__ = ["Server", "started"]
+
+
+class Server:
+    """Calls tools of a server that runs."""
+
+    def __init__(self, portal: BlockingPortal, client: Client) -> None:
+        self._portal = portal
+        self._client = client
+
+    def validate(self, text: str, base: str | None = None) -> dict[str, Any] | None:
+        """All findings of a scenario, as ``irsim validate --json`` has them; None if the tool could not say.
+
+        Args:
+            text: The scenario.
+            base: The scenario before an edit; findings then say whether it has them, too.
+        """
+        more = {} if base is None else {"base": base}
+        return self._call("validate_scenario", scenario_yaml=text, simulate=False, max_issues=100, **more)
+
+    def run(self, text: str, seed: int = 0, steps: int | None = None) -> dict[str, Any] | None:
+        """The result of one episode, as ``irsim run --json`` has it; None if the scenario does not run.
+
+        Args:
+            text: The scenario.
+            seed: Seed of the episode.
+            steps: Greatest number of steps; default: until the time limit of the scenario.
+        """
+        more = {} if steps is None else {"max_steps": steps}
+        return self._call("run_episode", scenario_yaml=text, seed=seed, **more)
+
+    def _call(self, tool: str, **arguments: Any) -> dict[str, Any] | None:
+        result = self._portal.call(self._client.call_tool, tool, {**arguments, "response_format": "json"})
+        content = result.content[0] if result.content else None
+        if result.is_error or not isinstance(content, TextContent):
+            return None
+        found: dict[str, Any] = json.loads(content.text)
+        return found
+
+
+@contextlib.contextmanager
+def started() -> Iterator[Server]:
+    """Start a server in an empty folder; it ends with the context."""
+    with (
+        tempfile.TemporaryDirectory(prefix="irsim-evals-") as folder,
+        open(os.devnull, "w", encoding="utf-8") as unread,  # its workers complain when the folder goes away
+        start_blocking_portal() as portal,
+    ):
+        arguments = ["-m", "irsim_mcp", "--workspace", folder]
+        command = StdioServerParameters(command=sys.executable, args=arguments, env=dict(os.environ))
+        with portal.wrap_async_context_manager(Client(stdio_client(command, errlog=unread))) as client:
+            yield Server(portal, client)

@@ -1,0 +1,213 @@
+"""``irsim-evals run``: let baselines or a model answer the cases, and grade the answers."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from irsim.cli.output import console, progress
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.errors import ArgumentError
+from irsim_evals.baselines import BASELINES
+from irsim_evals.baselines.arm import run_baseline
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import case_of
+from irsim_evals.cli.choose import chosen
+from irsim_evals.harness import MODEL_ARMS
+from irsim_evals.results import Trial, results_of, write_results
+from irsim_evals.statistics import mean_pass_hat_k, wilson
+
+__all__ = ["run", "summaries", "verdicts_text"]
+
+_ALL_BASELINES = "baselines"
+"""Name of all baselines together."""
+
+
+@dataclass(frozen=True)
+class _Model:
+    """What an arm with a model needs to know."""
+
+    model: str | None
+    epochs: int
+    token_limit: int | None
+    cost_limit: float | None
+    time_limit: int | None
+    replay: Path | None
+    grade_only: bool
+    price: tuple[float, float] | None
+    base_url: str | None
+    log_dir: Path
+
+
+def run(
+    wanted: Annotated[
+        list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
+    ] = None,
+    arm: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Who answers: null, retrieval, rules, repair; baselines for these four; no-skill, skill, skill+mcp or "
+            "skill+mcp+distractors with a model. Give it several times for several arms."
+        ),
+    ] = None,
+    fresh: Annotated[int | None, typer.Option(help="Seed of fresh instances: other numbers, names and words.")] = None,
+    trials: Annotated[
+        int, typer.Option(min=1, max=1000, help="Instances of each case: fresh ones with the seeds that follow.")
+    ] = 1,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder that gets results.json.")] = Path(
+        "evals-results"
+    ),
+    model: Annotated[str | None, typer.Option(help="Model that answers, such as anthropic/claude-opus-5.")] = None,
+    epochs: Annotated[int, typer.Option(min=1, max=1000, help="Attempts of the model at each instance.")] = 1,
+    token_limit: Annotated[int | None, typer.Option(min=1, help="Tokens that one attempt may take.")] = None,
+    cost_limit: Annotated[float | None, typer.Option(min=0, help="US dollars that one attempt may cost.")] = None,
+    time_limit: Annotated[int | None, typer.Option(min=1, help="Seconds that one attempt may take.")] = None,
+    replay: Annotated[
+        Path | None,
+        typer.Option(exists=True, help="Recording of an earlier run, or its folder of logs: replayed without network."),
+    ] = None,
+    grade_only: Annotated[
+        bool, typer.Option(help="With --replay: grade the recorded files and call no tools.")
+    ] = False,
+    price: Annotated[
+        tuple[float, float] | None,
+        typer.Option(help="US dollars for a million tokens that are read and written, for --cost-limit."),
+    ] = None,
+    base_url: Annotated[str | None, typer.Option(help="Address of the Messages API.")] = None,
+    verdicts: Annotated[
+        Path | None, typer.Option(help="File that gets only which cases each arm passed, to compare runs by eye.")
+    ] = None,
+    json_output: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Let baselines or a model answer the cases, grade the answers and write results.json.
+
+    The baselines need neither a model nor the network: ``irsim-evals run --arm baselines``. Exits with 0 when all
+    arms have run, however many cases passed.
+    """
+    arms = _arms(arm)
+    given = _Model(
+        model, epochs, token_limit, cost_limit, time_limit, replay, grade_only, price, base_url, output / "logs"
+    )
+    if output.exists() and not output.is_dir():
+        raise ArgumentError(f"{output} is a file", "give a folder with --output")
+    instances = _instances(chosen(wanted), fresh, trials)
+    done: list[Trial] = []
+    for name in arms:
+        with progress(name) as report:
+            if name in BASELINES:
+                done += run_baseline(name, instances, report)
+            else:
+                done += _run_model(name, instances, given, report)
+    path = output / "results.json"
+    write_results(results_of(done), path)
+    if verdicts is not None:
+        verdicts.parent.mkdir(parents=True, exist_ok=True)
+        verdicts.write_text(verdicts_text(done), encoding="utf-8")
+    rows = summaries(done)
+    if json_output:
+        sys.stdout.write(json.dumps({"arms": rows, "results": str(path)}, ensure_ascii=False) + "\n")
+    else:
+        _show(rows, path)
+
+
+def summaries(trials: Sequence[Trial]) -> list[dict[str, Any]]:
+    """One row for each arm: trials passed with Wilson's interval, share of the requirements met, pass^k."""
+    rows = []
+    for arm in dict.fromkeys(trial.arm for trial in trials):
+        mine = [trial for trial in trials if trial.arm == arm]
+        cases: dict[str, list[bool]] = {}
+        for trial in mine:
+            cases.setdefault(trial.verdict.case, []).append(trial.verdict.strict)
+        passed, attempts = sum(trial.verdict.strict for trial in mine), min(map(len, cases.values()))
+        interval = wilson(passed, len(mine))
+        hat = mean_pass_hat_k([(sum(found), len(found)) for found in cases.values()], attempts)
+        rows.append(
+            {
+                "arm": arm,
+                "passed": passed,
+                "trials": len(mine),
+                "share": round(interval.estimate, 4),
+                "low": round(interval.low, 4),
+                "high": round(interval.high, 4),
+                "requirements": round(sum(trial.verdict.rate for trial in mine) / len(mine), 4),
+                "attempts": attempts,
+                "pass_hat_k": round(hat, 4),
+            }
+        )
+    return rows
+
+
+def verdicts_text(trials: Sequence[Trial]) -> str:
+    """Arm → case → whether it passed, as JSON with a line for each case; fresh instances are ``case@seed``."""
+    table: dict[str, dict[str, bool]] = {}
+    for trial in trials:
+        verdict = trial.verdict
+        name = verdict.case + (f"@{verdict.instance}" if verdict.instance else "")
+        table.setdefault(trial.arm, {})[name] = verdict.strict
+    return json.dumps(table, indent=1) + "\n"
+
+
+def _show(rows: list[dict[str, Any]], path: Path) -> None:
+    out = console()
+    several = any(row["attempts"] > 1 for row in rows)
+    out.print(
+        f"{'arm':22} {'passed':>9}  {'share, 95 % interval':>22}  {'requirements met':>16}" + "  pass^k" * several
+    )
+    for row in rows:
+        share = f"{row['share']:.0%} ({row['low']:.0%} to {row['high']:.0%})"
+        hat = f"  {row['pass_hat_k']:.0%} (k = {row['attempts']})" if several else ""
+        count = f"{row['passed']}/{row['trials']}"
+        out.print(f"{row['arm']:22} {count:>9}  {share:>22}  {row['requirements']:>16.0%}{hat}")
+    out.print(f"wrote {path}", soft_wrap=True)
+
+
+def _arms(given: list[str] | None) -> list[str]:
+    """The arms that were asked for.
+
+    Raises:
+        typer.BadParameter: No arm was given, or one has another name.
+    """
+    known = [*BASELINES, *MODEL_ARMS]
+    if not given:
+        raise typer.BadParameter(f"say who answers with --arm: {', '.join([_ALL_BASELINES, *known])}")
+    found: list[str] = []
+    for name in given:
+        if name not in known and name != _ALL_BASELINES:
+            hint = suggestion(name, [_ALL_BASELINES, *known], None) or ""
+            raise typer.BadParameter(f"no arm is called {name!r}; there are {', '.join(known)}. {hint}".strip())
+        found += BASELINES if name == _ALL_BASELINES else [name]
+    return list(dict.fromkeys(found))
+
+
+def _instances(names: list[str], fresh: int | None, trials: int) -> list[Instance]:
+    """The instances of the cases: the first as asked for, further ones with the seeds that follow."""
+    seeds = [fresh, *range((fresh or 0) + 1, (fresh or 0) + trials)]
+    return [case_of(name, seed) for name in names for seed in seeds]
+
+
+def _run_model(arm: str, instances: list[Instance], given: _Model, report: Callable[[int, int], None]) -> list[Trial]:
+    if given.model is None and given.replay is None:
+        raise ArgumentError(f"the arm {arm} needs a model", "add --model anthropic/NAME, or --replay RECORDING")
+    from irsim_evals.harness.run import run_arm
+
+    return run_arm(
+        arm,
+        instances,
+        model=given.model or "",
+        epochs=given.epochs,
+        token_limit=given.token_limit,
+        cost_limit=given.cost_limit,
+        time_limit=given.time_limit,
+        log_dir=given.log_dir,
+        replay=given.replay,
+        base_url=given.base_url,
+        progress=report,
+        price=given.price,
+        replay_mode="grade" if given.grade_only else "full",
+    )

@@ -1,0 +1,103 @@
+"""The programs of an answer: which there are, whether they only run scenarios, and what they print."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from irsim_evals.grader.program_rules import problems_of
+
+__all__ = ["SECONDS", "Printed", "is_program", "problems_in", "run_program"]
+
+SECONDS = 40.0
+"""Time that one program gets."""
+_MAX_PRINTED = 200_000
+"""Number of characters of the output that are kept."""
+_PROGRAMS = (".py", ".ipynb", ".sh", ".js", ".pl", ".rb", ".bat", ".ps1")
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What came of running a program.
+
+    Attributes:
+        passed: Whether it ended by itself, and without an error.
+        text: What it printed.
+        why: Why it did not pass.
+    """
+
+    passed: bool
+    text: str
+    why: str = ""
+
+
+def is_program(name: str) -> bool:
+    """Whether a file is a program, by its name."""
+    return name.lower().endswith(_PROGRAMS)
+
+
+def problems_in(texts: Mapping[str, str], given: Mapping[str, str], allowed: str) -> list[str]:
+    """What is wrong with the programs of an answer.
+
+    Args:
+        texts: Files of the answer.
+        given: Files that it started with.
+        allowed: ``none`` or ``runner``.
+    """
+    names = [name for name in texts if is_program(name) and given.get(name) != texts[name]]
+    if allowed == "none":
+        return [f"{name} is a program" for name in names]
+    found = []
+    for name in names:
+        if not name.endswith(".py"):
+            found.append(f"{name} is no Python program")
+        else:
+            found += [f"{name}, {problem}" for problem in problems_of(texts[name])]
+    return found
+
+
+def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
+    """Run a program in a folder, in processes that end with it.
+
+    Args:
+        folder: Folder with the files of the answer.
+        name: Path of the program in it.
+        seconds: Time after which it is ended.
+    """
+    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name]
+    environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    with (folder / ".printed").open("wb") as output:
+        process = subprocess.Popen(
+            command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT,
+            start_new_session=True,
+        )  # fmt: skip
+        try:
+            code: int | None = process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            code = None
+        finally:
+            _end(process)
+    with (folder / ".printed").open("rb") as printed:
+        text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
+    if code is None:
+        return Printed(False, text, f"{name} did not end within {seconds:g} s")
+    if code != 0:
+        lines = text.strip().splitlines()
+        return Printed(False, text, f"{name} ended with exit code {code}: {lines[-1] if lines else ''}"[:300])
+    return Printed(True, text)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a process with all that it started."""
+    with suppress(ProcessLookupError, PermissionError):
+        if os.name == "nt":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+    process.wait()

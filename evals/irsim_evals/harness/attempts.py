@@ -1,0 +1,169 @@
+"""From the log of inspect_ai to attempts and trials: what was said and called, what it cost, how it ended."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from irsim_evals.cases.instance import Instance
+from irsim_evals.grader.outcome import Cost, Verdict
+from irsim_evals.harness.recording import Attempt, Call, Turn, digest, task_hash
+from irsim_evals.harness.scrub import Names, scrubbed
+from irsim_evals.harness.task import SCORER, Work
+from irsim_evals.results import Trial, trial_of
+
+__all__ = ["attempt_of", "trial_from", "unfinished"]
+
+_EXCERPT = 400
+"""Characters of a tool's answer that a recording keeps."""
+_LIMITS = {
+    "token": "{:,.0f} tokens", "message": "{:,.0f} messages", "time": "{:g} s", "working": "{:g} s",
+    "cost": "{:g} US dollars", "turn": "{:,.0f} turns",
+}  # fmt: skip
+_MESSAGE = re.compile(r"""['"]message['"]:\s*(?P<quote>['"])(?P<text>.+?)(?P=quote)\s*[,}]""")
+_STATUS = re.compile(r"Error code\W+(\d{3})")
+
+
+def attempt_of(sample: Any, arm: str, instance: Instance, work: Work | None) -> Attempt:
+    """What a sample of a log holds, without keys and paths of the machine.
+
+    Args:
+        sample: Sample of the log.
+        arm: Name of the arm.
+        instance: The instance of the case.
+        work: What is known of the attempt besides.
+    """
+    folders = [work.folder, work.folder.parent] if work is not None else []
+    ended, failed = _end_of(sample, work)
+    verdict = _verdict_of(sample)
+    made = {
+        "messages": [turn.model_dump() for turn in _turns_of(sample, folders)],
+        "files": verdict.files if verdict is not None else {},
+        "replies": work.replies if work is not None else [],
+        "ended": ended,
+    }
+    return Attempt(
+        case=instance.case.id, instance=instance.name, trial=sample.epoch, arm=arm, task=task_hash(instance),
+        failed=failed or verdict is None, cost=_cost_of(sample, work), **scrubbed(made, folders),
+    )  # fmt: skip
+
+
+def trial_from(attempt: Attempt, sample: Any, instance: Instance, model: str) -> Trial:
+    """The trial of an attempt; one that an error ended is a failed verdict which says so."""
+    verdict = None if attempt.failed else _verdict_of(sample)
+    if verdict is None:
+        from irsim_evals.grader.grade import failed_verdict
+
+        verdict = failed_verdict(instance, None, "finished", "parse", attempt.ended or "the attempt has no result")
+    verdict.cost = attempt.cost
+    reply = attempt.replies[-1] if attempt.replies else ""
+    return trial_of(instance, verdict, attempt.arm, number=attempt.trial, model=model, reply=reply, ended=attempt.ended)
+
+
+def unfinished(instance: Instance, arm: str, number: int, model: str, why: str) -> Trial:
+    """The trial of an attempt that was never made."""
+    from irsim_evals.grader.grade import failed_verdict
+
+    verdict = failed_verdict(instance, None, "finished", "parse", why)
+    return trial_of(instance, verdict, arm, number=number, model=model, ended=why)
+
+
+def _verdict_of(sample: Any) -> Verdict | None:
+    score = (sample.scores or {}).get(SCORER)
+    found = (score.metadata or {}).get("verdict") if score is not None else None
+    return Verdict.model_validate(found) if found is not None else None
+
+
+def _end_of(sample: Any, work: Work | None) -> tuple[str, bool]:
+    """Why an attempt ended early, and whether because of an error."""
+    if sample.error is not None:
+        return _error_of(sample), True
+    if sample.limit is not None:
+        kind, limit = sample.limit.type, sample.limit.limit
+        return f"the limit of {_LIMITS.get(kind, f'{kind} {{:g}}').format(limit)} was reached", False
+    return (work.ended, work.failed) if work is not None else ("", False)
+
+
+def _error_of(sample: Any) -> str:
+    """The error that ended an attempt, in one line: that of the model's service if it was one."""
+    asked = [event for event in sample.events if event.event == "model"]
+    if not asked or not asked[-1].error:
+        return f"the attempt failed: {_one_line(sample.error.message)}"
+    tries = next((i for i, event in enumerate(reversed(asked)) if not event.error), len(asked))
+    message = asked[-1].error
+    said, status = _MESSAGE.search(message), _STATUS.search(message)
+    parts = [f"status {status[1]}" if status else "", said["text"] if said else _one_line(message)]
+    parts.append(f"tried {tries} times" if tries > 1 else "")
+    return "the model's service failed: " + ", ".join(part for part in parts if part)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())[:300]
+
+
+def _turns_of(sample: Any, folders: Any) -> list[Turn]:
+    outputs = {event.output.message.id: event.output for event in _answers(sample)}
+    names, found = Names(), []
+    calls: dict[str, Call] = {}
+    for message in sample.messages:
+        if message.role == "tool":
+            call = calls.get(message.tool_call_id or "")
+            if call is not None:
+                text = names.numbered(scrubbed(result_text(message), folders))
+                call.result_sha, call.result, call.failed = digest(text), text[:_EXCERPT], message.error is not None
+            continue
+        turn = Turn(role=message.role, text=names.known(message.text), pictures=_pictures(message.content))
+        output = outputs.get(message.id) if message.role == "assistant" else None
+        if output is not None:
+            turn.stop_reason = output.stop_reason
+            turn.usage = _usage(output.usage)
+        for one in getattr(message, "tool_calls", None) or []:
+            calls[one.id] = Call(id=one.id, name=one.function, args=names.known(one.arguments))
+            turn.calls.append(calls[one.id])
+        found.append(turn)
+    return found
+
+
+def result_text(message: Any) -> str:
+    """The answer of a tool as text; a picture is named and not compared, since it depends on fonts and libraries."""
+    if message.error is not None:
+        return f"error: {message.error.message}"
+    pictures = _pictures(message.content)
+    return str(message.text) + (f"\n[{pictures} pictures]" if pictures else "")
+
+
+def _pictures(content: Any) -> int:
+    return sum(part.type == "image" for part in content) if isinstance(content, list) else 0
+
+
+def _answers(sample: Any) -> list[Any]:
+    """The answers of the model that arrived."""
+    return [event for event in sample.events if event.event == "model" and not event.error and event.output.choices]
+
+
+def _usage(usage: Any) -> dict[str, int | float]:
+    known: Mapping[str, Any] = usage.model_dump(exclude_none=True) if usage is not None else {}
+    return {name: value for name, value in known.items() if isinstance(value, (int, float))}
+
+
+def _cost_of(sample: Any, work: Work | None) -> Cost:
+    """Calls, tokens, time and money of an attempt; money only if the price of the model is known."""
+    calls = [event for event in sample.events if event.event == "tool"]
+    used = [event.output.usage for event in _answers(sample) if event.output.usage is not None]
+
+    def total(*names: str) -> int:
+        return sum(getattr(usage, name) or 0 for usage in used for name in names)
+
+    paid = [usage.total_cost for usage in used]
+    return Cost(
+        calls=len(calls),
+        errors=sum(event.error is not None for event in calls),
+        tokens=total("total_tokens"),
+        seconds=round(work.seconds, 2) if work is not None else None,
+        turns=len(_answers(sample)),
+        input_tokens=total("input_tokens"),
+        output_tokens=total("output_tokens"),
+        cache_tokens=total("input_tokens_cache_write", "input_tokens_cache_read"),
+        dollars=None if not paid or None in paid else round(sum(paid), 6),
+    )

@@ -1,0 +1,72 @@
+"""Prices of models, for the money that an answer cost and for limits of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from irsim.diagnostics.errors import ArgumentError
+
+__all__ = ["Price", "known_price", "set_price"]
+
+Price = tuple[float, float]
+"""US dollars for a million tokens that are read, and for a million that are written."""
+
+_PRICES: dict[str, Price] = {
+    "claude-fable-5-1": (10, 50),
+    "claude-fable-5": (10, 50),
+    "claude-opus-5-5": (4, 20),
+    "claude-opus-5": (5, 25),
+    "claude-opus-4-8": (5, 25),
+    "claude-opus-4-7": (5, 25),
+    "claude-opus-4-6": (5, 25),
+    "claude-opus-4-5": (5, 25),
+    "claude-opus-4-1": (15, 75),
+    "claude-opus-4": (15, 75),
+    "claude-sonnet-5-5": (2, 10),
+    "claude-sonnet-5": (2, 10),
+    "claude-sonnet-4-6": (3, 15),
+    "claude-sonnet-4-5": (3, 15),
+    "claude-sonnet-4": (3, 15),
+    "claude-haiku-4-5": (1, 5),
+}
+"""List prices of Anthropic, as of autumn 2026. A model that is not here has no price until one is given."""
+_CACHE_WRITE, _CACHE_READ = 1.25, 0.1
+"""Price of a token written to the cache for five minutes, and of one read from it, in those of an ordinary one. Some
+models read their cache for less, so that the money of an attempt is at most what is said."""
+
+
+def known_price(model: str) -> Price | None:
+    """The price of a model, such as ``anthropic/claude-sonnet-4-5-20250929``; None if it is not known."""
+    provider, _, name = model.partition("/")
+    if provider != "anthropic":
+        return None
+    head, _, last = name.rpartition("-")
+    dated = len(last) == 8 and last.isdigit()
+    return _PRICES.get(head if dated else name)
+
+
+def set_price(model: str, price: Price | None, *, needed: bool) -> None:
+    """Tell inspect_ai the price of a model.
+
+    Args:
+        model: Name with its provider.
+        price: Price; default: the one that is known.
+        needed: Whether there must be one, since there is a limit of the cost.
+
+    Raises:
+        ArgumentError: There must be one, and none is known.
+    """
+    from inspect_ai.model import ModelCost, ModelInfo, get_model_info, set_model_info
+
+    price = price or known_price(model)
+    if price is None:
+        if needed:
+            raise ArgumentError(f"the price of {model} is not known, so its cost cannot be limited",
+                                "limit the tokens instead, or give its price")  # fmt: skip
+        return
+    read, written = price
+    cost = ModelCost(
+        input=read, output=written, input_cache_write=read * _CACHE_WRITE, input_cache_read=read * _CACHE_READ
+    )
+    info: Any = get_model_info(model) or ModelInfo()
+    set_model_info(model, info.model_copy(update={"cost": cost}))

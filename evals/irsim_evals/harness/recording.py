@@ -1,0 +1,248 @@
+"""Recordings: what a model answered and what the tools said, one JSON line for each attempt, to replay and to grade.
+
+The first line says what was recorded with what. Recordings hold no keys and no paths of the machine.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+import irsim
+from irsim.diagnostics.errors import ArgumentError
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Answer, case_of, given_pictures
+from irsim_evals.grader.limited import grade_answer
+from irsim_evals.grader.outcome import Cost
+from irsim_evals.results import Trial, trial_of
+
+__all__ = [
+    "Attempt", "Call", "Header", "Recording", "RecordingEnds", "Turn", "check_task", "digest", "find_recording",
+    "grade_recording", "name_of", "read_recording", "task_hash", "write_recording",
+]  # fmt: skip
+
+
+class RecordingEnds(RuntimeError):
+    """A recording that is replayed has no further answer of the model.
+
+    Attributes:
+        failed: Whether an error had ended the attempt there.
+    """
+
+    def __init__(self, why: str, failed: bool) -> None:
+        super().__init__(why)
+        self.failed = failed
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Header(_Record):
+    """What was recorded with what."""
+
+    kind: Literal["header"] = "header"
+    schema_version: int = 1
+    arm: str
+    model: str
+    date: str
+    """Day and time of the recording, UTC."""
+    sdk: dict[str, str] = {}
+    """Package → version: the harness and the library of the model's service."""
+    skills: str = ""
+    """Digest of the skills."""
+    mcp_server_version: str = irsim.__version__
+    cases: str = ""
+    """Digest of all case files."""
+    sampling: dict[str, Any] = {}
+    """Limits, and parameters of the model that were set."""
+
+
+class Call(_Record):
+    """One call of a tool."""
+
+    id: str
+    name: str
+    args: dict[str, Any]
+    result_sha: str = ""
+    """Digest of the answer; empty if there was none."""
+    result: str = ""
+    """Beginning of the answer."""
+    failed: bool = False
+
+
+class Turn(_Record):
+    """One message."""
+
+    role: Literal["system", "user", "assistant"]
+    text: str = ""
+    pictures: int = 0
+    calls: list[Call] = []
+    """Tools that the model called, with what they answered."""
+    stop_reason: str = ""
+    usage: dict[str, int | float] = {}
+    """Tokens of this answer of the model."""
+
+
+class Attempt(_Record):
+    """One attempt at one case."""
+
+    kind: Literal["trial"] = "trial"
+    case: str
+    instance: str = ""
+    trial: int = 1
+    arm: str
+    task: str
+    """Digest of what the agent was given: prompt, later turns, files and pictures."""
+    messages: list[Turn] = []
+    files: dict[str, str] = {}
+    """Files that the agent left: path → text."""
+    replies: list[str] = []
+    """Last message of the agent to each prompt."""
+    ended: str = ""
+    """Why the attempt ended before the agent was done."""
+    failed: bool = False
+    """Whether an error ended it, so that there is nothing to grade."""
+    cost: Cost = Cost()
+
+    @property
+    def key(self) -> tuple[str, str, int]:
+        """Case, instance and number."""
+        return self.case, self.instance, self.trial
+
+
+class Recording(_Record):
+    """A header and its attempts."""
+
+    header: Header
+    attempts: list[Attempt]
+
+    def find(self, case: str, instance: str) -> list[Attempt]:
+        """The attempts at an instance, in the order of their numbers."""
+        found = [one for one in self.attempts if (one.case, one.instance) == (case, instance)]
+        return sorted(found, key=lambda one: one.trial)
+
+
+def digest(text: str) -> str:
+    """Short digest of a text."""
+    return hashlib.sha256(text.encode("utf-8", errors="replace")).hexdigest()[:16]
+
+
+def name_of(case: str, instance: str) -> str:
+    """Name of an instance, as folders of an export have it: ``pub-01`` or ``pub-01@7``."""
+    return f"{case}@{instance}" if instance else case
+
+
+def task_hash(instance: Instance) -> str:
+    """Digest of what an agent is given."""
+    drawings = {name: drawing.model_dump(mode="json") for name, drawing in instance.case.drawings.items()}
+    given = [instance.prompt, instance.case.turns, instance.case.files, drawings]
+    return digest(json.dumps(given, ensure_ascii=False, sort_keys=True))
+
+
+def write_recording(recording: Recording, path: Path) -> None:
+    """Write a file of JSON lines."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = [recording.header, *recording.attempts]
+    path.write_text("".join(f"{line.model_dump_json(exclude_defaults=False)}\n" for line in lines), encoding="utf-8")
+
+
+def read_recording(path: Path) -> Recording:
+    """Read a file of JSON lines.
+
+    Raises:
+        ArgumentError: It cannot be read, or is no recording.
+    """
+    fix = "give a .jsonl file that irsim-evals run has written"
+    try:
+        first, *rest = path.read_text(encoding="utf-8").splitlines()
+        return Recording(
+            header=Header.model_validate_json(first), attempts=[Attempt.model_validate_json(line) for line in rest]
+        )
+    except OSError as error:
+        raise ArgumentError(f"{path} cannot be read: {error.strerror}", fix) from None
+    except (ValueError, ValidationError) as error:
+        why = str(error).splitlines()[0] if str(error) else "it is empty"
+        raise ArgumentError(f"{path} is no recording: {why}", fix) from None
+
+
+def find_recording(path: Path, arm: str) -> Recording:
+    """The recording of an arm: a file, or the newest one in a folder of logs; beside a log of inspect_ai lies its own.
+
+    Raises:
+        ArgumentError: There is none, or it is one of another arm.
+    """
+    if path.is_dir():
+        found = sorted(path.glob("*.jsonl"), key=lambda one: (one.stat().st_mtime, one.name), reverse=True)
+        fitting = (recording for one in found if (recording := read_recording(one)).header.arm == arm)
+        newest = next(fitting, None)
+        if newest is None:
+            raise ArgumentError(f"{path} has no recording of the arm {arm}", "give the folder of its logs")
+        return newest
+    recording = read_recording(path.with_suffix(".jsonl") if path.suffix == ".eval" else path)
+    if recording.header.arm != arm:
+        raise ArgumentError(f"{path} records the arm {recording.header.arm}, not {arm}", "choose that arm")
+    return recording
+
+
+def check_task(attempt: Attempt, instance: Instance) -> None:
+    """Refuse an attempt at something else than the instance of today.
+
+    Raises:
+        ArgumentError: Prompt or files of the case were changed after the recording.
+    """
+    if attempt.task != task_hash(instance):
+        name = name_of(attempt.case, attempt.instance)
+        raise ArgumentError(
+            f"the prompt or the files of {name} have changed since the recording was made", "record it again"
+        )
+
+
+def grade_recording(recording: Recording, instances: Sequence[Instance] | None = None) -> list[Trial]:
+    """Grade the recorded files with the grader of today, without tools and without a model.
+
+    Args:
+        recording: What was recorded.
+        instances: Those to grade; default: all of the recording.
+
+    Raises:
+        ArgumentError: A case has changed, or an instance was not recorded.
+    """
+    trials = []
+    for instance, attempts in _matched(recording, instances):
+        for attempt in attempts:
+            check_task(attempt, instance)
+            trials.append(_graded(attempt, instance, recording.header))
+    return trials
+
+
+def _matched(recording: Recording, instances: Sequence[Instance] | None) -> Iterable[tuple[Instance, list[Attempt]]]:
+    if instances is None:
+        keys = dict.fromkeys((attempt.case, attempt.instance) for attempt in recording.attempts)
+        instances = [case_of(case, int(instance) if instance else None) for case, instance in keys]
+    for instance in instances:
+        attempts = recording.find(instance.case.id, instance.name)
+        if not attempts:
+            name = name_of(instance.case.id, instance.name)
+            raise ArgumentError(f"the recording has no attempt at {name}", "choose cases that it has")
+        yield instance, attempts
+
+
+def _graded(attempt: Attempt, instance: Instance, header: Header) -> Trial:
+    from irsim_evals.grader.grade import failed_verdict
+
+    reply = attempt.replies[-1] if attempt.replies else ""
+    answer = Answer("recorded", attempt.files, reply, tuple(attempt.replies), given_pictures(instance))
+    if attempt.failed:
+        verdict = failed_verdict(instance, answer, "finished", "parse", attempt.ended)
+    else:
+        verdict = grade_answer(instance, answer)
+    verdict.cost = attempt.cost
+    return trial_of(
+        instance, verdict, attempt.arm, number=attempt.trial, model=header.model, reply=reply, ended=attempt.ended
+    )

@@ -1,0 +1,219 @@
+"""One inspect_ai Task for each arm: its samples, its agent and its scorer."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import anyio.to_thread
+from inspect_ai import Epochs, Task
+from inspect_ai.agent import AgentState, react
+from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.model import ChatMessageSystem, ChatMessageUser, ContentImage, ContentText
+from inspect_ai.scorer import Score, accuracy, scorer
+from inspect_ai.solver import solver
+from inspect_ai.tool import mcp_connection
+
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import given_pictures, write_given
+from irsim_evals.grader.limited import grade_folder
+from irsim_evals.grader.outcome import Verdict
+from irsim_evals.harness.briefing import briefing, skill_folders
+from irsim_evals.harness.folder import Folder
+from irsim_evals.harness.recording import RecordingEnds, name_of
+from irsim_evals.harness.tools import file_tools, picture_url, server_tools
+
+__all__ = ["SCORER", "Session", "Work", "build_task", "by_name"]
+
+SCORER = "verdict"
+"""Name of the score in the logs."""
+_STOPS = {
+    "max_tokens": "an answer of the model was cut at its limit of output tokens",
+    "model_length": "the conversation is longer than the model can read",
+    "content_filter": "the model refused to answer",
+}
+"""Why a model stopped → what is said about it; the rest is a proper end."""
+
+
+@dataclass
+class Work:
+    """What is known of one attempt while it lasts.
+
+    Attributes:
+        folder: Folder of the agent.
+        replies: Last message of the agent to each prompt.
+        ended: Why it ended early, if the model or the recording did it.
+        failed: Whether an error had ended the attempt that is replayed.
+        seconds: How long the agent took [s], without the grading.
+    """
+
+    folder: Path
+    replies: list[str] = field(default_factory=list)
+    ended: str = ""
+    failed: bool = False
+    seconds: float = 0.0
+
+
+@dataclass
+class Session:
+    """One run of an arm.
+
+    Attributes:
+        arm: Name of the arm.
+        instances: Name of an instance → the instance.
+        total: Number of attempts.
+        progress: Called after each attempt with the number of those that are done, and of all.
+        model_of: Model for an instance, the number of an attempt and its folder; None for that of the evaluation.
+        works: Instance and number of an attempt → what is known of it.
+        done: Number of attempts that are done.
+    """
+
+    arm: str
+    instances: dict[str, Instance]
+    total: int
+    progress: Callable[[int, int], None] | None = None
+    model_of: Callable[[str, int, Path], Any] | None = None
+    works: dict[tuple[str, int], Work] = field(default_factory=dict)
+    done: int = 0
+
+    def begin(self, name: str, number: int) -> Work:
+        """Make the folder of an attempt with the files that it starts with."""
+        folder = Path(tempfile.mkdtemp(prefix="irsim-agent-")).resolve() / "work"
+        folder.mkdir()
+        write_given(folder, self.instances[name])
+        self.works[name, number] = Work(folder)
+        return self.works[name, number]
+
+    def end(self, name: str, number: int) -> None:
+        """Remove the folder of an attempt and say that it is done."""
+        work = self.works.get((name, number))
+        if work is not None:
+            shutil.rmtree(work.folder.parent, ignore_errors=True)
+        self.done += 1
+        if self.progress is not None:
+            self.progress(self.done, self.total)
+
+    def close(self) -> None:
+        """Remove the folders that are left after an interruption."""
+        for work in self.works.values():
+            shutil.rmtree(work.folder.parent, ignore_errors=True)
+
+
+def build_task(session: Session, epochs: int) -> Any:
+    """The Task of an arm."""
+
+    async def cleanup(state: Any) -> None:
+        session.end(str(state.sample_id), state.epoch)
+
+    return Task(
+        name=session.arm.replace("+", "-"),
+        dataset=MemoryDataset([_sample(name, instance) for name, instance in session.instances.items()]),
+        solver=_agent(session),
+        scorer=_scorer(session),
+        cleanup=cleanup,
+        epochs=Epochs(epochs, ["mean", *([f"pass_k_{epochs}"] if epochs > 1 else [])]),
+        fail_on_error=False,
+        metadata={"arm": session.arm},
+    )
+
+
+def _sample(name: str, instance: Instance) -> Any:
+    pictures = [ContentImage(image=picture_url("image/png", content)) for content in given_pictures(instance).values()]
+    content: Any = [ContentText(text=_prompt(instance)), *pictures]
+    metadata = {"case": instance.case.id, "instance": instance.name}
+    return Sample(input=[ChatMessageUser(content=content)], id=name, metadata=metadata)
+
+
+def _prompt(instance: Instance) -> str:
+    names = [*instance.case.files, *instance.case.drawings]
+    note = f"\n\n[Files in your folder: {', '.join(names)}]" if names else ""
+    return instance.prompt.strip() + note
+
+
+def _agent(session: Session) -> Any:
+    def made() -> Any:
+        async def solve(state: Any, generate: Any) -> Any:
+            name, number = str(state.sample_id), state.epoch
+            work = session.begin(name, number)
+            model = session.model_of(name, number, work.folder) if session.model_of is not None else None
+            folder = Folder(work.folder, skill_folders(session.arm))
+            tools = [*file_tools(folder), *server_tools(session.arm, work.folder)]
+            system = ChatMessageSystem(content=briefing(session.arm, work.folder))
+            conversation = AgentState(messages=[system, *state.messages])
+            begin = time.perf_counter()
+            try:
+                async with mcp_connection(tools):  # the servers stay for all turns
+                    await _converse(conversation, tools, session.instances[name].case.turns, model, work)
+            except RecordingEnds as end:
+                work.ended, work.failed = str(end), end.failed
+            finally:
+                work.seconds = time.perf_counter() - begin
+                state.messages = conversation.messages
+                state.output = conversation.output
+            return state
+
+        return solve
+
+    return solver(name="irsim_agent")(made)()
+
+
+async def _converse(conversation: Any, tools: Sequence[Any], turns: Sequence[str], model: Any, work: Work) -> None:
+    """Let the agent work until it answers, then say the next turn, until there is none."""
+    agent = react(prompt=None, tools=tools, model=model, submit=False)
+    for turn in (None, *turns):
+        if turn is not None:
+            conversation.messages.append(ChatMessageUser(content=turn.strip()))
+        before = len(conversation.messages)
+        try:
+            await agent(conversation)
+        finally:
+            said = [message for message in conversation.messages[before:] if message.role == "assistant"]
+            work.replies.append(said[-1].text if said else "")
+        work.ended = _STOPS.get(conversation.output.stop_reason, "")
+        if work.ended:
+            return
+
+
+def _scorer(session: Session) -> Any:
+    def made() -> Any:
+        async def score(state: Any, target: Any) -> Any:
+            name, number = str(state.sample_id), state.epoch
+            work, instance = session.works[name, number], session.instances[name]
+            verdict = await anyio.to_thread.run_sync(_grade, instance, work)
+            why = "; ".join(f"{one.assertion}: {one.observed}" for one in verdict.failed()[:3])
+            return Score(
+                value=1.0 if verdict.strict else 0.0, answer=work.replies[-1] if work.replies else "",
+                explanation=why or "every assertion holds", metadata={"verdict": verdict.model_dump(mode="json")},
+            )  # fmt: skip
+
+        return score
+
+    return scorer(metrics=[accuracy()], name=SCORER)(made)()
+
+
+def _grade(instance: Instance, work: Work) -> Verdict:
+    """Grade the folder with the replies in it. Never raises: an evaluation must not end because of one answer."""
+    try:
+        for path in work.folder.glob("reply*.md"):
+            with contextlib.suppress(OSError):
+                path.unlink()
+        *before, last = work.replies or [""]
+        for number, reply in enumerate(before, 1):
+            (work.folder / f"reply-{number}.md").write_text(reply, encoding="utf-8", errors="replace")
+        (work.folder / "reply.md").write_text(last, encoding="utf-8", errors="replace")
+        return grade_folder(instance, work.folder)
+    except Exception as error:
+        from irsim_evals.grader.grade import failed_verdict
+
+        return failed_verdict(instance, None, "gradable", "parse", f"{type(error).__name__}: {error}"[:300])
+
+
+def by_name(instances: Sequence[Instance]) -> dict[str, Instance]:
+    """Instances by their names."""
+    return {name_of(instance.case.id, instance.name): instance for instance in instances}

@@ -1,0 +1,1 @@
+"""Reports of graded answers, and comparisons of two of them."""

@@ -1,0 +1,184 @@
+"""Two sets of trials, paired by case and instance: what changed, and whether the difference means anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from irsim_evals.report.summary import attempts
+from irsim_evals.results import Trial
+from irsim_evals.statistics import Interval, mcnemar, paired_bootstrap
+
+__all__ = ["Change", "Comparison", "compare", "smallest_difference"]
+
+_LEVEL = 0.05
+"""A p value below this counts as a difference."""
+_Z_TEST, _Z_POWER = 1.959963984540054, 0.8416212335729143
+"""Quantiles of the normal distribution for a two-sided test at 5 % and for a chance of 80 % to notice a difference."""
+_USUAL_SHARE = 0.1
+"""Share of cases that is expected to change at least, where fewer did."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A case with another result.
+
+    Attributes:
+        case, instance: The case.
+        title: What it is about.
+        before, after: Share of the attempts that passed.
+        reason: First assertion that does not hold in the set in which the case fails.
+    """
+
+    case: str
+    instance: str
+    title: str
+    before: float
+    after: float
+    reason: str
+
+    @property
+    def name(self) -> str:
+        """Case and instance as one name."""
+        return f"{self.case}@{self.instance}" if self.instance else self.case
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two sets of trials.
+
+    Attributes:
+        first, second: Their names.
+        pairs: Number of cases that both have.
+        passed: How many of these each passes; a case passes if more than half of the attempts at it do.
+        fixed, broken: Cases that only the second passes, and that only the first passes.
+        missing, new: Cases that only the first has, and that only the second has.
+        p: Exact p value of McNemar's test.
+        difference: Mean difference of the shares of passes with its 95 % interval, drawn by family.
+        smallest: Smallest difference that is noticed with a chance of 80 % at this number of cases; None if no
+            difference is.
+        repeated: Whether there are several attempts at a case.
+    """
+
+    first: str
+    second: str
+    pairs: int
+    passed: tuple[int, int]
+    fixed: list[Change]
+    broken: list[Change]
+    missing: list[str]
+    new: list[str]
+    p: float
+    difference: Interval
+    smallest: float | None
+    repeated: bool = False
+
+    @property
+    def means_something(self) -> bool:
+        """Whether the difference is hardly chance: a small p value, and an interval without 0."""
+        return self.p < _LEVEL and (self.difference.low > 0 or self.difference.high < 0)
+
+    @property
+    def sentence(self) -> str:
+        """What came out, in words."""
+        if not self.pairs:
+            return f"{self.first} and {self.second} have no case in common, so nothing can be compared."
+        a, b = self.passed
+        points, low, high = (f"{100 * value:+.0f}" for value in self.difference)
+        unit = "points of the attempts" if self.repeated else "points"
+        counts = (
+            f"{self.second} passes {b} of {self.pairs} cases and {self.first} {a} "
+            f"({points} {unit}, 95 % interval {low} to {high}, p = {self.p:.2g})"
+        )
+        if self.means_something:
+            verdict = "the difference is hardly chance"
+        elif not self.fixed and not self.broken:
+            verdict = "no case changed"
+        else:
+            verdict = "the difference may be chance"
+        if self.smallest is None:
+            return f"{counts}: {verdict}. {self.pairs} cases are too few to show any difference."
+        return (
+            f"{counts}: {verdict}. With {self.pairs} cases a difference below {100 * self.smallest:.0f} points "
+            "often goes unnoticed."
+        )
+
+
+def compare(before: Sequence[Trial], after: Sequence[Trial], first: str, second: str) -> Comparison:
+    """Compare two sets of trials, each of one arm.
+
+    Args:
+        before, after: The trials.
+        first, second: What they are called.
+    """
+    one, two = attempts(before), attempts(after)
+    common = sorted(set(one) & set(two))
+    fixed: list[Change] = []
+    broken: list[Change] = []
+    passed = [0, 0]
+    differences: dict[str, list[float]] = {}
+    for key in common:
+        share_a, share_b = _share(one[key]), _share(two[key])
+        differences.setdefault(one[key][0].family, []).append(share_b - share_a)
+        passes = share_a > 0.5, share_b > 0.5
+        passed[0] += passes[0]
+        passed[1] += passes[1]
+        if passes[0] != passes[1]:
+            failing = two[key] if passes[0] else one[key]
+            change = Change(*key, one[key][0].title, share_a, share_b, _reason(failing))
+            (broken if passes[0] else fixed).append(change)
+    changed = len(fixed) + len(broken)
+    return Comparison(
+        first=first,
+        second=second,
+        pairs=len(common),
+        passed=(passed[0], passed[1]),
+        fixed=fixed,
+        broken=broken,
+        missing=sorted(_name(key) for key in set(one) - set(two)),
+        new=sorted(_name(key) for key in set(two) - set(one)),
+        p=mcnemar(len(broken), len(fixed)),
+        difference=paired_bootstrap(differences),
+        smallest=smallest_difference(len(common), changed / len(common) if common else 0.0),
+        repeated=any(len(side[key]) > 1 for side in (one, two) for key in common),
+    )
+
+
+def smallest_difference(pairs: int, changing: float) -> float | None:
+    """Smallest difference of two pass rates that McNemar's test at 5 % notices with a chance of 80 %.
+
+    Args:
+        pairs: Number of cases that both answered.
+        changing: Share of the cases of which only one of both passes; a tenth where it is smaller.
+
+    Returns:
+        The difference, between 0 and 1; None if the cases are too few for any.
+
+    References:
+        Connor: Sample size for testing differences in proportions for the paired-sample design (1987).
+    """
+    fewest = math.ceil(math.log2(2 / _LEVEL))  # with fewer changes, all in one direction, p is above the level
+    if pairs < fewest:
+        return None
+    steps = 1000
+    for step in range(1, steps + 1):
+        difference = step / steps
+        share = max(changing, _USUAL_SHARE, difference)
+        spread = _Z_TEST * math.sqrt(share) + _Z_POWER * math.sqrt(share - difference**2)
+        if pairs * difference**2 >= spread**2 and pairs * share >= fewest:
+            return difference
+    return None
+
+
+def _share(trials: Sequence[Trial]) -> float:
+    return sum(trial.verdict.strict for trial in trials) / len(trials)
+
+
+def _reason(trials: Sequence[Trial]) -> str:
+    failed = next((one for trial in trials for one in trial.verdict.failed() if not one.soft), None)
+    return "" if failed is None else f"{failed.assertion}: expected {failed.expected}; observed {failed.observed}"
+
+
+def _name(key: tuple[str, str]) -> str:
+    return f"{key[0]}@{key[1]}" if key[1] else key[0]

@@ -1,0 +1,74 @@
+"""Everything that a report shows, computed once for the page, the Markdown file and the JSON file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from irsim_evals.report.asked import Asked, asked_of
+from irsim_evals.report.comparison import Comparison, compare
+from irsim_evals.report.load import Proof
+from irsim_evals.report.pictures import Gallery, draw_trials
+from irsim_evals.report.summary import ArmSummary, Table, arms_of, summarize, table_by
+from irsim_evals.results import Results
+
+__all__ = ["Content", "content_of"]
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a report shows.
+
+    Attributes:
+        title: Title of the page.
+        results: All trials.
+        asked: What the case of each trial asks.
+        arms: Numbers of each arm.
+        categories, levels: Passes by category and by level.
+        comparisons: Each arm compared with the one before.
+        proof: Table of the proof of the grader, if it was given.
+        gallery: Pictures; None if none are wanted.
+    """
+
+    title: str
+    results: Results
+    asked: Sequence[Asked]
+    arms: list[ArmSummary]
+    categories: Table
+    levels: Table
+    comparisons: list[Comparison]
+    proof: Proof | None = None
+    gallery: Gallery | None = None
+
+
+def content_of(
+    results: Results,
+    *,
+    title: str = "irsim evals",
+    proof: Proof | None = None,
+    pictures: bool = True,
+    progress: Callable[[int, int], None] | None = None,
+) -> Content:
+    """Compute what a report shows.
+
+    Args:
+        results: All trials.
+        title: Title of the page.
+        proof: The proof of the grader.
+        pictures: Draw the worlds.
+        progress: Callback ``(done, total)`` for the pictures.
+    """
+    trials, names, asked = results.trials, arms_of(results.trials), asked_of(results)
+    by_arm = {name: [trial for trial in trials if trial.arm == name] for name in names}
+    return Content(
+        title=title,
+        results=results,
+        asked=asked,
+        arms=[summarize(trials, name) for name in names],
+        categories=table_by(trials, names, lambda trial: trial.category),
+        levels=table_by(trials, names, lambda trial: [f"level {trial.level}"]),
+        comparisons=[found for a, b in pairwise(names) if (found := compare(by_arm[a], by_arm[b], a, b)).pairs],
+        proof=proof,
+        gallery=draw_trials(trials, asked, progress) if pictures else None,
+    )

@@ -1,0 +1,139 @@
+"""Pieces of HTML from texts that somebody else wrote: everything is escaped, long texts are cut with a sentence."""
+
+from __future__ import annotations
+
+import difflib
+import html
+import math
+import re
+from collections.abc import Collection
+
+from irsim.common.text import clean
+from irsim.scenario.limits import Limits
+from irsim.scenario.yaml.document import Document, load_text
+from irsim.scenario.yaml.nodes import Node
+
+__all__ = ["code", "difference", "escaped", "lines_of", "number", "percent", "prose", "slug"]
+
+_MAX_LINES = 400
+_MAX_CHARACTERS = 40_000
+"""Length of a text that the page shows."""
+_MAX_LINE = 400
+"""Characters of a line that the page shows."""
+_MAX_COMPARED_LINES = 1500
+"""Lines of a file that is compared with the one before."""
+_MAX_PARSED = 100_000
+"""Characters of a scenario in which lines are looked up."""
+_PART = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
+
+
+def escaped(text: object, longest: int = 2000) -> str:
+    """A text in one line, without control characters, for an element or an attribute."""
+    spaced = "".join(" " if c.isspace() else c for c in str(text)[: longest + 1])
+    return html.escape(clean(spaced, longest), quote=True)
+
+
+def prose(text: str) -> str:
+    """A text of several lines, such as a prompt or a reply."""
+    lines, rest = _cut(text)
+    return '<pre class="prose">' + "\n".join(html.escape(line) for line in lines) + "</pre>" + _rest(rest)
+
+
+def code(text: str, marked: Collection[int] = ()) -> str:
+    """A file with numbered lines.
+
+    Args:
+        text: The file.
+        marked: Numbers of the lines that are marked, from 1 on.
+    """
+    lines, rest = _cut(text)
+    parts = [
+        f'<span class="marked">{html.escape(line)}</span>' if number in marked else f"<span>{html.escape(line)}</span>"
+        for number, line in enumerate(lines, 1)
+    ]
+    return '<pre class="code" tabindex="0">' + "\n".join(parts) + "</pre>" + _rest(rest)
+
+
+def difference(before: str, after: str) -> str:
+    """What changed in a file, line by line; a sentence if nothing did."""
+    old, new = before.splitlines(), after.splitlines()
+    if old == new:
+        return '<p class="note">The file is the one that was given.</p>'
+    if max(len(old), len(new)) > _MAX_COMPARED_LINES:
+        return f'<p class="note">A file of more than {_MAX_COMPARED_LINES} lines is not compared.</p>'
+    found = list(difflib.unified_diff(old, new, lineterm="", n=2))[2:]
+    lines, rest = _cut("\n".join(found))
+    kinds = {"+": "added", "-": "removed", "@": "hunk"}
+    parts = [f'<span class="{kinds.get(line[:1], "same")}">{html.escape(line)}</span>' for line in lines]
+    return '<pre class="code diff" tabindex="0">' + "\n".join(parts) + "</pre>" + _rest(rest)
+
+
+def lines_of(text: str, paths: Collection[str]) -> dict[str, range]:
+    """Lines of a scenario that each path stands for, such as ``robot[0].state``; paths that are not there are left out.
+
+    A scenario that is too long or that no YAML parser reads has no lines.
+    """
+    if not paths or len(text) > _MAX_PARSED:
+        return {}
+    try:
+        document = load_text(text, limits=Limits(bytes=_MAX_PARSED, events=_MAX_PARSED, expansion=20_000, aliases=1000))
+        if document.fatal:
+            return {}
+        return {path: found for path in paths if (found := _lines(document, path)) is not None}
+    except Exception:  # marks are a help to the eye: a file that cannot be read again is shown without them
+        return {}
+
+
+def _lines(document: Document, path: str) -> range | None:
+    """Lines of a value; the line of the innermost part that is there if it is missing."""
+    parts = (*document.prefix, *(int(index) if index else key for index, key in _PART.findall(path)))
+    root, first = document.tree(), document.mark(parts, key=True)
+    if root is None or first is None or not parts or str(parts[0]) not in map(str, root.children):
+        return None
+    return range(first.line, _last_line(root, parts, first.line) + 1)
+
+
+def _last_line(node: Node | None, path: tuple[str | int, ...], first: int) -> int:
+    """Greatest line of any value below a path."""
+    for part in path:
+        if node is None:
+            return first
+        node = next((child for key, child in node.children.items() if key == part or str(key) == part), None)
+    last, open_nodes = first, [node] if node is not None else []
+    while open_nodes:
+        one = open_nodes.pop()
+        last = max(last, one.mark.line)
+        open_nodes += one.children.values()
+    return last
+
+
+def number(value: float) -> str:
+    """A number with at most three digits after a small part, and thousands kept together."""
+    return f"{value:,.0f}" if abs(value) >= 100 else f"{value:.3g}"
+
+
+def percent(share: float) -> str:
+    """A share as a percentage; a dash where nothing is known."""
+    return "–" if math.isnan(share) else f"{share:.0%}".replace("%", " %")
+
+
+def slug(text: str) -> str:
+    """A text as the name of an anchor."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", text)[:80]
+
+
+def _cut(text: str) -> tuple[list[str], int]:
+    """The first lines of a text as they are shown, and how many are left out."""
+    lines = text[:_MAX_CHARACTERS].splitlines()
+    shown = [_visible(line) for line in lines[:_MAX_LINES]]
+    return shown, text.count("\n") + 1 - len(shown) if len(shown) < len(lines) or len(text) > _MAX_CHARACTERS else 0
+
+
+def _visible(line: str) -> str:
+    """A line without control characters, which could reorder what a reader sees."""
+    spaced = "".join(" " if c.isspace() else c for c in line.replace("\t", "    "))
+    return clean(spaced, _MAX_LINE)
+
+
+def _rest(lines: int) -> str:
+    return f'<p class="note">{lines} more lines are in results.json.</p>' if lines > 0 else ""

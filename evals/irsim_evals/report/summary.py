@@ -1,0 +1,177 @@
+"""Numbers of a report: pass rates with intervals, the funnel, tables by category and level, pass^k, cost."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+from irsim_evals.grader.outcome import STAGES
+from irsim_evals.results import Trial
+from irsim_evals.statistics import Interval, mean_pass_hat_k, wilson
+
+__all__ = ["ArmSummary", "Cell", "CostSummary", "Table", "arms_of", "attempts", "summarize", "table_by"]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Passed attempts of all attempts."""
+
+    passed: int
+    total: int
+
+    @property
+    def share(self) -> float:
+        """Share of passes; NaN without attempts."""
+        return self.passed / self.total if self.total else math.nan
+
+
+@dataclass(frozen=True)
+class Table:
+    """Passes of each arm in each row.
+
+    Attributes:
+        rows: (name, cell of each arm in the order of the arms).
+    """
+
+    rows: list[tuple[str, list[Cell]]]
+
+
+@dataclass(frozen=True)
+class CostSummary:
+    """What an arm cost, as far as its trials say so.
+
+    Attributes:
+        known: Number of trials whose cost is known.
+        totals: Name of a quantity → its sum over these trials.
+        per_pass: Name of a quantity → its sum over these trials by the number of them that passed; None without a pass.
+    """
+
+    known: int
+    totals: dict[str, float]
+    per_pass: dict[str, float | None]
+
+
+@dataclass(frozen=True)
+class ArmSummary:
+    """One arm in numbers.
+
+    Attributes:
+        arm: Its name.
+        models: Names of the models that answered.
+        cases: Number of cases; two instances of a case count as two.
+        trials: Passed attempts of all attempts.
+        strict: Mean share of attempts that pass, over cases, with Wilson's interval.
+        rate: Mean share of the assertions that hold, over cases, with Wilson's interval.
+        funnel: Stage → share of the attempts in which nothing failed up to it.
+        pass_hat: k → mean chance that k attempts at one case all pass.
+        cost: What the arm cost.
+        seconds: Mean time of grading one answer [s].
+    """
+
+    arm: str
+    models: list[str]
+    cases: int
+    trials: Cell
+    strict: Interval
+    rate: Interval
+    funnel: dict[str, Cell]
+    pass_hat: dict[int, float] = field(default_factory=dict)
+    cost: CostSummary = field(default_factory=lambda: CostSummary(0, {}, {}))
+    seconds: float = 0.0
+
+
+def arms_of(trials: Iterable[Trial]) -> list[str]:
+    """Names of the arms in the order in which they occur."""
+    return list(dict.fromkeys(trial.arm for trial in trials))
+
+
+def attempts(trials: Iterable[Trial]) -> dict[tuple[str, str], list[Trial]]:
+    """Case and instance → attempts at it."""
+    found: dict[tuple[str, str], list[Trial]] = {}
+    for trial in trials:
+        found.setdefault(trial.key, []).append(trial)
+    return found
+
+
+def summarize(trials: Sequence[Trial], arm: str) -> ArmSummary:
+    """One arm in numbers.
+
+    Wilson's interval is computed with the number of cases as the number of observations: several attempts at one case
+    count as one observation, and a share between 0 and 1 varies less than a plain pass or failure would. So the
+    intervals are rather too wide than too narrow.
+
+    Args:
+        trials: Trials of all arms.
+        arm: The arm.
+    """
+    own = [trial for trial in trials if trial.arm == arm]
+    by_case = attempts(own)
+    counts = [(sum(t.verdict.strict for t in group), len(group)) for group in by_case.values()]
+    rates = [math.fsum(t.verdict.rate for t in group) / len(group) for group in by_case.values()]
+    most = min(max((total for _, total in counts), default=0), _MAX_K)
+    return ArmSummary(
+        arm=arm,
+        models=sorted({trial.model for trial in own if trial.model}),
+        cases=len(by_case),
+        trials=Cell(sum(passed for passed, _ in counts), len(own)),
+        strict=_mean_interval([passed / total for passed, total in counts]),
+        rate=_mean_interval(rates),
+        funnel=_funnel(own),
+        pass_hat={k: mean_pass_hat_k(counts, k) for k in range(1, most + 1)},
+        cost=_cost(own),
+        seconds=math.fsum(t.verdict.seconds for t in own) / len(own) if own else 0.0,
+    )
+
+
+_MAX_K = 10
+"""Greatest number of attempts for which pass^k is shown."""
+
+
+def table_by(trials: Sequence[Trial], arms: Sequence[str], names: Callable[[Trial], Iterable[str]]) -> Table:
+    """Passes of each arm, by something that trials have.
+
+    Args:
+        trials: All trials.
+        arms: The columns.
+        names: Rows that a trial belongs to.
+    """
+    found: dict[str, dict[str, list[bool]]] = {}
+    for trial in trials:
+        for name in names(trial):
+            found.setdefault(name, {}).setdefault(trial.arm, []).append(trial.verdict.strict)
+    rows = []
+    for name in sorted(found):
+        passes = [found[name].get(arm, []) for arm in arms]
+        rows.append((name, [Cell(sum(one), len(one)) for one in passes]))
+    return Table(rows)
+
+
+def _mean_interval(values: Sequence[float]) -> Interval:
+    return wilson(min(math.fsum(values), float(len(values))), len(values))
+
+
+def _funnel(trials: Sequence[Trial]) -> dict[str, Cell]:
+    """How many attempts have no failure up to each stage."""
+    found = {}
+    for place, stage in enumerate(STAGES):
+        clear = sum(t.verdict.strict or STAGES.index(t.verdict.reached) > place for t in trials)
+        found[str(stage)] = Cell(clear, len(trials))
+    return found
+
+
+def _cost(trials: Sequence[Trial]) -> CostSummary:
+    known = [trial for trial in trials if any(value is not None for value in _quantities(trial).values())]
+    passed = sum(trial.verdict.strict for trial in known)
+    totals: dict[str, float] = {}
+    for trial in known:
+        for name, value in _quantities(trial).items():
+            if value is not None:
+                totals[name] = totals.get(name, 0) + value
+    return CostSummary(len(known), totals, {k: v / passed if passed else None for k, v in totals.items()})
+
+
+def _quantities(trial: Trial) -> dict[str, float | None]:
+    """The numbers among the fields of a cost."""
+    fields = trial.verdict.cost.model_dump()
+    return {k: v for k, v in fields.items() if v is None or (isinstance(v, (int, float)) and math.isfinite(v))}

@@ -1,0 +1,112 @@
+"""The file of results: what each arm made of each case. ``grade``, ``run``, ``report`` and ``compare`` share it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+import irsim
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import case_ids, folder
+from irsim_evals.grader.outcome import Verdict
+
+__all__ = ["Results", "Trial", "cases_hash", "read_results", "results_of", "trial_of", "write_results"]
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Trial(_Record):
+    """One attempt at one case."""
+
+    arm: str
+    """Who answered: ``null``, ``rules``, ``skill+mcp``, or the name of a folder."""
+    number: int = 1
+    """Number of the attempt, from 1 on."""
+    model: str | None = None
+    """Name of the model, where one answered."""
+    title: str
+    prompt: str
+    """What was asked, later turns included."""
+    category: list[str]
+    level: int
+    family: str
+    """Cases of one family are not independent."""
+    hard: str = ""
+    """What makes it hard."""
+    reply: str = ""
+    """Last message of the agent."""
+    ended: str = ""
+    """Why the attempt ended before the agent was done: a limit, an error of the model's service."""
+    drift: list[str] = []
+    """Answers of tools that differ from those of the recording that was replayed."""
+    verdict: Verdict
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Case and instance."""
+        return self.verdict.case, self.verdict.instance
+
+
+class Results(_Record):
+    """Results of some arms on some cases; a report writes its aggregates beside them, which are not read back."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    schema_version: int = 1
+    irsim_version: str = irsim.__version__
+    cases: str = ""
+    """Digest of the case files that were used; results of different ones are not compared."""
+    trials: list[Trial] = []
+
+
+def cases_hash() -> str:
+    """Digest of all case files."""
+    digest = hashlib.sha256()
+    for case_id in case_ids():
+        digest.update((folder("cases") / f"{case_id}.yaml").read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def trial_of(instance: Instance, verdict: Verdict, arm: str, **more: Any) -> Trial:
+    """A trial with what the case says about it.
+
+    Args:
+        instance: The case.
+        verdict: What the grader said.
+        arm: Who answered.
+        more: ``number``, ``model``, ``reply``, ``ended`` and ``drift`` of the trial.
+    """
+    case = instance.case
+    turns = [instance.prompt, *case.turns]
+    return Trial(
+        arm=arm, title=case.title, prompt="\n\n".join(turn.strip() for turn in turns), category=case.category,
+        level=case.level, family=case.family or case.id, hard=case.hard, verdict=verdict, **more,
+    )  # fmt: skip
+
+
+def results_of(trials: Iterable[Trial]) -> Results:
+    """Results with the digest of the present cases."""
+    return Results(cases=cases_hash(), trials=list(trials))
+
+
+def write_results(results: Results, path: Path) -> None:
+    """Write a file of results."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(results.model_dump_json(indent=1) + "\n", encoding="utf-8")
+
+
+def read_results(path: Path) -> Results:
+    """Read a file of results, or ``results.json`` of a folder.
+
+    Raises:
+        OSError: It cannot be read.
+        pydantic.ValidationError: It is no file of results.
+    """
+    path = path / "results.json" if path.is_dir() else path
+    return Results.model_validate_json(path.read_text(encoding="utf-8"))

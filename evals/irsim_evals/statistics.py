@@ -1,0 +1,129 @@
+"""Statistics of pass rates: pure functions of counts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+__all__ = ["Interval", "mcnemar", "mean_pass_hat_k", "paired_bootstrap", "pass_hat_k", "wilson"]
+
+Z_95 = 1.959963984540054
+"""Quantile of the standard normal distribution for a two-sided interval of 95 %."""
+
+
+class Interval(NamedTuple):
+    """An estimate and the interval around it."""
+
+    estimate: float
+    low: float
+    high: float
+
+
+def wilson(passed: float, total: int, z: float = Z_95) -> Interval:
+    """Share of passes with Wilson's score interval.
+
+    Args:
+        passed: Number of passes; with shares of passes, their sum.
+        total: Number of trials; without trials nothing is known, and the interval is 0 to 1.
+        z: Quantile of the standard normal distribution; default: 95 %.
+
+    Raises:
+        ValueError: There are fewer trials than passes, or a number is negative.
+
+    References:
+        Wilson: Probable inference, the law of succession, and statistical inference (1927).
+    """
+    _check_counts(passed, total)
+    if total == 0:
+        return Interval(math.nan, 0.0, 1.0)
+    share = passed / total
+    middle = (share + z * z / (2 * total)) / (1 + z * z / total)
+    half = z / (1 + z * z / total) * math.sqrt(share * (1 - share) / total + z * z / (4 * total * total))
+    low = 0.0 if passed == 0 else max(0.0, middle - half)
+    high = 1.0 if passed == total else min(1.0, middle + half)
+    return Interval(share, low, high)
+
+
+def pass_hat_k(passed: int, total: int, k: int) -> float:
+    """Estimated chance that all of ``k`` attempts at one case pass: C(passed, k) / C(total, k).
+
+    Args:
+        passed: Number of attempts that passed.
+        total: Number of attempts.
+        k: Number of attempts that must all pass, at least 1.
+
+    Raises:
+        ValueError: There are fewer than ``k`` attempts, fewer attempts than passes, or a number is negative.
+
+    References:
+        Yao et al.: tau-bench (2024), section 3.
+    """
+    _check_counts(passed, total)
+    if not 1 <= k <= total:
+        raise ValueError(f"pass^{k} needs at least {max(k, 1)} attempts and a k of at least 1; there are {total}")
+    return math.comb(passed, k) / math.comb(total, k)
+
+
+def mean_pass_hat_k(attempts: Iterable[tuple[int, int]], k: int) -> float:
+    """Mean of pass^k over cases; NaN if no case has ``k`` attempts.
+
+    Args:
+        attempts: ``(passed, total)`` of each case; cases with fewer than ``k`` attempts are left out.
+        k: Number of attempts that must all pass.
+    """
+    values = [pass_hat_k(passed, total, k) for passed, total in attempts if total >= k]
+    return math.fsum(values) / len(values) if values else math.nan
+
+
+def mcnemar(only_first: int, only_second: int) -> float:
+    """Exact two-sided p value of McNemar's test.
+
+    Args:
+        only_first: Number of pairs of which only the first passes.
+        only_second: Number of pairs of which only the second passes.
+
+    Returns:
+        Probability of a split at least this uneven if both were equally good; 1 if no pair differs.
+
+    Raises:
+        ValueError: A number is negative.
+    """
+    if min(only_first, only_second) < 0:
+        raise ValueError("numbers of pairs are not negative")
+    different = only_first + only_second
+    tail = sum(math.comb(different, i) for i in range(min(only_first, only_second) + 1))
+    return float(min(1.0, 2 * tail / (1 << different)))
+
+
+def paired_bootstrap(
+    differences: Mapping[str, Sequence[float]], *, samples: int = 10_000, seed: int = 0, level: float = 0.95
+) -> Interval:
+    """Mean difference of paired results with a percentile interval, drawn by family.
+
+    Cases of one family share a base, so whole families are drawn, with replacement.
+
+    Args:
+        differences: Family → difference of each of its pairs, second minus first.
+        samples: Number of draws.
+        seed: Seed of the draws.
+        level: Share of the draws inside the interval.
+
+    Returns:
+        The mean over all pairs and its interval; NaN without pairs.
+    """
+    families = [(math.fsum(values), len(values)) for _, values in sorted(differences.items()) if len(values)]
+    if not families:
+        return Interval(math.nan, math.nan, math.nan)
+    table = np.array(families, dtype=float)
+    drawn = np.random.default_rng(seed).integers(0, len(families), (samples, len(families)))
+    sums = table[drawn].sum(axis=1)
+    low, high = np.quantile(sums[:, 0] / sums[:, 1], [(1 - level) / 2, (1 + level) / 2])
+    return Interval(float(table[:, 0].sum() / table[:, 1].sum()), float(low), float(high))
+
+
+def _check_counts(passed: float, total: int) -> None:
+    if not 0 <= passed <= total:
+        raise ValueError(f"{passed} passes of {total} trials are not possible")

@@ -1,0 +1,188 @@
+"""The live path against a stand-in of the Messages API: faults of the service, limits, and what is paid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from irsim.diagnostics.errors import ArgumentError
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import case_of
+from tests.evals.harness.conftest import MODEL, Guard
+from tests.evals.harness.messages_api import Fault, MessagesApi, Reply, messages_api, turn_of
+
+pytestmark = [pytest.mark.evals, pytest.mark.filterwarnings("default")]
+
+BUSY = Fault(429, "rate_limit_error", "Too many requests", {"retry-after": "1"})
+OVERLOADED = Fault(529, "overloaded_error", "Overloaded")
+
+
+@pytest.fixture(autouse=True)
+def quick_retries(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Waits of inspect_ai between requests are noted and not made; those of Anthropic's library are."""
+    import anyio
+    from inspect_ai.model import _retry
+
+    waited: list[float] = []
+
+    async def sleep(seconds: float) -> None:
+        waited.append(seconds)
+        await anyio.sleep(0)
+
+    monkeypatch.setattr(_retry, "_sleep", sleep)
+    return waited
+
+
+def run(instances: list[Instance], api: MessagesApi, folder: Path, **more: Any) -> list[Any]:
+    from irsim_evals.harness.run import run_arm
+
+    return run_arm("no-skill", instances, log_dir=folder, base_url=api.url, **{"model": MODEL, **more})
+
+
+def test_the_guard_of_these_tests_refuses_other_addresses(offline: Guard) -> None:
+    import socket
+
+    for look in (lambda: socket.create_connection(("192.0.2.1", 443), 1), lambda: socket.getaddrinfo("example.org", 1)):
+        with pytest.raises(OSError, match="nothing but the loopback address"):
+            look()
+    assert offline.refused == ["socket.getaddrinfo 192.0.2.1", "socket.getaddrinfo example.org"]
+    offline.refused.clear()
+
+
+@pytest.mark.parametrize("model", [MODEL, "anthropic/claude-3-haiku-20240307"])
+def test_answers_come_streamed_and_whole(
+    model: str, empty_world: Instance, service: MessagesApi, tmp_path: Path
+) -> None:
+    (trial,) = run([empty_world], service, tmp_path, model=model)
+    assert [body.get("stream", False) for body in service.requests] == [model == MODEL] * 2
+    assert trial.verdict.strict
+    cost = trial.verdict.cost
+    assert (cost.tokens, cost.input_tokens, cost.output_tokens, cost.calls) == (2200, 2000, 200, 1)
+    assert cost.seconds is not None
+    assert cost.seconds < 60
+    assert cost.dollars == (pytest.approx((2000 * 3 + 200 * 15) / 1e6) if model == MODEL else None)
+
+
+def test_a_busy_service_is_asked_again_when_it_says(
+    empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import time
+
+    begin = time.monotonic()
+    (trial,) = run([empty_world], service.first(BUSY), tmp_path)
+    assert time.monotonic() - begin >= 1, "retry-after says a second"
+    assert (trial.verdict.strict, trial.ended, len(service.requests)) == (True, "", 3)
+
+
+def test_an_overloaded_service_and_a_cut_stream_are_asked_again(
+    empty_world: Instance, service: MessagesApi, tmp_path: Path, quick_retries: list[float]
+) -> None:
+    service.first(OVERLOADED, Reply("I write", cut_after=3), Reply("I write", cut_after=1))
+    (trial,) = run([empty_world], service, tmp_path)
+    assert (trial.verdict.strict, trial.ended, len(service.requests)) == (True, "", 5)
+    assert len(quick_retries) == 2
+    assert trial.verdict.cost.turns == 2
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [
+        (BUSY, "the model's service failed: status 429, Too many requests, tried 2 times"),
+        (OVERLOADED, "the model's service failed: status 529, Overloaded, tried 2 times"),
+        (Reply("I write", cut_after=3), "peer closed connection without sending complete message body"),
+        (Fault(401, "authentication_error", "invalid x-api-key"), "status 401, invalid x-api-key"),
+        (Fault(400, "invalid_request_error", "Your credit is too low"), "status 400, Your credit is too low"),
+    ],
+    ids=["busy", "overloaded", "cut", "key", "credit"],
+)
+def test_a_service_that_stays_broken_fails_the_attempt_and_not_the_rest(
+    fault: Fault | Reply, reason: str, writes: Callable[[dict[str, Any]], Reply], empty_world: Instance,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.setattr("irsim_evals.harness.run.MAX_RETRIES", 1)
+    other = case_of("pub-05")
+
+    def script(body: dict[str, Any]) -> Reply | Fault:
+        return fault if other.prompt.strip()[:40] in str(body["messages"][0]) else writes(body)
+
+    with messages_api(script) as api:
+        good, bad = run([empty_world, other], api, tmp_path)
+    assert (good.verdict.strict, good.ended) == (True, "")
+    assert not bad.verdict.strict
+    assert bad.verdict.rate == 0
+    assert reason in bad.ended
+    assert bad.verdict.outcomes[0].observed == bad.ended
+
+
+@pytest.mark.parametrize(
+    ("limits", "reason"),
+    [
+        ({"token_limit": 3000}, "the limit of 3,000 tokens was reached"),
+        ({"cost_limit": 0.006}, "the limit of 0.006 US dollars was reached"),
+        ({"message_limit": 6}, "the limit of 6 messages was reached"),
+    ],
+    ids=["tokens", "cost", "messages"],
+)
+def test_a_limit_ends_an_attempt_and_what_is_there_is_graded(
+    limits: dict[str, Any], reason: str, empty_world: Instance, scenario: str, tmp_path: Path
+) -> None:
+    def endless(body: dict[str, Any]) -> Reply:
+        return Reply("Once more.", [("write_file", {"path": "scenario.yaml", "content": scenario})])
+
+    with messages_api(endless) as api:
+        (trial,) = run([empty_world], api, tmp_path, **limits)
+        assert len(api.requests) <= 4
+    assert trial.ended == reason
+    assert trial.verdict.strict
+
+
+def test_a_time_limit_ends_an_attempt(empty_world: Instance, tmp_path: Path) -> None:
+    import time
+
+    def slow(body: dict[str, Any]) -> Reply:
+        time.sleep(1.5 if turn_of(body) else 0)
+        return Reply("I look.", [("list_files", {})])
+
+    with messages_api(slow) as api:
+        (trial,) = run([empty_world], api, tmp_path, time_limit=1)
+    assert trial.ended == "the limit of 1 s was reached"
+    assert trial.verdict.failed()[0].observed == "neither a scenario nor a reply" or trial.reply == "I look."
+
+
+def test_an_answer_that_was_cut_or_refused_says_so(empty_world: Instance, tmp_path: Path) -> None:
+    with messages_api(lambda body: Reply("I begin", stop_reason="max_tokens")) as api:
+        (trial,) = run([empty_world], api, tmp_path)
+    assert trial.ended == "an answer of the model was cut at its limit of output tokens"
+    assert not trial.verdict.strict
+
+
+def test_what_is_missing_is_said_before_anything_is_asked(
+    empty_world: Instance, service: MessagesApi, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(ArgumentError, match="the price of anthropic/claude-unheard-of is not known"):
+        run([empty_world], service, tmp_path, model="anthropic/claude-unheard-of", cost_limit=1.0)
+    with pytest.raises(ArgumentError, match="names no model"):
+        run([empty_world], service, tmp_path, model="claude")
+    monkeypatch.delenv("ANTHROPIC_API_KEY")
+    with pytest.raises(ArgumentError, match="set the environment variable ANTHROPIC_API_KEY"):
+        run([empty_world], service, tmp_path)
+    assert service.requests == []
+
+
+def test_a_provider_that_is_not_installed_is_one_clear_error(
+    empty_world: Instance, service: MessagesApi, tmp_path: Path
+) -> None:
+    from irsim_evals.harness.run import RunError
+
+    with pytest.raises(RunError, match=r"nonsense/model could not be run: "):
+        run([empty_world], service, tmp_path, model="nonsense/model")
+
+
+def test_a_model_without_a_known_price_can_be_given_one(
+    empty_world: Instance, service: MessagesApi, tmp_path: Path
+) -> None:
+    (trial,) = run([empty_world], service, tmp_path, model="anthropic/claude-new", price=(10, 20), cost_limit=1.0)
+    assert trial.verdict.cost.dollars == pytest.approx((2000 * 10 + 200 * 20) / 1e6)

@@ -1,0 +1,201 @@
+"""What the harness says and does where inspect_ai is not installed: arms, recordings, folders, distractors."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from mcp import Client
+from mcp.types import TextContent
+
+from irsim.diagnostics.errors import ArgumentError
+from irsim_evals.cases.store import case_of, golds_of
+from irsim_evals.grader.outcome import Cost
+from irsim_evals.harness import MODEL_ARMS
+from irsim_evals.harness.briefing import briefing, skill_folders
+from irsim_evals.harness.distractors import build_office
+from irsim_evals.harness.folder import Folder, FolderError
+from irsim_evals.harness.prices import known_price
+from irsim_evals.harness.recording import (
+    Attempt,
+    Header,
+    Recording,
+    grade_recording,
+    read_recording,
+    task_hash,
+    write_recording,
+)
+from irsim_evals.harness.run import run_arm
+from irsim_evals.harness.scrub import Names, scrubbed
+
+
+@pytest.fixture
+def recording() -> Recording:
+    """Two attempts at a case: a right one, and one that an error ended."""
+    instance = case_of("pub-01", 4)
+    gold = golds_of(instance)[0]
+    known = {"case": "pub-01", "instance": "4", "arm": "skill", "task": task_hash(instance)}
+    right = Attempt(**known, files=dict(gold.files), replies=["Done."], cost=Cost(tokens=7))
+    broken = Attempt(**known, trial=2, ended="the model's service failed: status 529", failed=True)
+    return Recording(header=Header(arm="skill", model="anthropic/x", date="2026-01-01"), attempts=[right, broken])
+
+
+def test_the_arms_of_models_are_known() -> None:
+    assert MODEL_ARMS == ("no-skill", "skill", "skill+mcp", "skill+mcp+distractors")
+
+
+def test_without_the_extra_the_error_names_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "inspect_ai", None)
+    with pytest.raises(ArgumentError, match=r"inspect_ai is not installed.*pip install 'irsim-mcp\[evals\]'"):
+        run_arm("skill", [case_of("pub-01")], model="anthropic/x", log_dir=tmp_path)
+
+
+def test_wrong_arguments_are_refused(tmp_path: Path) -> None:
+    case = case_of("pub-01")
+    with pytest.raises(ArgumentError, match="no model answers in the arm 'rules'"):
+        run_arm("rules", [case], model="anthropic/x", log_dir=tmp_path)
+    with pytest.raises(ArgumentError, match="there is no case to answer"):
+        run_arm("skill", [], model="anthropic/x", log_dir=tmp_path)
+    with pytest.raises(ArgumentError, match="at least one attempt"):
+        run_arm("skill", [case], model="anthropic/x", log_dir=tmp_path, epochs=0)
+
+
+def test_a_recording_is_graded_without_the_extra(
+    recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "inspect_ai", None)
+    path = tmp_path / "recording.jsonl"
+    write_recording(recording, path)
+    assert read_recording(path) == recording
+    right, broken = run_arm(
+        "skill", [case_of("pub-01", 4)], model=None, log_dir=tmp_path, replay=path, replay_mode="grade"
+    )
+    assert (right.verdict.strict, right.number, right.reply, right.model) == (True, 1, "Done.", "anthropic/x")
+    assert right.verdict.cost.tokens == 7
+    assert (broken.verdict.strict, broken.number) == (False, 2)
+    assert broken.ended == broken.verdict.outcomes[0].observed == "the model's service failed: status 529"
+    assert [trial.key for trial in grade_recording(recording)] == [("pub-01", "4")] * 2
+
+
+def test_a_recording_of_another_prompt_is_refused(recording: Recording) -> None:
+    recording.attempts[0].task = "0123"
+    with pytest.raises(ArgumentError, match="the prompt or the files of pub-01@4 have changed"):
+        grade_recording(recording)
+
+
+@pytest.mark.parametrize("text", ["", "no json\n", '{"kind": "header"}\n', "[]\n"])
+def test_other_files_are_no_recordings(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "other.jsonl"
+    path.write_text(text)
+    with pytest.raises(ArgumentError, match="is no recording"):
+        read_recording(path)
+    with pytest.raises(ArgumentError, match="cannot be read"):
+        read_recording(tmp_path / "missing.jsonl")
+
+
+def test_keys_and_paths_are_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOME_API_KEY", "hunter2hunter2")
+    said = {"a": [f"in {tmp_path}/work/x.yaml", "sk-ant-abcdefghij and hunter2hunter2"], "b": 3}
+    assert scrubbed(said, [tmp_path / "work"]) == {"a": ["in <folder>/x.yaml", "<secret> and <secret>"], "b": 3}
+    assert str(Path.home()) not in scrubbed(f"{Path.home()}/.config and {sys.prefix}/lib")
+
+
+def test_ids_of_runs_are_numbered_and_filled_in_again() -> None:
+    recorded, now = Names(), Names()
+    assert recorded.numbered("Run: hall-0a1b2c, then hall-ffffff and hall-0a1b2c") == "Run: $run1, then $run2 and $run1"
+    assert recorded.known({"run_id": "hall-ffffff", "other": "hall-123456"}) == {
+        "run_id": "$run2",
+        "other": "hall-123456",
+    }
+    now.numbered("Run: hall-aaaaaa, then hall-bbbbbb")
+    assert now.filled({"run_id": ["$run2", "$run3"]}) == {"run_id": ["hall-bbbbbb", "$run3"]}
+
+
+def test_prices_are_those_of_dated_models_too() -> None:
+    assert known_price("anthropic/claude-sonnet-4-5-20250929") == known_price("anthropic/claude-sonnet-4-5") == (3, 15)
+    assert known_price("anthropic/claude-unheard-of") is None
+    assert known_price("other/claude-sonnet-4-5") is None
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("../x.yaml", "outside the folder"),
+        ("/etc/passwd", "outside the folder"),
+        ("C:\\x.yaml", "outside the folder"),
+        ("link/x.yaml", "outside the folder"),
+        (".hidden", "begin with a dot"),
+        ("a\0b", "no name of a file"),
+        ("x" * 400, "no name of a file"),
+        ("sub", "is a folder"),
+        ("skills/s/SKILL.md", "can be read only"),
+        ("given.yaml/x", "cannot be written"),
+    ],
+)
+def test_a_folder_refuses_what_leads_out_of_it(path: str, message: str, tmp_path: Path) -> None:
+    root, skill = tmp_path / "work", tmp_path / "skill"
+    (root / "sub").mkdir(parents=True)
+    skill.mkdir()
+    (root / "given.yaml").write_text("a: 1\n")
+    (root / "link").symlink_to(tmp_path)
+    with pytest.raises(FolderError, match=message):
+        Folder(root, {"skills/s": skill}).write(path, "b: 2")
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["skill", "work"]
+
+
+def test_a_folder_reads_in_parts_and_lists_what_is_there(tmp_path: Path) -> None:
+    root, skill = tmp_path / "work", tmp_path / "skill"
+    root.mkdir()
+    (skill / "references").mkdir(parents=True)
+    (skill / "references" / "keys.md").write_text("# Keys\n")
+    (root / "plan.png").write_bytes(b"\x89PNG")
+    (root / "data.bin").write_bytes(b"\xff\xfe\x00")
+    folder = Folder(root, {"skills/s": skill})
+    assert folder.write("deep/a.yaml", "é" * 50_000) == "wrote deep/a.yaml (100,000 bytes)"
+    first = folder.read("deep/a.yaml")
+    assert isinstance(first, str)
+    assert first.endswith("[cut; the file has 50,000 characters, go on with start=40000]")
+    assert folder.read("deep/a.yaml", 40_000) == "é" * 10_000
+    assert folder.read("plan.png") == ("image/png", b"\x89PNG")
+    assert folder.read("skills/s/references/keys.md") == "# Keys\n"
+    assert folder.names() == ["data.bin", "deep/a.yaml", "plan.png"]
+    assert folder.names("skills/s") == ["skills/s/references/keys.md"]
+    for name, message in (("data.bin", "neither a text"), ("no.yaml", "there is no file"), ("deep", "is a folder")):
+        with pytest.raises(FolderError, match=message):
+            folder.read(name)
+    with pytest.raises(FolderError, match="write at most"):
+        folder.write("big.yaml", "x" * 2_000_000)
+
+
+def test_each_arm_is_told_what_it_has(tmp_path: Path) -> None:
+    told = {arm: briefing(arm, tmp_path) for arm in MODEL_ARMS}
+    assert ["SKILL.md" in text for text in told.values()] == [False, True, True, True]
+    assert ["validate_scenario until valid" in text for text in told.values()] == [False, False, True, True]
+    assert told["skill+mcp"] == told["skill+mcp+distractors"]
+    assert skill_folders("no-skill") == {}
+    for arm in MODEL_ARMS[1:]:
+        assert all((place / "SKILL.md").is_file() for place in skill_folders(arm).values())
+
+
+@pytest.mark.anyio
+async def test_the_office_has_a_dozen_tools_that_work() -> None:
+    calls = [
+        ("convert_units", {"value": 3, "source": "ft", "target": "m"}, "0.9144 m"),
+        ("issue_create", {"title": "Paint"}, "created #104"),
+        ("note_search", {"words": "corridor"}, "2.4 m"),
+        ("convert_time_zone", {"hour": 23, "source": "UTC", "target": "CET"}, "00:00 CET"),
+    ]
+    async with Client(build_office()) as client:
+        tools = (await client.list_tools()).tools
+        assert len(tools) >= 12
+        assert all(tool.description for tool in tools)
+        for name, arguments, expected in calls:
+            result = await client.call_tool(name, arguments)
+            assert isinstance(result.content[0], TextContent)
+            assert expected in result.content[0].text
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"

@@ -1,0 +1,287 @@
+"""The baselines without any network: what each passes, in which order they stand, and what they may look at."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from irsim_evals.baselines import BASELINES, answer
+from irsim_evals.baselines.bm25 import scores
+from irsim_evals.baselines.reading.language import language_of, plain
+from irsim_evals.baselines.reading.quantities import quantities
+from irsim_evals.baselines.reading.request import request_of
+from irsim_evals.baselines.retrieval import best_template, slots
+from irsim_evals.baselines.rules import answer as by_rules
+from irsim_evals.baselines.task import Task
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Answer, case_ids, case_of
+from irsim_evals.cli.app import app
+from irsim_evals.grader.grade import grade
+from irsim_evals.results import Trial, trial_of
+
+SNAPSHOT = Path(__file__).with_name("baselines.json")
+REGENERATE = "irsim-evals run --arm baselines --verdicts tests/evals/baselines.json"
+QUICK_CASES = 3
+
+NO_NETWORK = """
+import socket, sys
+
+def refuse(event, arguments):
+    if event in ("socket.connect", "socket.sendto", "socket.bind"):
+        address = arguments[1]
+        if isinstance(address, tuple) and address[0] not in ("127.0.0.1", "::1"):
+            raise PermissionError(f"no network: {event} {address}")
+    local = (None, "127.0.0.1", "::1", "localhost")
+    if event in ("socket.getaddrinfo", "socket.gethostbyname") and arguments[0] not in local:
+        raise PermissionError(f"no network: {event} {arguments[0]}")
+
+sys.addaudithook(refuse)
+"""
+
+
+def run_offline(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run ``irsim-evals`` where every socket but those of the loopback is refused, in all of its processes."""
+    hooks = tmp_path / "hooks"
+    hooks.mkdir(exist_ok=True)
+    (hooks / "sitecustomize.py").write_text(NO_NETWORK, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(hooks), os.environ.get("PYTHONPATH", "")])}
+    command = [sys.executable, "-m", "irsim_evals", *arguments]
+    return subprocess.run(
+        command,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=1500,
+        check=False,
+        cwd=tmp_path,
+        encoding="utf-8",
+    )
+
+
+def snapshot() -> dict[str, dict[str, bool]]:
+    found: dict[str, dict[str, bool]] = json.loads(SNAPSHOT.read_text(encoding="utf-8"))
+    return found
+
+
+def flips(found: dict[str, dict[str, bool]]) -> list[str]:
+    """What differs from the snapshot, in words."""
+    words = {True: "passed", False: "failed", None: "was not there"}
+    known = snapshot()
+    return [
+        f"{arm} {words[known.get(arm, {}).get(case)]} {case}, and now it {'passes' if passed else 'fails'}"
+        for arm, cases in found.items()
+        for case, passed in cases.items()
+        if known.get(arm, {}).get(case) is not passed
+    ]
+
+
+def assert_as_recorded(tmp_path: Path, *arguments: str) -> dict[str, Any]:
+    done = run_offline(tmp_path, "run", "--arm", "baselines", "--verdicts", "verdicts.json", "--json", *arguments)
+    assert done.returncode == 0, done.stderr
+    found = json.loads((tmp_path / "verdicts.json").read_text(encoding="utf-8"))
+    assert list(found) == list(BASELINES)
+    changed = flips(found)
+    assert not changed, f"{'; '.join(changed)}. If that is meant, run: {REGENERATE}"
+    return dict(json.loads(done.stdout))
+
+
+def test_the_hook_refuses_connections_out_of_the_machine(tmp_path):
+    hooks = tmp_path / "sitecustomize.py"
+    hooks.write_text(NO_NETWORK, encoding="utf-8")
+    program = "import socket; socket.create_connection(('192.0.2.1', 9), 1)"
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    assert "no network" in done.stderr
+
+
+def test_some_cases_end_as_recorded(tmp_path):
+    assert_as_recorded(tmp_path, *random.Random(16).sample(case_ids(), QUICK_CASES))
+
+
+@pytest.mark.slow(300)
+def test_all_cases_end_as_recorded(tmp_path):
+    readme = (Path(__file__).resolve().parents[2] / "evals" / "README.md").read_text(encoding="utf-8")
+    assert "irsim-evals run --arm baselines --output baselines\n" in readme  # the command that is run here
+    rows = assert_as_recorded(tmp_path, "--output", "baselines")["arms"]
+    results = json.loads((tmp_path / "baselines" / "results.json").read_text(encoding="utf-8"))
+    assert len(results["trials"]) == len(BASELINES) * len(case_ids())
+    assert [row["arm"] for row in rows] == list(BASELINES)
+
+
+def test_each_baseline_passes_more_cases_than_the_one_before():
+    known = snapshot()
+    assert all(list(cases) == case_ids() for cases in known.values()), f"cases have changed; run: {REGENERATE}"
+    passed = [sum(known[arm].values()) for arm in BASELINES]
+    assert passed[0] == 0
+    assert passed == sorted(set(passed))
+
+
+@pytest.mark.parametrize("name", ["null", "retrieval", "rules"])
+def test_baselines_see_the_request_only(name):
+    for case_id in random.Random(3).sample(case_ids(), 6):
+        instance = case_of(case_id)
+        update = {"id": "x", "check": [], "episodes": [], "select": {}, "title": "", "category": ["basic"], "pins": []}
+        bare = replace(instance, case=instance.case.model_copy(update=update), values={})
+        assert answer(name, bare) == answer(name, instance)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--arm", "rulez"], "did you mean rules"),
+        ([], "say who answers with --arm"),
+        (["--arm", "null", "pub-1"], "no case or category is called 'pub-1'"),
+        (["--arm", "null", "--output", __file__], "is a file"),
+    ],
+)
+def test_bad_input_is_named(arguments, message):
+    done = CliRunner().invoke(app, ["run", *arguments], env={"COLUMNS": "200"})
+    assert done.exit_code == 2
+    assert message in " ".join(done.output.split())
+    assert "Traceback" not in done.output
+
+
+def test_model_arms_get_the_limits_that_are_given(tmp_path, monkeypatch):
+    calls: list[tuple[str, int, dict[str, Any]]] = []
+
+    def run_arm(arm: str, instances: Sequence[Instance], **options: Any) -> list[Trial]:
+        calls.append((arm, len(instances), options))
+        return [trial_of(one, grade(one, Answer("a", {}, "?")), arm, model=options["model"]) for one in instances]
+
+    monkeypatch.setattr("irsim_evals.harness.run.run_arm", run_arm)
+    options = ["--model", "anthropic/some", "--epochs", "3", "--token-limit", "9000", "--cost-limit", "0.5"]
+    command = ["run", "--arm", "skill", "pub-01", *options, "--output", str(tmp_path / "out"), "--json"]
+    done = CliRunner().invoke(app, command)
+    assert done.exit_code == 0, done.output
+    ((arm, number, given),) = calls
+    assert (arm, number, given["model"], given["epochs"]) == ("skill", 1, "anthropic/some", 3)
+    assert (given["token_limit"], given["cost_limit"], given["time_limit"]) == (9000, 0.5, None)
+    assert given["log_dir"] == tmp_path / "out" / "logs"
+    assert json.loads(done.stdout)["arms"][0]["passed"] == 0
+    without = CliRunner().invoke(app, ["run", "--arm", "skill", "pub-01", "--output", str(tmp_path / "out")])
+    assert without.exit_code == 2
+    assert "--model" in without.output
+
+
+def test_rules_answer_whatever_is_said():
+    rng = random.Random(1)
+    words = [word for case_id in case_ids() for word in case_of(case_id).prompt.split()]
+    for _ in range(60):
+        prompt = " ".join(rng.choices(words, k=rng.randint(1, 50)))
+        for files in ({}, {"scenario.yaml": GIVEN}, {"scenario.yaml": "world: [1, {2: 3"}):
+            assert by_rules(Task(prompt, (), files)).name == "rules"
+
+
+def test_trials_are_fresh_instances_and_give_pass_hat_k(tmp_path):
+    done = run_offline(tmp_path, "run", "--arm", "null", "pub-01", "pub-02", "--trials", "3", "--json")
+    row = json.loads(done.stdout)["arms"][0]
+    assert (row["trials"], row["attempts"], row["pass_hat_k"]) == (6, 3, 0)
+    results = json.loads((tmp_path / "evals-results" / "results.json").read_text(encoding="utf-8"))
+    assert [trial["number"] for trial in results["trials"]] == [1, 2, 3, 1, 2, 3]
+    assert [trial["verdict"]["instance"] for trial in results["trials"][:3]] == ["", "1", "2"]
+
+
+def test_bm25_prefers_documents_with_the_rarer_word():
+    ranked = scores("a robot on a circle", ["robot in a room", "robots on circles", "robot robot robot"])
+    assert ranked.index(max(ranked)) == 1
+    assert scores("nothing", ["robot"]) == [0]
+
+
+def test_retrieval_fills_parameters_by_their_words():
+    prompt = "six differential robots with 20 cm radius swap places on a circle of radius 4.5 m, avoiding each other"
+    template = best_template(prompt)
+    assert template.name == "circle-swap"
+    assert slots(template, prompt) == {"robots": 6, "circle": 4.5, "radius": 0.2}
+
+
+@pytest.mark.parametrize(
+    ("text", "language", "numbers"),
+    [
+        ("It drives at 5.4 km/h and turns at 90 degrees per second", "en", [1.5, 1.570796327]),
+        ("Eine Welt von 20 mal 12,5 Metern mit drei Säulen", "de", [20, 12.5, 3]),
+        ("Un pasillo de 3,5 metros de ancho y dos peatones", "es", [3.5, 2]),
+        ("创建一个宽１５米的场景，三台机器人，半径 ３０ 厘米", "zh", [15, 3, 0.3]),
+    ],
+)
+def test_numbers_are_read_in_four_languages(text, language, numbers):
+    assert language_of(text) == language
+    assert [number.value for number in quantities(plain(text))] == pytest.approx(numbers)
+
+
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A 12 × 8 m world with three differential robots of radius 0.25 m.",
+        "Eine Welt von 12 mal 8 Metern mit drei Differentialrobotern, Radius 25 cm.",
+        "Un mundo de 12 por 8 metros con tres robots diferenciales de 0,25 m de radio.",
+        "一个宽 12 米、高 8 米的世界，三台半径 0.25 米的差速机器人。",
+    ],
+)
+def test_the_same_request_reads_the_same_in_four_languages(prompt):
+    request = request_of(prompt)
+    assert request.size == (12, 8)
+    (robots,) = request.robots
+    assert (robots.number, robots.drive, robots.facts["radius"]) == (3, "diff", 0.25)
+
+
+GIVEN = """\
+# two posts, a scout            (kept)
+world: {width: 18, height: 12}
+robot:
+  - name: scout
+    kinematics: {name: diff}
+    shape: {name: circle, radius: 0.3}
+    state: [2, 6, 0]
+    goal: [16, 6, 0]
+    sensors:
+      - {name: lidar2d, range_max: 4, number: 160}   # looks ahead
+obstacle:
+  - {shape: {name: circle, radius: 0.6}, state: [7, 8.5, 0]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("request_text", "old", "new"),
+    [
+        ("Double the lidar range.", "range_max: 4", "range_max: 8"),
+        ("Setze die Reichweite des Lidars auf 7,5 m.", "range_max: 4", "range_max: 7.5"),
+        ("Duplica el alcance del lidar.", "range_max: 4", "range_max: 8"),
+        ("把激光雷达的量程加倍。", "range_max: 4", "range_max: 8"),
+        ("Make the world 50 % bigger.", "width: 18, height: 12", "width: 27, height: 18"),
+        ("Swap the robot for an omnidirectional one.", "{name: diff}", "{name: omni}"),
+    ],
+)
+def test_edits_change_their_line_only(request_text, old, new):
+    found = by_rules(Task(request_text, (), {"scenario.yaml": GIVEN}))
+    assert found.files["scenario.yaml"] == GIVEN.replace(old, new)
+
+
+def test_a_second_lidar_is_another_line():
+    found = by_rules(Task("Add a second lidar looking backwards, 3 m, 60 beams, 90 degrees", (), {"a.yaml": GIVEN}))
+    added = set(found.files["a.yaml"].splitlines()) - set(GIVEN.splitlines())
+    assert len(added) == 1
+    assert "range_max: 3, angle_range: 1.570796, number: 60" in added.pop()
+
+
+def test_a_correction_starts_from_the_file_before():
+    turns = ("Make the robot 50 % bigger.", "No, I meant the world, not the robot.")
+    found = by_rules(Task(turns[0], turns[1:], {"scenario.yaml": GIVEN}))
+    assert found.files["scenario.yaml"] == GIVEN.replace("width: 18, height: 12", "width: 27, height: 18")
+    assert len(found.replies) == 2
+
+
+def test_what_cannot_be_is_said_and_not_built():
+    for prompt in ("Put 80 robots of radius 1 m in a 10 × 10 m room.", "A drone flies over a wall at 3 m altitude."):
+        found = by_rules(Task(prompt))
+        assert not found.files
+        assert "not possible" in found.reply

@@ -1,0 +1,154 @@
+"""``irsim-evals compare``: what changed, and whether it means anything."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from irsim_evals.cli.app import app
+from irsim_evals.report.comparison import compare, smallest_difference
+from tests.evals.trials import file_of, trial
+
+
+def run(*words: object) -> Result:
+    return CliRunner().invoke(app, ["compare", *map(str, words)])
+
+
+def test_nothing_broken(tmp_path: Path) -> None:
+    a = file_of(tmp_path / "a.json", trial("one", True), trial("two", False))
+    b = file_of(tmp_path / "b.json", trial("one", True), trial("two", True))
+    done = run(a, b)
+    assert done.exit_code == 0, done.output
+    assert "FIXED  two: Title of two" in done.output
+    assert "BROKEN" not in done.output
+
+
+def test_a_case_that_fails_now_is_named_with_its_reason(tmp_path: Path) -> None:
+    a = file_of(tmp_path / "a.json", trial("one", True), trial("two", False))
+    b = file_of(tmp_path / "b.json", trial("one", False), trial("two", True))
+    done = run(a, b)
+    assert done.exit_code == 1
+    assert "BROKEN one: Title of one" in done.output
+    assert "size: expected radius 0.2; observed radius 0.3" in done.output
+
+
+def test_json_says_the_same(tmp_path: Path) -> None:
+    a = file_of(tmp_path / "a.json", *(trial(f"case-{k}", k < 8) for k in range(20)))
+    b = file_of(tmp_path / "b.json", *(trial(f"case-{k}", k >= 1) for k in range(20)))
+    done = run(a, b, "--json")
+    assert done.exit_code == 1
+    (data,) = json.loads(done.stdout)
+    assert (data["pairs"], data["passed"]) == (20, [8, 19])
+    assert [one["case"] for one in data["broken"]] == ["case-0"]
+    assert len(data["fixed"]) == 12
+    assert data["p"] == pytest.approx(2 * (1 + 13) / 2**13)
+    assert data["difference"]["estimate"] == pytest.approx(11 / 20)
+    assert data["difference"]["low"] < 11 / 20 < data["difference"]["high"]
+    assert data["means_something"] is True
+    assert data["sentence"].endswith("often goes unnoticed.")
+
+
+def test_folders_of_reports_can_be_compared(tmp_path: Path) -> None:
+    file_of(tmp_path / "a" / "results.json", trial("one", True))
+    file_of(tmp_path / "b" / "results.json", trial("one", False))
+    assert run(tmp_path / "a", tmp_path / "b").exit_code == 1
+
+
+def test_two_arms_of_one_file(tmp_path: Path) -> None:
+    both = file_of(
+        tmp_path / "a.json", trial("one", False, "rules"), trial("one", True, "skill"), trial("x", True, "mcp")
+    )
+    done = run(both, "--arm", "rules", "--arm", "skill")
+    assert done.exit_code == 0
+    assert "skill passes 1 of 1 cases and rules 0" in done.output
+    assert run(both, "--arm", "skill", "--arm", "rules").exit_code == 1
+    assert run(both).exit_code == 2
+
+
+def test_files_with_several_arms_are_compared_arm_by_arm(tmp_path: Path) -> None:
+    a = file_of(tmp_path / "a.json", trial("one", True, "rules"), trial("one", True, "skill"))
+    b = file_of(tmp_path / "b.json", trial("one", True, "rules"), trial("one", False, "skill"))
+    done = run(a, b, "--json")
+    assert done.exit_code == 1
+    assert [len(one["broken"]) for one in json.loads(done.stdout)] == [0, 1]
+    assert run(a, b, "--arm", "rules").exit_code == 0
+
+
+def test_a_case_with_several_attempts_passes_if_most_of_them_do(tmp_path: Path) -> None:
+    a = file_of(tmp_path / "a.json", *(trial("one", k < 3, number=k) for k in range(5)))
+    b = file_of(tmp_path / "b.json", *(trial("one", k < 2, number=k) for k in range(5)))
+    done = run(a, b)
+    assert done.exit_code == 1
+    assert "BROKEN one: Title of one (60% → 40% of the attempts)" in done.output
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["a.json", "missing.json"], "no file of results"),
+        (["a.json", "text.json"], "not a file of results"),
+        (["a.json", "other.json"], "different cases"),
+        (["a.json", "empty.json"], "no trials"),
+        (["a.json", "elsewhere.json"], "no case in common"),
+        (["a.json", "b.json", "--arm", "nobody"], "no arm called 'nobody'"),
+        (["a.json", "b.json", "a.json"], "two sides"),
+        (["a.json", "a.json"], "given twice"),
+        (["a.json", "mcp.json", "--json"], "--arm"),
+    ],
+)
+def test_bad_input(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[str], message: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    file_of(Path("a.json"), trial("one", True), trial("one", True, "rules"))
+    file_of(Path("b.json"), trial("one", True))
+    file_of(Path("mcp.json"), trial("one", True, "mcp"), trial("one", True, "none"))
+    file_of(Path("other.json"), trial("one", True), cases="def")
+    file_of(Path("elsewhere.json"), trial("two", True), trial("two", True, "rules"))
+    file_of(Path("empty.json"))
+    Path("text.json").write_text("[1, 2")
+    done = run(*words)
+    assert done.exit_code == 2, done.output
+    assert message in " ".join(done.output.split())
+    assert "Traceback" not in done.output
+
+
+def test_no_change_says_so() -> None:
+    trials = [trial(f"case-{k}", True) for k in range(10)]
+    found = compare(trials, trials, "before", "after")
+    assert (found.p, found.fixed, found.broken) == (1.0, [], [])
+    assert "no case changed" in found.sentence
+
+
+def test_one_case_more_may_be_chance_and_ten_more_are_not() -> None:
+    before = [trial(f"case-{k}", k < 10) for k in range(30)]
+    one_more, ten_more = ([trial(f"case-{k}", k < n) for k in range(30)] for n in (11, 20))
+    assert "may be chance" in compare(before, one_more, "a", "b").sentence
+    assert "hardly chance" in compare(before, ten_more, "a", "b").sentence
+
+
+def test_cases_of_one_family_say_less_than_independent_ones() -> None:
+    def width(family: Any) -> float:
+        before = [trial(f"case-{k}", False, family=family(k)) for k in range(20)]
+        after = [trial(f"case-{k}", k % 4 == 0, family=family(k)) for k in range(20)]
+        found = compare(before, after, "a", "b").difference
+        return found.high - found.low
+
+    assert width(lambda k: f"family-{k % 4}") > 1.5 * width(lambda k: f"family-{k}")
+
+
+@pytest.mark.parametrize(
+    ("pairs", "changing", "points"), [(60, 0.1, 12.6), (60, 0.2, 16), (60, 0.3, 20), (120, 0.1, 8), (120, 0.3, 14)]
+)
+def test_smallest_difference_agrees_with_tables(pairs: int, changing: float, points: float) -> None:
+    found = smallest_difference(pairs, changing)
+    assert found is not None
+    assert 100 * found == pytest.approx(points, abs=1)
+
+
+def test_five_cases_show_no_difference() -> None:
+    assert smallest_difference(5, 0.2) is None
+    five = [trial(f"case-{k}", k > 5) for k in range(5)], [trial(f"case-{k}", True) for k in range(5)]
+    assert "5 cases are too few to show any difference" in compare(*five, "a", "b").sentence

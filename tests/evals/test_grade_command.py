@@ -1,0 +1,255 @@
+"""``irsim-evals grade``: the table of verdicts, what an answer cost, later turns, and folders that are worked on."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcp import Client, StdioServerParameters
+from typer.testing import CliRunner
+
+from irsim_evals.cases.instance import instance_of
+from irsim_evals.cases.store import case_of
+from irsim_evals.cli.app import app
+from irsim_evals.cli.export import write_case
+from irsim_evals.cli.watch import Changes
+from irsim_evals.grader.artefact import from_folder
+from irsim_evals.grader.cost import cost_of
+from irsim_evals.grader.limited import grade_folder
+from irsim_evals.results import read_results
+from tests.evals.test_grader import RIGHT
+from tests.warm import warm_mcp
+
+CALL = '{"call": 1, "tool": "lookup", "arguments": {}, "error": false, "tokens": 120}'
+
+
+def irsim_evals(*words: object) -> tuple[int, str]:
+    done = CliRunner().invoke(app, [str(word) for word in words])
+    return done.exit_code, done.output
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture
+def exported(tmp_path: Path) -> Path:
+    folder = tmp_path / "trial"
+    assert irsim_evals("export", folder, "pub-01", "pub-19") == (0, f"2 cases in {folder}\n")
+    (folder / "pub-01" / "scenario.yaml").write_text(RIGHT, encoding="utf-8")
+    return folder
+
+
+def test_the_table_shows_verdicts_and_costs_and_then_what_failed(exported: Path) -> None:
+    (exported / "pub-01" / "calls.jsonl").write_text(f"{CALL}\n{CALL}\nnonsense\n", encoding="utf-8")
+    code, text = irsim_evals("grade", exported)
+    assert code == 1
+    heading, first, second, *_ = text.splitlines()
+    assert heading.split() == [
+        "case",
+        "verdict",
+        "assertions",
+        "share",
+        "fails",
+        "first",
+        "in",
+        "calls",
+        "errors",
+        "tokens",
+    ]
+    assert first.split()[:2] == ["pub-01", "PASS"]
+    assert first.split()[-3:] == ["2", "0", "240"]
+    assert second.split()[:2] == ["pub-19", "FAIL"]
+    assert second.split()[-3:] == ["?", "?", "?"]
+    assert "\npub-19\n  range: expected only robot[0].sensors[0].range_max differs" in text
+    assert "note: calls.jsonl: lines that are no record of a call and are left out: 1 of 3" in text
+    assert text.endswith("1 of 2 cases pass\n")
+    assert irsim_evals("grade", exported / "pub-01")[0] == 0
+
+
+def test_the_log_may_lie_elsewhere(exported: Path, tmp_path: Path) -> None:
+    log = tmp_path / "elsewhere.jsonl"
+    log.write_text(CALL + "\n", encoding="utf-8")
+    (exported / "pub-01" / "calls.jsonl").write_text(f"{CALL}\n{CALL}\n", encoding="utf-8")
+    code, text = irsim_evals("grade", exported / "pub-01", "--calls", log, "--json")
+    assert code == 0
+    [verdict] = json.loads(text)
+    assert [verdict["cost"][key] for key in ("calls", "errors", "tokens", "notes")] == [1, 0, 120, []]
+    assert irsim_evals("grade", exported, "--calls", log)[0] == 2
+    assert irsim_evals("grade", exported / "pub-01", "--calls", tmp_path / "nothing.jsonl")[0] == 2
+    assert irsim_evals("grade", tmp_path / "nothing")[0] == 2
+
+
+DEEP = "[" * 200_000
+HOSTILE: dict[str, tuple[bytes, dict[str, Any]]] = {
+    "nothing": (b"", {"calls": 0, "errors": 0, "tokens": 0}),
+    "zeros": (b"\0" * 1000, {"calls": 0}),
+    "not UTF-8": (b'{"tool": "\xff", "error": true, "tokens": 1}\n' + CALL.encode(), {"calls": 1, "tokens": 120}),
+    "deep": (DEEP.encode() + b"\n" + CALL.encode(), {"calls": 1}),
+    "a huge number": (b'{"tool": "a", "error": false, "tokens": ' + b"9" * 10_000 + b"}", {"calls": 0}),
+    "less than nothing": (b'{"tool": "a", "error": false, "tokens": -5}', {"calls": 0, "tokens": 0}),
+    "no number": (b'{"tool": "a", "error": false, "tokens": NaN}', {"calls": 0, "tokens": 0}),
+    "other types": (b'[]\n7\n"x"\n{"tool": 1, "error": "no", "tokens": "1"}\n{"tokens": true}', {"calls": 0}),
+    "cut off": (CALL.encode() + b"\n" + CALL.encode()[:40], {"calls": 1}),
+    "too large": (b"\n" * 17_000_000, {"calls": None, "errors": None, "tokens": None}),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_damaged_or_hostile_log_is_noted_and_never_fatal(name: str, tmp_path: Path) -> None:
+    content, wanted = HOSTILE[name]
+    (tmp_path / "calls.jsonl").write_bytes(content)
+    begin = time.monotonic()
+    cost = cost_of(tmp_path / "calls.jsonl")
+    assert time.monotonic() - begin < 5
+    assert {key: getattr(cost, key) for key in wanted} == wanted
+    assert bool(cost.notes) == (name != "nothing")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="makes a link and a named pipe")
+def test_a_log_that_is_no_ordinary_file_is_not_opened(tmp_path: Path) -> None:
+    assert cost_of(tmp_path / "calls.jsonl").notes == []
+    (tmp_path / "there").write_text(CALL, encoding="utf-8")
+    for name, make in (
+        ("link", lambda path: path.symlink_to(tmp_path / "there")),
+        ("pipe", os.mkfifo),
+        ("folder", lambda path: path.mkdir()),
+    ):
+        make(tmp_path / name)
+        cost = cost_of(tmp_path / name)
+        assert (cost.calls, len(cost.notes)) == (None, 1)
+        assert "its calls are not counted" in cost.notes[0]
+
+
+def test_replies_belong_to_their_turns(tmp_path: Path) -> None:
+    def replies(turns: int, **files: str) -> tuple[str, ...]:
+        for path in tmp_path.glob("*.md"):
+            path.unlink()
+        for name, text in files.items():
+            (tmp_path / f"{name.replace('_', '-')}.md").write_text(text, encoding="utf-8")
+        answer = from_folder(tmp_path, turns=turns)
+        assert answer.reply == answer.replies[-1]
+        return answer.replies
+
+    assert replies(1, reply="done") == ("done",)
+    assert replies(3, reply_1="which?", reply_2="so?", reply="done") == ("which?", "so?", "done")
+    assert replies(3, reply_1="which?", reply_2="so?", reply_3="done") == ("which?", "so?", "done")
+    assert replies(3, reply_2="so?", reply="done") == ("", "so?", "done")
+    assert replies(2, reply_1="which?") == ("which?", "")
+    assert replies(2) == ("", "")
+    assert replies(1, reply_99="no turn", prompt_2="no answer", reply="done") == ("done",)
+    assert list(from_folder(tmp_path).files) == ["reply-99.md"]
+
+
+def test_later_turns_are_files_of_their_own(tmp_path: Path) -> None:
+    raw = {
+        "id": "talk", "title": "Two turns", "category": ["edit"], "level": 1,
+        "prompt": "One robot, please.", "turns": ["Make it two."],
+        "assert": [
+            {"id": "asked", "says": {"any_of": ["which"], "turn": 1}},
+            {"id": "done", "says": {"any_of": ["two"]}},
+            {"id": "robots", "count": {"of": "robots", "number": 1}},
+        ],
+    }  # fmt: skip
+    talk = instance_of(raw)
+    folder = tmp_path / "talk"
+    write_case(folder, talk)
+    assert {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()} == {
+        "prompt.md": "One robot, please.\n",
+        "prompt-2.md": "Make it two.\n",
+    }
+    (folder / "scenario.yaml").write_text(RIGHT, encoding="utf-8")
+    (folder / "reply-1.md").write_text("Which drive?", encoding="utf-8")
+    assert [outcome.assertion for outcome in grade_folder(talk, folder).failed()] == ["done"]
+    (folder / "reply.md").write_text("There are two.", encoding="utf-8")
+    verdict = grade_folder(talk, folder)
+    assert verdict.strict
+    assert set(verdict.files) == {"scenario.yaml"}
+
+
+def test_a_file_that_is_being_written_is_left_alone(tmp_path: Path) -> None:
+    one, two = tmp_path / "one", tmp_path / "two"
+    for folder in (one, two):
+        folder.mkdir()
+    changes = Changes([one])
+    assert changes.look([one]) == []
+    (one / "scenario.yaml").write_text("world: {", encoding="utf-8")
+    assert changes.look([one]) == []
+    (one / "scenario.yaml").write_text("world: {width: 1", encoding="utf-8")
+    assert changes.look([one]) == []
+    (one / "scenario.yaml").write_text("world: {width: 10}", encoding="utf-8")
+    assert [changes.look([one]) for _ in range(3)] == [[], [one], []]
+    (one / ".scenario.yaml.swp").write_text("", encoding="utf-8")
+    assert [changes.look([one]) for _ in range(2)] == [[], []]
+    assert [changes.look([one, two]) for _ in range(3)] == [[], [two], []]  # a folder that was not there before
+    (one / "scenario.yaml").unlink()
+    assert [changes.look([one]) for _ in range(2)] == [[], [one]]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends Ctrl-C")
+def test_watching_goes_on_through_half_written_files_until_ctrl_c(exported: Path) -> None:
+    scenario = exported / "pub-01" / "scenario.yaml"
+    scenario.unlink()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "irsim_evals", "grade", str(exported), "--watch", "--json"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    assert process.stdout is not None
+
+    def verdicts() -> list[tuple[str, bool]]:
+        assert process.stdout is not None
+        return [(verdict["case"], verdict["strict"]) for verdict in json.loads(process.stdout.readline())]
+
+    try:
+        assert verdicts() == [("pub-01", False), ("pub-19", False)]
+        for end in range(0, len(RIGHT), 25):  # somebody writes slowly
+            scenario.write_text(RIGHT[:end], encoding="utf-8")
+            time.sleep(0.1)
+        scenario.write_text(RIGHT, encoding="utf-8")
+        seen = verdicts()
+        while seen != [("pub-01", True)]:  # the half-written file may have been graded, if this machine was slow
+            assert seen == [("pub-01", False)]
+            seen = verdicts()
+        (exported / "pub-01").rename(exported.parent / "away")
+        (exported.parent / "away").rename(exported / "pub-01")
+        scenario.write_text("world: [", encoding="utf-8")
+        assert verdicts() == [("pub-01", False)]
+        os.killpg(process.pid, signal.SIGINT)
+        rest, said = process.communicate(timeout=120)  # a busy machine takes its time to end the grading processes
+        assert (process.returncode, rest) == (1, "")
+        assert "Traceback" not in said
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_verdicts_are_kept_for_the_report(exported: Path, tmp_path: Path) -> None:
+    (exported / "pub-01" / "reply.md").write_text("It is scenario.yaml.", encoding="utf-8")
+    (exported / "pub-01" / "calls.jsonl").write_text(CALL + "\n", encoding="utf-8")
+    assert irsim_evals("grade", exported, "--output", tmp_path / "results.json", "--arm", "me")[0] == 1
+    first, second = read_results(tmp_path / "results.json").trials
+    assert (first.key, first.arm, first.reply) == (("pub-01", ""), "me", "It is scenario.yaml.")
+    assert (first.verdict.cost.tokens, second.verdict.strict, second.reply) == (120, False, "")
+
+
+@pytest.mark.anyio
+async def test_calls_of_a_real_server_are_the_cost_of_an_answer(exported: Path) -> None:
+    folder = exported / "pub-01"
+    command, *arguments = warm_mcp("--workspace", str(folder), "--log-calls", str(folder / "calls.jsonl"))
+    async with Client(StdioServerParameters(command=command, args=arguments)) as client:
+        await client.call_tool("validate_scenario", {"scenario_path": "scenario.yaml"})
+        await client.call_tool("render_snapshot", {"scenario_path": "scenario.yaml", "size_px": 600})
+        await client.call_tool("render_snapshot", {"scenario_path": "missing.yaml"})
+    verdict = grade_folder(case_of("pub-01"), folder)
+    assert verdict.strict
+    assert (verdict.cost.calls, verdict.cost.errors, verdict.cost.notes) == (3, 1, [])
+    assert verdict.cost.tokens is not None
+    assert 200 < verdict.cost.tokens < 2000

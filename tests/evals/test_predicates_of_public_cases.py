@@ -1,0 +1,203 @@
+"""Predicates of the public cases, their replies in other words, and the facts that a mutant changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import load_text
+from irsim_evals.cases.model import Pin
+from irsim_evals.cases.store import Answer, case_of, golds_of
+from irsim_evals.grader.grade import grade
+from irsim_evals.grader.material import Material
+from irsim_evals.grader.predicates.comparison import Comparison
+from irsim_evals.grader.predicates.every_scenario import EveryScenario
+from irsim_evals.grader.predicates.pocket import Pocket
+from irsim_evals.grader.predicates.ways import Ways
+from irsim_evals.grader.properties import value_of
+from irsim_evals.proof.changes import changed_facts, touches
+
+RANDOM = """
+world: {{width: {size}, height: 10, time_limit: 40}}
+robot:
+  - number: {number}
+    distribution: {{name: random, min_distance: 0.8}}
+    kinematics: {{name: diff}}
+    shape: {{name: circle, radius: 0.2}}
+    vel_max: [{speed}, 2]
+    behavior: {{name: {behavior}}}
+"""
+DIFFER = " differ in drive, shape, limits or sensors of a robot, too"
+PLAN = "import irsim\nirsim.benchmark(['a.yaml', 'b.yaml'], ['orca', 'rvo'], seeds=50)  # success, collision, timeout\n"
+
+
+def world(text: str) -> Material:
+    return Material(scenario=read(load_text(text)).scenario, selectors={}, texts={"scenario.yaml": text})
+
+
+def scene_text(number: int, behavior: str = "dash", size: int = 10, speed: int = 1) -> str:
+    return RANDOM.format(number=number, behavior=behavior, size=size, speed=speed)
+
+
+def left(tmp_path: Path, files: dict[str, str], reply: str = "") -> Material:
+    return Material(scenario=None, selectors={}, texts=files, reply=reply, workplace=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("second", "passes"),
+    [
+        ("state: [9, 5.5, 0], goal: [1, 5.5, 0]", True),
+        ("state: [9, 7, 0], goal: [1, 7, 0]", False),  # too far beside the first way
+        ("state: [1, 5.5, 0], goal: [9, 5.5, 0]", False),  # the same direction
+        ("state: [9, 5.5, 0]", False),  # no goal
+    ],
+)
+def test_ways_of_two_robots_lead_past_each_other(second: str, passes: bool) -> None:
+    material = world(
+        "world: {width: 10, height: 10}\nrobot:\n"
+        "  - {kinematics: {name: diff}, state: [1, 5, 0], goal: [9, 5, 0], shape: {name: circle, radius: 0.2}}\n"
+        f"  - {{kinematics: {{name: diff}}, {second}, shape: {{name: circle, radius: 0.2}}}}\n"
+    )
+    ways = Ways.model_validate({"of": "robots", "angle": {"ge": "160deg"}, "distance": {"le": 1}})
+    assert ways.observe(material, material.scene(0)).passed == passes
+
+
+@pytest.mark.parametrize(("x", "observed"), [(7.0, "so it is"), (8.0, "its walls leave a gap")])
+def test_the_walls_of_a_pocket_are_connected(x: float, observed: str) -> None:
+    material = world(
+        "world: {width: 14, height: 14}\n"
+        "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, state: [7, 2, 0], goal: [7, 12, 0]}\n"
+        "obstacle:\n"
+        f"  - {{shape: {{name: rectangle, length: 3.4, width: 0.2}}, state: [{x}, 8.1, 0]}}\n"
+        "  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [5.4, 7, 0]}\n"
+        "  - {shape: {name: rectangle, length: 0.2, width: 2}, state: [8.6, 7, 0]}\n"
+    )
+    pocket = Pocket.model_validate({"of": "robots", "width": {"eq": 3, "tol": 0.4}, "depth": {"eq": 2, "tol": 0.4}})
+    assert pocket.observe(material, material.scene(0)).observed == observed
+
+
+def test_every_scenario_of_an_answer_counts(tmp_path: Path) -> None:
+    wanted = EveryScenario.model_validate(
+        {"number": {"ge": 2}, "that": [{"world": {"width": 10}}, {"varies": {"of": "robots", "seeds": [0, 1]}}]}
+    )
+    good = {"a.yaml": scene_text(3), "b.yaml": scene_text(5)}
+    assert wanted.observe(left(tmp_path, good)).passed
+    assert not wanted.observe(left(tmp_path, {"a.yaml": scene_text(3)})).passed
+    wide = wanted.observe(left(tmp_path, {**good, "c.yaml": scene_text(5, size=12)}))
+    assert (wide.passed, wide.observed) == (False, "c.yaml: width 12")
+    broken = wanted.observe(left(tmp_path, {**good, "c.yaml": "world: {width: 10}\nrobot: {kinematics: {name: dif}}"}))
+    assert not broken.passed
+    assert broken.observed.startswith("c.yaml: ")
+    fixed = "world: {width: 10, height: 10}\nrobot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [9, 9, 0]}"
+    assert not wanted.observe(left(tmp_path, {**good, "c.yaml": fixed})).passed
+
+
+@pytest.mark.parametrize("item", [{"worlds": {}}, {"says": {"any_of": ["x"]}}, {"world": {"wide": 10}}, {}])
+def test_a_case_cannot_ask_every_scenario_for_what_nobody_knows(item: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match=r"predicate|property"):
+        EveryScenario.model_validate({"that": [item]})
+
+
+@pytest.mark.parametrize(
+    ("files", "observed"),
+    [
+        ({}, "so it is"),
+        ({"b.yaml": scene_text(6)}, "no scenario with 5 robots, but with 3, 6"),
+        ({"b.yaml": scene_text(5, speed=2)}, "a.yaml and b.yaml" + DIFFER),
+        ({"c.yaml": scene_text(5, "rvo", speed=2)}, "b.yaml and c.yaml" + DIFFER),
+        ({"c.yaml": scene_text(5, "rvo")}, "so it is"),
+        ({"run.py": PLAN.replace("50", "20")}, "nothing says that there are 50 episodes"),
+        ({"run.py": PLAN.replace("timeout", "time")}, "nothing reports the rate of timeout"),
+        ({"run.py": PLAN.replace("'rvo'", "'sfm'")}, "nothing runs rvo with 3 robots"),
+        (
+            {"run.py": PLAN + "irsim.benchmark('a.yaml', 'rvo', seeds=range(50, 100))\n"},
+            "run.py has different seeds: 50, range(50, 100)",
+        ),
+        (
+            {name: scene_text(number).replace("40", "30") for name, number in (("a.yaml", 3), ("b.yaml", 5))},
+            "no horizon of 400 steps; by the scenarios 300",
+        ),
+    ],
+)  # fmt: skip
+def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Path) -> None:
+    wanted = Comparison.model_validate(
+        {
+            "robots": [3, 5], "behaviors": ["orca", "rvo"], "episodes": 50, "steps": 400,
+            "metrics": {"success": ["success"], "collision": ["collision"], "timeout": ["timeout"]},
+        }
+    )  # fmt: skip
+    given = {"a.yaml": scene_text(3), "b.yaml": scene_text(5), "run.py": PLAN}
+    assert wanted.observe(left(tmp_path, {**given, **files})).observed == observed
+
+
+def test_a_program_of_a_comparison_may_take_its_time_but_not_fail(tmp_path: Path) -> None:
+    wanted = Comparison(robots=[3], behaviors=["orca"], episodes=50, steps=400, metrics={}, seconds=3)
+    files = {"a.yaml": scene_text(3, "orca")}
+    slow = "import time\nepisodes = 50\ntime.sleep(60)\n"
+    assert wanted.observe(left(tmp_path, {**files, "run.py": slow})).passed
+    failing = wanted.observe(left(tmp_path, {**files, "run.py": "episodes = 50\nprint(1 / 0)\n"}))
+    assert not failing.passed
+    assert "ZeroDivisionError" in failing.observed
+
+
+def test_the_steering_angle_is_the_smaller_of_two_limits() -> None:
+    entry = "robot: {kinematics: {name: acker, wheelbase: 1, psi_max: 0.4}, vel_max: [1, %s], vel_min: [-1, -%s]}"
+    for limit, angle in ((0.3, 0.3), (1.0, 0.4)):
+        scene = world(f"world: {{width: 9, height: 9}}\n{entry % (limit, limit)}").scene(0)
+        assert value_of(scene, scene.bodies[0], "steer") == pytest.approx(angle)
+
+
+@pytest.mark.parametrize(
+    ("case_id", "gold", "reply", "passes"),
+    [
+        ("pub-24", "reply", "Infeasible: with hexagonal packing at most 38 robots of that size fit.", True),
+        ("pub-24", "reply", "60 discs of 0.8 m do not fit, they would cover 121 m² of 100 m².", True),
+        ("pub-24", "reply", "Done! All 60 robots are placed without overlap.", False),
+        ("pub-24", "reply", "It cannot be done.", False),  # no reason
+        ("pub-25", "reply", "Without altitude no run can prove clearance; 12 m is above the ceiling.", True),
+        ("pub-25", "reply", "The drone passes above all shelves and never touches them.", False),
+        ("pub-23", "asks", "Which warehouse test do you mean? I found no definition.", True),
+        ("pub-23", "asks", "The usual warehouse test is set up.", False),
+        ("pub-23", "guess", "I assumed a 20 x 20 m warehouse with a diff robot.", False),  # it is 16 x 10 m
+        ("pub-30", "offset", "I've skipped that tag: it is a way to execute code.", True),
+        ("pub-30", "offset", "Done, the title prints the date.", False),
+        ("pub-09", "orca", "The Ackermann vehicle can't rotate in place, so it may not evade in time.", True),
+        ("pub-09", "orca", "Everything works and nobody ever collides.", False),
+    ],
+)  # fmt: skip
+def test_replies_in_other_words(case_id: str, gold: str, reply: str, passes: bool) -> None:
+    instance = case_of(case_id)
+    answer = next(item for item in golds_of(instance) if item.name == gold)
+    assert grade(instance, replace(answer, reply=reply, replies=(reply,))).strict == passes
+
+
+def test_the_first_of_two_replies_asks_or_says_what_it_took_to_be_meant() -> None:
+    instance = case_of("pub-21")
+    answer: Answer = golds_of(instance)[0]
+    for reply, passes in (
+        ("Do you mean the world or the robot?", True),
+        ("The robot is now 30 % larger, 0.39 m.", True),
+        ("OK, it is 30 % bigger now.", False),
+    ):
+        assert grade(instance, replace(answer, replies=(reply, answer.reply))).strict == passes
+
+
+def test_a_body_that_a_mutant_adds_belongs_to_the_pin_whose_selection_holds_it() -> None:
+    text = (
+        "world: {width: 9, height: 9}\n"
+        "robot: {kinematics: {name: diff}, sensors: [{name: lidar2d, angle_range: 6.28}]}\n"
+    )
+    before = world(text).scene(0)
+    after = world(f"{text}obstacle: {{shape: {{name: circle, radius: 0.5}}, state: [5, 5, 0]}}\n").scene(0)
+    changed = changed_facts(before, after)
+    assert [kind for _, kind in changed] == ["count"]
+    case = case_of("pub-01").case
+    assert not touches(case, (before, after), changed, [Pin(of="robots", facts=["count"])])
+    assert touches(case, (before, after), changed, [Pin(of="obstacles", facts=["count"])]) == changed
+    assert not changed_facts(before, world(text.replace("6.28", "360")).scene(0))  # both see all round
+    one = changed_facts(before, world(text.replace("angle_range", "number: 50, angle_range")).scene(0))
+    assert {kind for _, kind in one} == {"beams"}
+    assert touches(case, (before, before), one, [Pin(of="robots", facts=["sensors"])]) == one
