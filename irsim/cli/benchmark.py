@@ -77,6 +77,7 @@ def benchmark(
     from irsim.benchmarks import benchmark as compare
     from irsim.cli.findings import import_user_modules, limits_for
     from irsim.cli.output import console, print_json, progress
+    from irsim.scenario.behavior_override import split_behaviors
 
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
@@ -84,7 +85,7 @@ def benchmark(
     with progress("simulating") as report:
         result = compare(
             files,
-            _split_list(behaviors),
+            split_behaviors(behaviors),
             seeds,
             steps=steps,
             strict=strict,
@@ -209,18 +210,6 @@ def _labels(files: list[str]) -> dict[str, str]:
     stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
     short = {name: stem.rsplit("/", 1)[-1] for name, stem in stems.items()}
     return short if len(set(short.values())) == len(files) else stems
-
-
-def _split_list(text: str) -> list[str]:
-    """Split a list at commas, except for commas inside braces and brackets."""
-    depth, parts = 0, [""]
-    for character in text:
-        depth += (character in "{[") - (character in "}]")
-        if character == "," and depth <= 0:
-            parts.append("")
-        else:
-            parts[-1] += character
-    return [part.strip() for part in parts if part.strip()]
 
 
 def _print_csv(result: BenchmarkResult) -> None:

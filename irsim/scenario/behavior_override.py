@@ -25,6 +25,7 @@ __all__ = [
     "check_behavior_name",
     "parse_behavior",
     "read_with_behavior",
+    "split_behaviors",
     "with_behavior",
 ]
 
@@ -69,6 +70,18 @@ def parse_behavior(text: str) -> dict[str, Any] | None:
     if document.problems or not isinstance(document.data, Mapping) or not isinstance(document.data.get("name"), str):
         raise BenchmarkError(f"{text!r} is not a valid behavior", _FIX)
     return dict(document.data)
+
+
+def split_behaviors(text: str) -> list[str]:
+    """The behaviors of a list as it is written on a command line: commas inside braces and brackets do not separate."""
+    depth, parts = 0, [""]
+    for character in text:
+        depth += (character in "{[") - (character in "}]")
+        if character == "," and depth <= 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts if part.strip()]
 
 
 def behavior_text(behavior: str | Mapping[str, Any]) -> str:

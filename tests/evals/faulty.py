@@ -45,7 +45,7 @@ def main(file: str, old: str, new: str, *cases: str) -> None:
     from irsim_evals.proof.prove import prove
 
     def here(work: Callable[..., Any], jobs: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-        return (work(instance, answer, False) for instance, answer, _ in jobs)
+        return (work(trial, False) for trial, _ in jobs)
 
     proof = prove(list(cases), runner=here)
     wrong = [f"{t.case}/{t.gold} {t.kind}, {t.operator}: {t.what}" for t, _ in proof.wrong]

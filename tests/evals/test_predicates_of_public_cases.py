@@ -31,7 +31,28 @@ robot:
     behavior: {{name: {behavior}}}
 """
 DIFFER = " differ in drive, shape, limits or sensors of a robot, too"
-PLAN = "import irsim\nirsim.benchmark(['a.yaml', 'b.yaml'], ['orca', 'rvo'], seeds=50)  # success, collision, timeout\n"
+PLAN = """
+import irsim
+result = irsim.benchmark(["a.yaml", "b.yaml"], ["orca", "rvo"], seeds=5, steps=40)
+for row in result.rows:
+    print(row.success, row.collision, row.timeout)
+"""
+LOOP = """
+import irsim
+for name in ("a", "b"):
+    for behavior in ("orca", "rvo"):
+        for seed in range(5):
+            env = irsim.make(f"{name}-{behavior}.yaml", seed=seed, headless=True, log_level="ERROR")
+            for _ in range(40):
+                env.step()
+            print("success", "collision", "timeout", flush=True)
+"""
+
+COMMAND = """
+    irsim benchmark a.yaml b.yaml \\
+      --behaviors '{name: orca, timeHorizon: 3},rvo' --seeds 5 --steps 40
+"""
+OTHER_SEEDS = 'irsim.benchmark(["a.yaml", "b.yaml"], "rvo", seeds=range(5, 10), steps=40)'
 
 
 def world(text: str) -> Material:
@@ -101,6 +122,10 @@ def test_a_case_cannot_ask_every_scenario_for_what_nobody_knows(item: dict[str, 
         EveryScenario.model_validate({"that": [item]})
 
 
+LOOPED = {f"{name}-{behavior}.yaml": scene_text(number, behavior)
+          for name, number in (("a", 3), ("b", 5)) for behavior in ("orca", "rvo")}  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("files", "observed"),
     [
@@ -109,24 +134,38 @@ def test_a_case_cannot_ask_every_scenario_for_what_nobody_knows(item: dict[str, 
         ({"b.yaml": scene_text(5, speed=2)}, "a.yaml and b.yaml" + DIFFER),
         ({"c.yaml": scene_text(5, "rvo", speed=2)}, "b.yaml and c.yaml" + DIFFER),
         ({"c.yaml": scene_text(5, "rvo")}, "so it is"),
-        ({"run.py": PLAN.replace("50", "20")}, "nothing says that there are 50 episodes"),
-        ({"run.py": PLAN.replace("timeout", "time")}, "nothing reports the rate of timeout"),
-        ({"run.py": PLAN.replace("'rvo'", "'sfm'")}, "nothing runs rvo with 3 robots"),
+        ({"run.py": PLAN.replace("seeds=5", "seeds=2")}, "run.py runs orca with 3 robots in 2 episodes"),
+        ({"run.py": PLAN.replace("row.timeout", "row.scenario")}, "nothing reports the rate of timeout"),
+        ({"run.py": PLAN.replace("row.timeout", "row.scenario") + "print(result)"}, "so it is"),
+        ({"run.py": PLAN.replace('"rvo"', '"sfm"')}, "nothing runs rvo with 3 robots"),
+        ({"run.py": PLAN.replace("steps=40", "steps=30") + "# 40 steps"}, "run.py runs 30 steps of a.yaml"),
         (
-            {"run.py": PLAN + "irsim.benchmark('a.yaml', 'rvo', seeds=range(50, 100))\n"},
-            "run.py has different seeds: 50, range(50, 100)",
+            {"run.py": PLAN.replace('["orca", "rvo"]', '"orca"') + OTHER_SEEDS},
+            "run.py gives rvo with 3 robots other seeds",
         ),
-        (
-            {name: scene_text(number).replace("40", "30") for name, number in (("a.yaml", 3), ("b.yaml", 5))},
-            "no horizon of 400 steps; by the scenarios 300",
-        ),
+        ({"run.py": LOOP, **LOOPED}, "so it is"),
+        ({"run.py": LOOP.replace("seed=seed", "seed=9 * (behavior == 'rvo') + seed"), **LOOPED},
+         "run.py gives rvo with 3 robots other seeds"),
+        ({"run.py": LOOP.replace("seed=seed, ", ""), **LOOPED}, "run.py gives rvo with 3 robots other seeds"),
+        ({"run.py": LOOP.replace("range(40)", "range(41)") + "STEPS = 40", **LOOPED},
+         "run.py runs 41 steps of a-orca.yaml"),
+        ({"run.py": LOOP.replace("range(5)", "range(4)") + "EPISODES = 5", **LOOPED},
+         "run.py runs orca with 3 robots in 4 episodes"),
+        ({"run.py": "", "README.md": COMMAND}, "so it is"),
+        ({"run.py": "", "README.md": COMMAND.replace("--seeds 5", "")},
+         "the command runs orca with 3 robots in 10 episodes"),
+        ({"run.py": "", "README.md": COMMAND.replace("b.yaml", "")}, "nothing runs orca with 5 robots"),
+        ({"run.py": "", "reply.md": "5 seeds each, 40 steps: rates of success, collision, timeout for orca and rvo."},
+         "so it is"),
+        ({"run.py": "", "reply.md": "5 robots, 40 m; rates of success, collision, timeout for orca and rvo."},
+         "no horizon of 40 steps; by the scenarios 400"),
     ],
 )  # fmt: skip
 def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Path) -> None:
     wanted = Comparison.model_validate(
         {
-            "robots": [3, 5], "behaviors": ["orca", "rvo"], "episodes": 50, "steps": 400,
-            "metrics": {"success": ["success"], "collision": ["collision"], "timeout": ["timeout"]},
+            "robots": [3, 5], "behaviors": ["orca", "rvo"], "episodes": 5, "steps": 40,
+            "metrics": {name: [name, "irsim benchmark"] for name in ("success", "collision", "timeout")},
         }
     )  # fmt: skip
     given = {"a.yaml": scene_text(3), "b.yaml": scene_text(5), "run.py": PLAN}
@@ -134,9 +173,13 @@ def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Pa
 
 
 def test_a_program_of_a_comparison_may_take_its_time_but_not_fail(tmp_path: Path) -> None:
-    wanted = Comparison(robots=[3], behaviors=["orca"], episodes=50, steps=400, metrics={}, seconds=3)
-    files = {"a.yaml": scene_text(3, "orca")}
-    slow = "import time\nepisodes = 50\ntime.sleep(60)\n"
+    wanted = Comparison(robots=[3], behaviors=["orca"], episodes=50, steps=40, metrics={}, seconds=3)
+    files = {"a-orca.yaml": scene_text(3, "orca")}
+    slow = (
+        LOOP.replace("range(5)", "range(50)").replace('("a", "b")', '"a"').replace('("orca", "rvo")', '["orca"]')
+        
+    slow += "import time\ntime.sleep(60)\n"
+    )
     assert wanted.observe(left(tmp_path, {**files, "run.py": slow})).passed
     failing = wanted.observe(left(tmp_path, {**files, "run.py": "episodes = 50\nprint(1 / 0)\n"}))
     assert not failing.passed

@@ -124,6 +124,11 @@ class Body:
         return self.goals[-1] if self.goals else None
 
     @property
+    def slowest(self) -> float:
+        """Least forward speed that its limits allow [m/s]; negative where it may go backwards."""
+        return self.limits["vel_min"][0] if self.limits["vel_min"] else 0.0
+
+    @property
     def avoids(self) -> bool:
         """Whether its behavior, or the one that drives it between the turns of its path, avoids others."""
         local = self.options.get("local")
@@ -158,7 +163,7 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
     given = not scenario.is_parked(record) and scenario.has_written_goal(record)
     low, high = view.vel_min[:, 0].tolist(), view.vel_max[:, 0].tolist()
     footprint = view.geometry
-    radius = view.radius if view.shape == "circle" else None
+    radius = view.radius if _is_disc(view) else None
     return Body(
         index=view.index,
         name=view.name,
@@ -191,6 +196,12 @@ def body_of(view: ObjectView, scenario: ResolvedScenario) -> Body:
         group=record.group,
         limits={"vel_min": low, "vel_max": high, "acce": view.acce[:, 0].tolist()},
     )
+
+
+def _is_disc(view: ObjectView) -> bool:
+    """Whether an object is a disc: a circle, or a compound of one."""
+    parts = getattr(view.record.shape, "parts", ())
+    return view.shape == "circle" or [part.name for part in parts] == ["circle"]
 
 
 def _limits(drive: Any, low: list[float], high: list[float]) -> dict[str, float | None]:

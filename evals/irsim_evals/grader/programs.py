@@ -6,11 +6,13 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from irsim_evals.grader.episode_log import Started, read_log
 from irsim_evals.grader.program_rules import problems_of
 
 __all__ = ["SECONDS", "Printed", "is_program", "problems_in", "run_program"]
@@ -30,11 +32,15 @@ class Printed:
         passed: Whether it ended by itself, and without an error.
         text: What it printed.
         why: Why it did not pass.
+        ended: Whether it ended by itself.
+        episodes: The episodes that it started.
     """
 
     passed: bool
     text: str
     why: str = ""
+    ended: bool = True
+    episodes: Sequence[Started] = ()
 
 
 def is_program(name: str) -> bool:
@@ -70,7 +76,12 @@ def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
         name: Path of the program in it.
         seconds: Time after which it is ended.
     """
-    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name]
+    with tempfile.TemporaryDirectory(prefix="irsim-evals-") as outside:  # where the program may not write
+        return _run(folder, name, seconds, Path(outside, "episodes.jsonl"))
+
+
+def _run(folder: Path, name: str, seconds: float, log: Path) -> Printed:
+    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name, str(log)]
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:
         process = subprocess.Popen(
@@ -85,12 +96,14 @@ def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
             _end(process)
     with (folder / ".printed").open("rb") as printed:
         text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
+    episodes = read_log(log)
     if code is None:
-        return Printed(False, text, f"{name} did not end within {seconds:g} s")
+        return Printed(False, text, f"{name} did not end within {seconds:g} s", ended=False, episodes=episodes)
     if code != 0:
         lines = text.strip().splitlines()
-        return Printed(False, text, f"{name} ended with exit code {code}: {lines[-1] if lines else ''}"[:300])
-    return Printed(True, text)
+        why = f"{name} ended with exit code {code}: {lines[-1] if lines else ''}"[:300]
+        return Printed(False, text, why, episodes=episodes)
+    return Printed(True, text, episodes=episodes)
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

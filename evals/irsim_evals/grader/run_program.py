@@ -1,6 +1,7 @@
 """Start one program of an answer in its folder, with what it needs to run scenarios and nothing else.
 
-Run as ``python -I -m irsim_evals.grader.run_program PROGRAM``, in the folder. The rules of
+Run as ``python -I -m irsim_evals.grader.run_program PROGRAM LOG``, in the folder; the episodes that the program starts
+are written to the file LOG. The rules of
 :mod:`irsim_evals.grader.program_rules` have been checked before; the hook here refuses what they cannot see.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 import os
 import runpy
 import sys
+from pathlib import Path
 from typing import Any
 
 _REFUSED = ("socket.connect", "socket.bind", "socket.getaddrinfo", "os.system", "os.exec",
@@ -19,13 +21,16 @@ _WRITE = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 def main() -> None:
     """Run the program that the first argument names."""
-    program = sys.argv[1]
+    program, log = sys.argv[1:3]
     folder = os.path.realpath(os.getcwd())
     import numpy  # noqa: F401  (libraries load their own parts before the hook watches)
 
     import irsim
     import irsim.benchmarks
     import irsim.env  # noqa: F401
+    from irsim_evals.grader.episode_log import watch as watch_episodes
+
+    watch_episodes(Path(log).absolute())
 
     def watch(event: str, arguments: tuple[Any, ...]) -> None:
         if event in _REFUSED:
@@ -39,7 +44,7 @@ def main() -> None:
                 raise PermissionError(f"a runner writes only into its folder, not {path}")
 
     sys.dont_write_bytecode = True
-    sys.argv = sys.argv[1:]
+    sys.argv = [program]
     sys.addaudithook(watch)
     runpy.run_path(program, run_name="__main__")
 

@@ -59,7 +59,7 @@ def _depth(a: Body, b: Body) -> float:
 
 
 def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
-    """Everything lies in the world and nothing overlaps."""
+    """Everything lies in the world, may stand still, and nothing overlaps."""
     x0, y0, x1, y1 = scene.bounds
     moving = [body for body in scene.bodies if not body.static or body.role == "robot"]
 
@@ -79,6 +79,18 @@ def check_scene(scene: Scene, *, overlap: bool = True) -> list[Outcome]:
             [Mark(points=[list(point)], text=body.name) for body, point in starts + goals],
         )
     ]
+    restless = [(body, low) for body in scene.bodies if not body.static and (low := body.slowest) > 0]
+    outcomes.append(
+        _outcome(
+            "can-stand",
+            not restless,
+            "every body may stand still",
+            summary([(body, f"never goes slower than {low:g} m/s") for body, low in restless]) or "all",
+            f"{restless[0][0].entry}.vel_min" if restless else None,
+            scene.seed,
+            [Mark(points=[list(body.position)], text=body.name) for body, _ in restless],
+        )
+    )
     if overlap:
         found = overlaps(scene)
         outcomes.append(

@@ -63,8 +63,8 @@ class Scene:
 
     @property
     def solids(self) -> list[Body]:
-        """Bodies that never move and that others cannot pass."""
-        return [body for body in self.bodies if body.static and not body.passable]
+        """Bodies that never move and that others cannot pass: obstacles which nothing drives stand still, too."""
+        return [body for body in self.bodies if not body.passable and (body.static or _stands(body))]
 
     @cached_property
     def solid(self) -> Any:
@@ -142,6 +142,10 @@ class Scene:
             terrain = core.Terrain(FAR, [*self.things, *discs]) if discs else self.terrain
             self._paths[key] = core.Clearance(terrain, cells)
         return self._paths[key], _HALF_DIAGONAL * max(width / nx, height / ny)
+
+
+def _stands(body: Body) -> bool:
+    return body.role == "obstacle" and body.behavior is None
 
 
 def open_scene(scenario: ResolvedScenario, seed: int) -> Scene:

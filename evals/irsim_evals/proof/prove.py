@@ -3,70 +3,28 @@
 from __future__ import annotations
 
 import random
-import re
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-import yaml
-
-from irsim.bundled.templates.store import load, names
-from irsim.diagnostics.errors import IrsimError
-from irsim.scenario.read import read
-from irsim.scenario.yaml.comments import places_of_comments
-from irsim.scenario.yaml.document import load_text
-from irsim_evals.cases.instance import Instance
-from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of
-from irsim_evals.grader.artefact import find_scenario
-from irsim_evals.grader.grade import LIMITS, failed_verdict, grade
+from irsim_evals.cases.store import case_ids
+from irsim_evals.grader.grade import failed_verdict, grade
 from irsim_evals.grader.limited import SECONDS, LimitError, run_all
-from irsim_evals.grader.material import write_files
 from irsim_evals.grader.outcome import NOT_REACHED, Verdict
-from irsim_evals.grader.scene import Scene, open_scene
-from irsim_evals.proof.changes import changed_facts, touches
-from irsim_evals.proof.mutants import mutants_of
-from irsim_evals.proof.mutants_of_answers import mutants_of_answer
-from irsim_evals.proof.mutants_of_text import mutants_of_text
+from irsim_evals.proof.kinds import kind_of
 from irsim_evals.proof.oracle.opinions import opinions
-from irsim_evals.proof.rewrites import rewrites_of
+from irsim_evals.proof.trial import Kind, Trial
+from irsim_evals.proof.trials import trials_of
 
-__all__ = ["Proof", "Trial", "prove", "trials_of"]
+__all__ = ["Disagreement", "Proof", "as_case_rows", "as_rows", "prove", "tried"]
 
-Kind = Literal["gold", "rewrite", "pinned mutant", "broken mutant", "free mutant", "null"]
 Runner = Callable[[Callable[..., Any], Iterable[tuple[Any, ...]]], Iterator[Any]]
 """Calls a function for each tuple of arguments."""
-_NEVER_RIGHT = ("on_top", "goal_outside")
-"""Operators whose mutants break what must hold in every scenario."""
 _SECOND_SHARE = 0.25
 """Share of the trials that are also given to the second implementation."""
 _QUICK_SHARE = 0.1
 """Share of rewrites, mutants and null agents that the quick proof tries."""
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One answer of which it is known whether it is right.
-
-    Attributes:
-        case, gold: Case and gold that it was made from.
-        kind: What it is.
-        operator: What made it.
-        what: What was changed.
-        right: Whether the grader must accept it.
-        instance, answer: What is graded.
-    """
-
-    case: str
-    gold: str
-    kind: Kind
-    operator: str
-    what: str
-    right: bool
-    instance: Instance = field(repr=False)
-    answer: Answer = field(repr=False)
 
 
 @dataclass(frozen=True)
@@ -116,7 +74,7 @@ class Proof:
     @property
     def false_accepts(self) -> tuple[int, int]:
         """Wrong answers that were accepted, of all wrong answers."""
-        return self.rate("pinned mutant", "broken mutant", "null")
+        return self.rate("pinned mutant", "broken mutant", "mutant", "null")
 
     @property
     def false_rejects(self) -> tuple[int, int]:
@@ -150,27 +108,36 @@ def prove(
     keep = (lambda: choice.random() < _QUICK_SHARE) if quick else (lambda: True)
     trials = [trial for case_id in ids or case_ids() for trial in trials_of(case_id, proof.left_out, seed, keep)]
     rng = random.Random(f"second {seed}")
-    jobs = [(trial.instance, trial.answer, rng.random() < _SECOND_SHARE) for trial in trials]
-    for number, result in enumerate(runner(_try, jobs)):
+    jobs = [(trial, rng.random() < _SECOND_SHARE) for trial in trials]
+    for number, result in enumerate(runner(tried, jobs)):
         _note(proof, trials[number], result)
         if progress is not None:
             progress(number + 1, len(trials))
     return proof
 
 
-def _try(instance: Instance, answer: Answer, second: bool) -> tuple[Any, dict[str, bool]]:
-    """The verdict on an answer, and what the second implementation thinks of some assertions."""
-    verdict = grade(instance, answer)
+def tried(trial: Trial, second: bool) -> tuple[Kind, Any, dict[str, bool]] | None:
+    """What a trial is, the verdict on its answer, and what the second implementation thinks of some assertions.
+
+    None for a mutant of facts that the case neither pins nor leaves free.
+    """
+    kind = kind_of(trial) if trial.kind == "mutant" else trial.kind
+    if kind is None:
+        return None
+    verdict = grade(trial.instance, trial.answer)
     loads = any(outcome.assertion == "loads" and outcome.passed for outcome in verdict.outcomes)
-    return verdict.model_dump(mode="json"), opinions(instance, answer) if second and loads else {}
+    return kind, verdict.model_dump(mode="json"), opinions(trial.instance, trial.answer) if second and loads else {}
 
 
 def _note(proof: Proof, trial: Trial, result: Any) -> None:
     """Add what came out of one trial."""
+    if result is None:
+        proof.left_out[trial.operator] += 1
+        return
     if isinstance(result, LimitError):
         verdict, second = failed_verdict(trial.instance, trial.answer, "gradable", "parse", str(result)), {}
     else:
-        verdict, second = Verdict.model_validate(result[0]), result[1]
+        trial, verdict, second = replace(trial, kind=result[0]), Verdict.model_validate(result[1]), result[2]
     proof.done[trial.kind, trial.operator] += 1
     proof.by_case[trial.case, trial.kind] += 1
     if verdict.strict != trial.right or isinstance(result, LimitError):  # a grader that dies is never right
@@ -185,145 +152,6 @@ def _note(proof: Proof, trial: Trial, result: Any) -> None:
                 proof.disagreements.append(
                     Disagreement(trial, outcome.assertion, predicate, outcome.passed, outcome.observed)
                 )
-
-
-def trials_of(
-    case_id: str, left_out: Counter[str], seed: int = 0, keep: Callable[[], bool] = lambda: True
-) -> Iterator[Trial]:
-    """The trials of one case: golds as published and of a fresh instance, then changes of the golds as published.
-
-    Args:
-        case_id: The case.
-        left_out: Counts mutants that are no trials.
-        seed: Seed of the fresh instance.
-        keep: Asked for each change whether it is tried.
-    """
-    for fresh in (None, seed + 1):
-        instance = case_of(case_id, fresh)
-        for gold in golds_of(instance):
-            what = "as published" if fresh is None else f"instance {fresh}"
-            yield Trial(case_id, gold.name, "gold", "gold", what, True, instance, gold)
-    instance = case_of(case_id)
-    for gold in golds_of(instance):
-        yield from _changed(case_id, instance, gold, left_out, keep)
-    yield from (trial for trial in _null(case_id, instance) if keep())
-
-
-def _changed(
-    case_id: str, instance: Instance, gold: Answer, left_out: Counter[str], keep: Callable[[], bool]
-) -> Iterator[Trial]:
-    found = find_scenario(gold, instance.case.files)
-    words = _changed_words(case_id, instance, gold, found[0] if found else None, left_out)
-    yield from (trial for trial in words if keep())
-    if found is None:
-        return
-    name, text = found
-    scene = _scene(text, gold, instance.case.seeds[0])
-    if scene is None:
-        return
-
-    def answer(new: str) -> Answer:
-        return replace(gold, files={**gold.files, name: new})
-
-    for operator, new in rewrites_of(instance.case, name, text, scene):
-        if keep():
-            yield Trial(case_id, gold.name, "rewrite", operator, operator, True, instance, answer(new))
-    for operator, what, new in _mutants(text, edited=name in instance.case.files):
-        kind = _kind(instance, gold, scene, operator, what, new, left_out) if keep() else None
-        if kind is not None:
-            yield Trial(case_id, gold.name, kind, operator, what, kind == "free mutant", instance, answer(new))
-
-
-def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, str]]:
-    """Operator, what was changed and text of each mutant of a scenario; those of an edited file keep its comments."""
-    comments = _comments(text) if edited else ""
-    for mutant in mutants_of(yaml.safe_load(text)):
-        new = yaml.safe_dump(mutant.data, sort_keys=False, allow_unicode=True)
-        yield mutant.operator, mutant.what, new + comments
-    if edited:
-        yield from (("number_in_text", what, new) for what, new, _ in mutants_of_text(text))
-
-
-def _kind(
-    instance: Instance, gold: Answer, scene: Scene, operator: str, what: str, text: str, left_out: Counter[str]
-) -> Kind | None:
-    """Whether a mutant must be rejected or accepted; None if the case does not say."""
-    if _is_waived(instance, operator, what):
-        left_out["waived"] += 1
-        return None
-    world = _scene(text, gold, instance.case.seeds[0])
-    if world is None:
-        return "broken mutant"
-    changed = changed_facts(scene, world)
-    if operator in _NEVER_RIGHT and not (operator == "on_top" and instance.case.overlap):
-        return "pinned mutant"
-    if touches(instance.case, (scene, world), changed, instance.case.pins):
-        return "pinned mutant"
-    if changed and changed == touches(instance.case, (scene, world), changed, instance.case.free):
-        return "free mutant"
-    left_out[operator] += 1
-    return None
-
-
-def _comments(text: str) -> str:
-    """The comments of a file on lines of their own, so that a mutant of an edited file fails for what it changes and
-    not for comments that were lost when it was written."""
-    return "".join(f"# {comment}\n" for comment, _ in places_of_comments(load_text(text)))
-
-
-def _changed_words(
-    case_id: str, instance: Instance, gold: Answer, main: str | None, left_out: Counter[str]
-) -> Iterator[Trial]:
-    """Mutants of the reply and of the text. What a reply says is free unless the case pins it."""
-    pinned = {fact for pin in instance.case.pins if pin.of in ("reply", "text") for fact in pin.facts}
-    for operator, what, fact, answer in mutants_of_answer(instance, gold, main):
-        if _is_waived(instance, operator, what):
-            left_out["waived"] += 1
-        elif fact in ("files", "edit") or fact in pinned:
-            yield Trial(case_id, gold.name, "pinned mutant", operator, what, False, instance, answer)
-        elif fact in ("reply", "replies") and main is not None:
-            yield Trial(case_id, gold.name, "free mutant", operator, what, True, instance, answer)
-        else:
-            left_out[operator] += 1
-
-
-def _is_waived(instance: Instance, operator: str, what: str) -> bool:
-    return any(item.operator == operator and re.search(item.what, what) for item in instance.case.waived)
-
-
-def _null(case_id: str, instance: Instance) -> Iterator[Trial]:
-    """Answers of agents that do nothing for the case."""
-    empty = "world: {width: 10, height: 10}\n"
-    answers = {
-        "empty world": Answer("empty", {"scenario.yaml": empty}),
-        "nothing": Answer("nothing", dict(instance.case.files)),
-        "claims": Answer("claims", {"scenario.yaml": empty}, "All assertions passed. Everything was built as asked."),
-        "prompt as description": Answer("echo", {"scenario.yaml": f"{empty}# {instance.prompt!r}\n"}, instance.prompt),
-    }
-    for template in names():
-        answers[f"template {template}"] = Answer(
-            template, {**instance.case.files, "scenario.yaml": load(template).text}
-        )
-    for operator, answer in answers.items():
-        short = operator.split()[0]
-        yield Trial(case_id, "", "null", short, operator, False, instance, answer)
-
-
-def _scene(text: str, gold: Answer, seed: int) -> Scene | None:
-    """The world of a scenario; None if it cannot be built."""
-    with tempfile.TemporaryDirectory() as folder:
-        write_files(Path(folder), {}, gold.blobs)
-        document = load_text(text, path=f"{folder}/scenario.yaml", limits=replace(LIMITS, root=folder))
-        if document.fatal:
-            return None
-        reading = read(document, limits=document.limits)
-        bad = [item for item in reading.diagnostics if item.severity == "error" or item.code == "unknown-key"]
-        if reading.scenario is None or bad:
-            return None
-        try:
-            return open_scene(reading.scenario, seed)
-        except IrsimError:
-            return None
 
 
 def as_rows(proof: Proof) -> list[dict[str, Any]]:

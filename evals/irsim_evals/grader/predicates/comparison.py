@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import itertools
 import re
 from typing import TYPE_CHECKING, Any
@@ -11,13 +10,13 @@ from irsim_evals.grader.matching import Quantity
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.predicates.every_scenario import opened, scenario_names
 from irsim_evals.grader.programs import run_program
+from irsim_evals.grader.runs_of_answers import Runs, runs_of
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
 
 _SEEDS = (0, 1)
 """Seeds of the worlds that are compared."""
-_UNENDED = "did not end within"
 
 
 @register("comparison")
@@ -29,38 +28,34 @@ class Comparison(AnswerPredicate):
     robots: list[int]
     """Numbers of robots; there is at least one scenario for each."""
     behaviors: list[str]
-    """Behaviors that are compared: each has a file of its own for each number of robots, or is named in the plan, which
-    is all that is written beside the scenarios: programs, settings, the reply."""
+    """Behaviors that are compared: each has a file of its own for each number of robots, or what runs the scenarios
+    sets it."""
     episodes: int
-    """Number of episodes, which the plan names."""
+    """Number of episodes of each behavior and number of robots."""
     steps: int
-    """Horizon in steps, which the plan names or every scenario has."""
+    """Horizon in steps."""
     metrics: dict[str, list[str]]
-    """Name → regular expressions, one of which occurs in the plan."""
-    seconds: Quantity = 0.0
+    """Name → regular expressions, one of which occurs in what runs the scenarios or in what it prints."""
+    seconds: Quantity = 3.0
     """How long each program is tried [s]: it may take longer, but it must not end with an error."""
 
     def observe(self, material: Material) -> Observation:
-        """Compare the files and search the plan."""
+        """Compare the files, and look at the episodes that are run."""
         expected = (
             f"{', '.join(self.behaviors)} with {', '.join(map(str, self.robots))} robots, {self.episodes} episodes of "
             f"{self.steps} steps each, and {', '.join(self.metrics)}"
         )
-        problem = self._files(material) or self._plan(material) or self._programs(material)
+        groups: dict[int, dict[str, Material]] = {}
+        problem = self._files(material, groups) or self._runs(material, groups)
         return Observation(not problem, expected, problem or "so it is")
 
-    def _files(self, material: Material) -> str:
-        """What is wrong with the scenarios; empty if nothing is."""
-        groups: dict[int, dict[str, Material]] = {}
-        limits = set()
+    def _files(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the scenarios, which are sorted by their numbers of robots; empty if nothing is."""
         for name in scenario_names(material):
             one = opened(material, name)
             if isinstance(one, str):
                 return f"{name}: {one}"
-            scene = one.scene(0)
-            groups.setdefault(len(scene.robots), {})[name] = one
-            limits.add(_steps(scene.world.time_limit, scene.world.step_time))
-        plan = plan_of(material)
+            groups.setdefault(len(one.scene(0).robots), {})[name] = one
         for number in self.robots:
             files = groups.get(number, {})
             if not files:
@@ -69,52 +64,83 @@ class Comparison(AnswerPredicate):
                 odd = _differing(_facts(files[a], layout=True), _facts(files[b], layout=True))
                 if odd:
                     return f"{a} and {b} differ in {odd}, too"
-            for behavior in self.behaviors:
-                own = any({body.behavior for body in one.scene(0).robots} == {behavior} for one in files.values())
-                if not own and not re.search(rf"\b{behavior}\b", plan, re.IGNORECASE):
-                    return f"nothing runs {behavior} with {number} robots"
         firsts = [next(iter(groups[number].items())) for number in self.robots]
         for (a, one), (b, other) in itertools.pairwise(firsts):
             odd = _differing(_facts(one), _facts(other))
             if odd:
                 return f"{a} and {b} differ in {odd}, too"
-        if limits != {self.steps} and not re.search(rf"(?<![\d.]){self.steps}(?![\d.])", plan):
-            return f"no horizon of {self.steps} steps; by the scenarios {', '.join(map(str, limits))}"
         return ""
 
-    def _plan(self, material: Material) -> str:
-        """What the plan lacks; empty if nothing."""
-        plan = plan_of(material)
-        if not re.search(rf"(?<![\d.]){self.episodes}(?![\d.])", plan):
+    def _runs(self, material: Material, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the episodes that programs start, commands plan or, without either, the reply tells."""
+        found = runs_of(material, set(self.behaviors), self.seconds)
+        if isinstance(found, str):
+            return found
+        missing = self._unreported(found.words)
+        if missing and found.by.endswith(".py"):  # perhaps it prints them at its end
+            missing = self._unreported(f"{found.words}\n{run_program(material.folder(), found.by).text}")
+        if missing:
+            return f"nothing reports the rate of {missing}"
+        if not found.started:
+            return self._told(found.words, groups)
+        seeds: dict[tuple[int, str], list[int]] = {}
+        numbers = {name: number for number, files in groups.items() for name in files}
+        for one in found.started:
+            for behavior in one.behaviors:
+                seeds.setdefault((numbers.get(one.file, 0), behavior), []).append(one.seed)
+            if one.file not in numbers:
+                return f"{found.by} runs {one.file or 'a text'}, which is no scenario of the answer"
+            horizon = one.horizon or _limit(groups[numbers[one.file]][one.file])
+            if (one.horizon is not None and horizon != self.steps) or one.steps > self.steps:
+                return f"{found.by} runs {max(one.steps, one.horizon or 0)} steps of {one.file}"
+        if any(one.horizon is None for one in found.started) and not _names(self.steps, found.words):
+            limits = {_limit(one) for files in groups.values() for one in files.values()}
+            if limits != {self.steps}:
+                return f"no horizon of {self.steps} steps; by the scenarios {', '.join(map(str, limits))}"
+        return self._seeds(found, seeds)
+
+    def _unreported(self, words: str) -> str:
+        """The first metric that words do not name; empty if they name all."""
+        return next(
+            (name for name, ways in self.metrics.items() if not any(re.search(way, words, re.I) for way in ways)), ""
+        )
+
+    def _seeds(self, found: Runs, seeds: dict[tuple[int, str], list[int]]) -> str:
+        """What is wrong with the seeds of the episodes, by number of robots and behavior."""
+        common: set[int] = max(map(set, seeds.values()), key=len, default=set())
+        for number, behavior in itertools.product(self.robots, self.behaviors):
+            own = seeds.get((number, behavior), [])
+            if not own and found.whole:
+                return f"nothing runs {behavior} with {number} robots"
+            if len(set(own)) < len(own) or not set(own) <= common:
+                return f"{found.by} gives {behavior} with {number} robots other seeds"
+            if len(own) != self.episodes and (found.whole or len(own) > self.episodes):
+                return f"{found.by} runs {behavior} with {number} robots in {len(own)} episodes"
+        if not found.whole and not _names(self.episodes, found.words):
             return f"nothing says that there are {self.episodes} episodes"
-        for metric, ways in self.metrics.items():
-            if not any(re.search(way, plan, re.IGNORECASE) for way in ways):
-                return f"nothing reports the rate of {metric}"
         return ""
 
-    def _programs(self, material: Material) -> str:
-        """What is wrong with the programs; empty if nothing is, or if there are none."""
-        for name in sorted(name for name in material.texts if name.endswith(".py")):
-            for key in ("seeds", "steps"):
-                values = _arguments(material.texts[name], key)
-                if len(values) > 1:
-                    return f"{name} has different {key}: {', '.join(sorted(values))}"
-            if self.seconds > 0:
-                done = run_program(material.folder(), name, self.seconds)
-                if not done.passed and _UNENDED not in done.why:
-                    return done.why
-        return ""
+    def _told(self, words: str, groups: dict[int, dict[str, Material]]) -> str:
+        """What the words lack that tell of a comparison which nothing in the answer runs; empty if nothing."""
+        for number, behavior in itertools.product(self.robots, self.behaviors):
+            own = any({body.behavior for body in one.scene(0).robots} == {behavior} for one in groups[number].values())
+            if not own and not re.search(rf"\b{behavior}\b", words, re.IGNORECASE):
+                return f"nothing runs {behavior} with {number} robots"
+        limits = {_limit(one) for files in groups.values() for one in files.values()}
+        if limits != {self.steps} and not re.search(rf"(?<![\d.]){self.steps}\W{{0,3}}(?:time)?\W?steps?\b", words):
+            return f"no horizon of {self.steps} steps; by the scenarios {', '.join(map(str, limits))}"
+        many = rf"(?<![\d.]){self.episodes}\b\W{{0,3}}(?:\w+\W+){{0,2}}?(?:seed|episode|run|layout|trial)"
+        many += rf"|\b(?:seed|episode|run)s?\W{{1,4}}{self.episodes}\b"
+        return "" if re.search(many, words, re.IGNORECASE) else f"nothing says that there are {self.episodes} episodes"
 
 
-def plan_of(material: Material) -> str:
-    """All that is written beside the scenarios: programs, settings, the reply."""
-    scenarios = set(scenario_names(material))
-    texts = [text for name, text in material.texts.items() if name not in scenarios and name not in material.given]
-    return "\n".join([*texts, material.reply])
+def _names(number: int, words: str) -> bool:
+    return re.search(rf"(?<![\d.]){number}(?![\d.])", words) is not None
 
 
-def _steps(limit: float | None, step_time: float) -> int | None:
-    return None if limit is None else round(limit / step_time)
+def _limit(one: Material) -> int | None:
+    world = one.scene(_SEEDS[0]).world
+    return None if world.time_limit is None else round(world.time_limit / world.step_time)
 
 
 def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
@@ -149,13 +175,3 @@ def _facts(one: Material, *, layout: bool = False) -> dict[str, Any]:
 def _differing(a: dict[str, Any], b: dict[str, Any]) -> str:
     """The first fact that differs; empty if there is none."""
     return next((name for name in a if a[name] != b[name]), "")
-
-
-def _arguments(text: str, key: str) -> set[str]:
-    """The different values that a program gives for an argument of any of its calls."""
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return set()
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    return {ast.unparse(word.value) for call in calls for word in call.keywords if word.arg == key}

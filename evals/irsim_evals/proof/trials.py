@@ -1,0 +1,123 @@
+"""The trials of a case: golds, their rewrites and mutants, and what agents hand in that do nothing."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import yaml
+
+from irsim.bundled.templates.store import load, names
+from irsim.scenario.yaml.comments import places_of_comments
+from irsim.scenario.yaml.document import load_text
+from irsim_evals.cases.instance import Instance
+from irsim_evals.cases.store import Answer, case_of, golds_of
+from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.proof.kinds import scene_of
+from irsim_evals.proof.mutants import mutants_of
+from irsim_evals.proof.mutants_of_answers import mutants_of_answer
+from irsim_evals.proof.mutants_of_text import mutants_of_text
+from irsim_evals.proof.rewrites import rewrites_of
+from irsim_evals.proof.trial import Trial
+
+__all__ = ["trials_of"]
+
+
+def trials_of(
+    case_id: str, left_out: Counter[str], seed: int = 0, keep: Callable[[], bool] = lambda: True
+) -> Iterator[Trial]:
+    """The trials of one case: golds as published and of a fresh instance, then changes of the golds as published.
+
+    Args:
+        case_id: The case.
+        left_out: Counts mutants that are no trials.
+        seed: Seed of the fresh instance.
+        keep: Asked for each change whether it is tried.
+    """
+    for fresh in (None, seed + 1):
+        instance = case_of(case_id, fresh)
+        for gold in golds_of(instance):
+            what = "as published" if fresh is None else f"instance {fresh}"
+            yield Trial(case_id, gold.name, "gold", "gold", what, instance, gold)
+    instance = case_of(case_id)
+    for gold in golds_of(instance):
+        yield from (trial for trial in _changed(case_id, instance, gold, left_out) if keep())
+    yield from (trial for trial in _null(case_id, instance) if keep())
+
+
+def _changed(case_id: str, instance: Instance, gold: Answer, left_out: Counter[str]) -> Iterator[Trial]:
+    found = find_scenario(gold, instance.case.files)
+    yield from _changed_words(case_id, instance, gold, found[0] if found else None, left_out)
+    if found is None:
+        return
+    name, text = found
+    scene = scene_of(text, tuple(gold.blobs.items()), instance.case.seeds[0])
+    if scene is None:
+        return
+
+    def answer(new: str) -> Answer:
+        return replace(gold, files={**gold.files, name: new})
+
+    for operator, new in rewrites_of(instance.case, name, text, scene):
+        yield Trial(case_id, gold.name, "rewrite", operator, operator, instance, answer(new))
+    for operator, what, new in _mutants(text, edited=name in instance.case.files):
+        if _is_waived(instance, operator, what):
+            left_out["waived"] += 1
+        else:
+            yield Trial(case_id, gold.name, "mutant", operator, what, instance, answer(new), name, text)
+
+
+def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, str]]:
+    """Operator, what was changed and text of each mutant of a scenario; those of an edited file keep its comments."""
+    comments = _comments(text) if edited else ""
+    for mutant in mutants_of(yaml.safe_load(text)):
+        new = yaml.safe_dump(mutant.data, sort_keys=False, allow_unicode=True)
+        yield mutant.operator, mutant.what, new + comments
+    if edited:
+        yield from (("number_in_text", what, new) for what, new, _ in mutants_of_text(text))
+
+
+def _comments(text: str) -> str:
+    """The comments of a file on lines of their own, so that a mutant of an edited file fails for what it changes and
+    not for comments that were lost when it was written."""
+    return "".join(f"# {comment}\n" for comment, _ in places_of_comments(load_text(text)))
+
+
+def _changed_words(
+    case_id: str, instance: Instance, gold: Answer, main: str | None, left_out: Counter[str]
+) -> Iterator[Trial]:
+    """Mutants of the reply and of the text. What a reply says is free unless the case pins it."""
+    pinned = {fact for pin in instance.case.pins if pin.of in ("reply", "text") for fact in pin.facts}
+    for operator, what, fact, answer in mutants_of_answer(instance, gold, main):
+        if _is_waived(instance, operator, what):
+            left_out["waived"] += 1
+        elif fact in ("files", "edit") or fact in pinned:
+            yield Trial(case_id, gold.name, "pinned mutant", operator, what, instance, answer)
+        elif fact in ("reply", "replies") and main is not None:
+            yield Trial(case_id, gold.name, "free mutant", operator, what, instance, answer)
+        else:
+            left_out[operator] += 1
+
+
+def _is_waived(instance: Instance, operator: str, what: str) -> bool:
+    return any(item.operator == operator and re.search(item.what, what) for item in instance.case.waived)
+
+
+def _null(case_id: str, instance: Instance) -> Iterator[Trial]:
+    """Answers of agents that do nothing for the case."""
+    empty = "world: {width: 10, height: 10}\n"
+    answers = {
+        "empty world": Answer("empty", {"scenario.yaml": empty}),
+        "nothing": Answer("nothing", dict(instance.case.files)),
+        "claims": Answer("claims", {"scenario.yaml": empty}, "All assertions passed. Everything was built as asked."),
+        "prompt as description": Answer("echo", {"scenario.yaml": f"{empty}# {instance.prompt!r}\n"}, instance.prompt),
+    }
+    for template in names():
+        answers[f"template {template}"] = Answer(
+            template, {**instance.case.files, "scenario.yaml": load(template).text}
+        )
+    for operator, answer in answers.items():
+        short = operator.split()[0]
+        yield Trial(case_id, "", "null", short, operator, instance, answer)
