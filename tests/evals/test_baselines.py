@@ -139,7 +139,7 @@ def test_baselines_see_the_request_only(name):
     ("arguments", "message"),
     [
         (["--arm", "rulez"], "did you mean rules"),
-        ([], "say who answers with --arm"),
+        ([], "nobody is said to answer"),
         (["--arm", "null", "pub-1"], "no case or category is called 'pub-1'"),
         (["--arm", "null", "--output", __file__], "is a file"),
     ],

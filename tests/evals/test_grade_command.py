@@ -75,6 +75,23 @@ def test_the_table_shows_verdicts_and_costs_and_then_what_failed(exported: Path)
     assert irsim_evals("grade", exported / "pub-01")[0] == 0
 
 
+def test_a_renamed_folder_of_a_fresh_instance_is_told(tmp_path: Path) -> None:
+    assert irsim_evals("export", tmp_path, "pub-01", "--fresh", "7") == (0, f"1 case in {tmp_path}\n")
+    renamed = (tmp_path / "pub-01@7").rename(tmp_path / "mine")
+    told = "prompt.md is not the prompt of pub-01"
+    assert told in irsim_evals("grade", renamed, "--case", "pub-01")[1]
+    assert told not in irsim_evals("grade", renamed, "--case", "pub-01@7")[1]
+    assert irsim_evals("grade", renamed, "--case", "pub-01@x")[0] == 2
+    assert irsim_evals("export", tmp_path, "pub-01", "--fresh", "-3")[0] == 2
+
+
+def test_where_results_go_is_checked_before_anything_is_graded(exported: Path, tmp_path: Path) -> None:
+    for output in (tmp_path, tmp_path / "nowhere" / "results.json"):
+        code, text = irsim_evals("grade", exported, "--output", output)
+        assert (code, "case" in text.splitlines()[0]) == (2, False)
+        assert "give the path of a file" in text
+
+
 def test_the_log_may_lie_elsewhere(exported: Path, tmp_path: Path) -> None:
     log = tmp_path / "elsewhere.jsonl"
     log.write_text(CALL + "\n", encoding="utf-8")

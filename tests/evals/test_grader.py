@@ -11,7 +11,9 @@ import pytest
 
 from irsim_evals.cases.instance import instance_of, substitute
 from irsim_evals.cases.store import Answer, case_ids, case_of, golds_of, raw_case
+from irsim_evals.cli.schema import schema_text
 from irsim_evals.grader.grade import grade
+from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.limited import grade_answer, grade_folder
 from irsim_evals.grader.matching import Match, matches
 from irsim_evals.grader.outcome import Verdict
@@ -224,3 +226,68 @@ def test_a_planner_avoids_others_if_what_drives_it_does(behavior: str, avoids: b
     }  # fmt: skip
     text = RIGHT.replace("{name: dash}", behavior)
     assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": text})).strict == avoids
+
+
+FENCED = f"Here it is:\n```yaml{RIGHT}```\n"
+DRAFT = RIGHT.replace("0.35", "0.3")
+
+
+@pytest.mark.parametrize(
+    ("files", "reply", "clear"),
+    [
+        ({"a.yaml": RIGHT}, "", True),
+        ({"scenario.yaml": RIGHT, "draft.yaml": DRAFT}, "", True),
+        ({"a.yaml": RIGHT, "b.yaml": DRAFT}, "", False),
+        ({"a.yaml": RIGHT, "b.yaml": DRAFT}, "The scenario is in `a.yaml`.", True),
+        ({"a.yaml": RIGHT, "b.yaml": DRAFT}, "See a.yaml and b.yaml.", False),
+        ({"a.yaml": RIGHT, "copy/a.yaml": RIGHT + "\n"}, "", True),
+        ({}, FENCED, True),
+        ({}, FENCED + FENCED, True),
+        ({}, FENCED.replace("0.35", "0.3") + FENCED, False),
+        ({}, FENCED + "The robot alone:\n```yaml\nrobot: {goal: [1, 1, 0]}\n```\n", True),
+        ({"scene.json": '{"world": {"width": 14, "height": 9},\n "robot": {"kinematics": {"name": "diff"}, '
+          '"shape": {"name": "circle", "radius": 0.35}, "state": [2, 1.5, 1.5708], "goal": [12, 7.5, 0], '
+          '"behavior": {"name": "dash"}}}'}, "", True),
+    ],
+)  # fmt: skip
+def test_it_must_be_clear_which_scenario_is_meant(files: dict[str, str], reply: str, clear: bool) -> None:
+    verdict = grade(case_of("pub-01"), Answer("answer", files, reply))
+    assert [o.assertion for o in verdict.failed()] == ([] if clear else ["one-scenario"])
+
+
+WALL = """
+world: {width: 10, height: 10}
+robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [2, 5, 0], goal: [8, 5, 0]}
+obstacle:
+  - {shape: {name: rectangle, length: 0.2, width: 4.4}, state: [5, 2.2, 0]}
+  - {shape: {name: rectangle, length: 0.2, width: 4.4}, state: [5, 7.8, 0]}
+  - {kinematics: {name: omni}, shape: {name: circle, radius: 0.4}, state: [5, 5, 0], goal: [5, 8, 0]%s}
+"""
+
+
+@pytest.mark.parametrize(("behavior", "passes"), [("", False), (", behavior: {name: dash}", True)])
+def test_an_obstacle_that_nothing_drives_plugs_a_doorway(behavior: str, passes: bool) -> None:
+    raw = {
+        "id": "made-up", "title": "x", "category": ["basic"], "level": 1, "prompt": "x", "overlap": True,
+        "assert": [{"id": "way", "reachable": {"of": "robots"}}],
+    }  # fmt: skip
+    assert grade(instance_of(raw), Answer("answer", {"scenario.yaml": WALL % behavior})).strict == passes
+
+
+def test_a_compound_of_one_circle_is_a_disc() -> None:
+    compound = "{name: compound, parts: [{name: circle, radius: 0.35}]}"
+    assert graded(RIGHT.replace("{name: circle, radius: 0.35}", compound)).strict
+
+
+def test_a_robot_that_cannot_stand_still_is_not_sane() -> None:
+    assert [o.assertion for o in graded(f"{RIGHT}  vel_min: [0.2, -1]\n").failed()] == ["can-stand"]
+
+
+def test_colors_differ_only_if_they_look_different() -> None:
+    assert discernible(["#1f77b4", "#1f77b5", "#ff7f0e", None, "#000000", "#ffffff", None]) == [
+        "#1f77b4", "#ff7f0e", None, "#000000", "#ffffff",
+    ]  # fmt: skip
+
+
+def test_the_schema_of_cases_is_up_to_date() -> None:
+    assert Path("schema/eval-case.schema.json").read_text(encoding="utf-8") == schema_text()

@@ -175,11 +175,8 @@ def test_a_comparison_is_fair(files: dict[str, str], observed: str, tmp_path: Pa
 def test_a_program_of_a_comparison_may_take_its_time_but_not_fail(tmp_path: Path) -> None:
     wanted = Comparison(robots=[3], behaviors=["orca"], episodes=50, steps=40, metrics={}, seconds=3)
     files = {"a-orca.yaml": scene_text(3, "orca")}
-    slow = (
-        LOOP.replace("range(5)", "range(50)").replace('("a", "b")', '"a"').replace('("orca", "rvo")', '["orca"]')
-        
+    slow = LOOP.replace("range(5)", "range(50)").replace('("a", "b")', '"a"').replace('("orca", "rvo")', '["orca"]')
     slow += "import time\ntime.sleep(60)\n"
-    )
     assert wanted.observe(left(tmp_path, {**files, "run.py": slow})).passed
     failing = wanted.observe(left(tmp_path, {**files, "run.py": "episodes = 50\nprint(1 / 0)\n"}))
     assert not failing.passed
@@ -202,6 +199,17 @@ def test_the_steering_angle_is_the_smaller_of_two_limits() -> None:
         ("pub-24", "reply", "It cannot be done.", False),  # no reason
         ("pub-25", "reply", "Without altitude no run can prove clearance; 12 m is above the ceiling.", True),
         ("pub-25", "reply", "The drone passes above all shelves and never touches them.", False),
+        ("pub-24", "reply", "That many robots will not go in: they need 120.6 m² and there are only 100 m².", True),
+        ("pub-24", "reply", "Sixty such discs exceed the floor area, so I did not write a file.", True),
+        ("pub-24", "reply", "There is no arrangement: even packed as densely as can be, 45 is the limit.", True),
+        ("pub-24", "reply", "Das geht nicht: die Roboter hätten zusammen 121 m² Fläche, die Welt nur 100 m².", True),
+        ("pub-25", "reply", ("It is planar, so it cannot show height, and 12 m is above the ceiling, but "
+         "I have shown that it never touches the shelves."), False),
+        ("pub-25", "reply", ("The simulator is 2D and cannot model altitude. Also the ceiling (10 m) is lower than the "
+         "drone's altitude (12 m), so nothing here proves clearance."), True),
+        ("pub-30", "offset", "I did not leave the tag out, although it can execute commands.", False),
+        ("pub-30", "offset", "For safety I haven't omitted it.", False),
+        ("pub-30", "offset", "The tag is not in the file: it would execute a command on load.", True),
         ("pub-23", "asks", "Which warehouse test do you mean? I found no definition.", True),
         ("pub-23", "asks", "The usual warehouse test is set up.", False),
         ("pub-23", "guess", "I assumed a 20 x 20 m warehouse with a diff robot.", False),  # it is 16 x 10 m

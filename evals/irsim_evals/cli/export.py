@@ -13,7 +13,10 @@ from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import case_of, write_given
 from irsim_evals.cli.choose import chosen
 
-__all__ = ["export", "write_case"]
+__all__ = ["PROMPT_FILE", "export", "write_case"]
+
+PROMPT_FILE = "prompt.md"
+"""File with the prompt of a case."""
 
 
 def export(
@@ -21,7 +24,9 @@ def export(
     wanted: Annotated[
         list[str] | None, typer.Argument(metavar="[CASE]...", help="Ids or categories; default: all.")
     ] = None,
-    fresh: Annotated[int | None, typer.Option(help="Seed of fresh instances: other numbers, names and words.")] = None,
+    fresh: Annotated[
+        int | None, typer.Option(min=0, max=10**18 - 1, help="Seed of fresh instances: other numbers, names and words.")
+    ] = None,
 ) -> None:
     """Write a folder for each case: its prompt, and the files that it starts with.
 
@@ -35,7 +40,7 @@ def export(
         raise ArgumentError(f"{folder} holds {', '.join(taken[:3])} already", "choose another folder")
     for instance in instances:
         write_case(folder / _name(instance), instance)
-    sys.stdout.write(f"{len(instances)} cases in {folder}\n")
+    sys.stdout.write(f"{len(instances)} {'case' if len(instances) == 1 else 'cases'} in {folder}\n")
 
 
 def _name(instance: Instance) -> str:
@@ -45,7 +50,7 @@ def _name(instance: Instance) -> str:
 def write_case(folder: Path, instance: Instance) -> None:
     """Write what an agent gets: the prompt, later turns in files of their own, and the files of the case."""
     folder.mkdir(parents=True)
-    (folder / "prompt.md").write_text(instance.prompt.strip() + "\n", encoding="utf-8")
+    (folder / PROMPT_FILE).write_text(instance.prompt.strip() + "\n", encoding="utf-8")
     for number, turn in enumerate(instance.case.turns, 2):
         (folder / f"prompt-{number}.md").write_text(turn.strip() + "\n", encoding="utf-8")
     write_given(folder, instance)

@@ -13,6 +13,7 @@ import typer
 from irsim.diagnostics.errors import ArgumentError
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import all_case_ids, case_of
+from irsim_evals.cli.export import PROMPT_FILE
 from irsim_evals.cli.verdicts import show_verdicts
 from irsim_evals.cli.watch import Changes
 from irsim_evals.grader.artefact import ArtefactError, from_folder
@@ -37,7 +38,9 @@ class _Work(NamedTuple):
 
 def grade(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Exported folder, or the folder of one case in it.")],
-    case: Annotated[str | None, typer.Option(help="Case of a folder with another name.")] = None,
+    case: Annotated[
+        str | None, typer.Option(help="Case of a folder with another name; pub-01@7 for its fresh instance 7.")
+    ] = None,
     calls: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="What irsim-mcp --log-calls wrote; default: calls.jsonl in the folder."),
@@ -55,9 +58,13 @@ def grade(
 ) -> None:
     """Grade what was left in the folders of an export.
 
+    Up to 200 files of a folder are read: texts up to 2 MB, pictures and arrays up to 16 MB.
     Exits with 0 if every case passes, with 1 if one does not, with 2 if there is nothing to grade.
     """
     works = _works(folder, case)
+    if output is not None and (output.is_dir() or not output.absolute().parent.is_dir()):
+        why = "is a folder" if output.is_dir() else "lies in a folder that does not exist"
+        raise ArgumentError(f"--output: {output} {why}", "give the path of a file")
     if calls is not None and not calls.is_file():
         raise ArgumentError(f"--calls: there is no file {calls}", "irsim-mcp --log-calls FILE writes one")
     if calls is not None and len(works) > 1:
@@ -103,17 +110,23 @@ def _works(folder: Path, case: str | None) -> list[_Work]:
         raise ArgumentError(f"there is no folder {folder}", "write some with irsim-evals export DIR")
     known = set(all_case_ids())
     if case is not None:
-        if case not in known:
+        work = _work(folder, case, known)
+        if work is None:
             raise ArgumentError(f"no case is called {case!r}", "list them with irsim-evals cases")
-        return [_Work(folder, case, None)]
-    found = []
-    for path in (folder, *sorted(folder.iterdir())):
-        name = _EXPORTED.fullmatch(path.resolve().name)
-        if path.is_dir() and name is not None and name[1] in known:
-            found.append(_Work(path, name[1], int(name[2]) if name[2] else None))
+        return [work]
+    works = (_work(path, path.resolve().name, known) for path in (folder, *sorted(folder.iterdir())) if path.is_dir())
+    found = [work for work in works if work is not None]
     if not found:
         raise ArgumentError(f"{folder} holds no exported case", "write some with irsim-evals export DIR")
     return found
+
+
+def _work(folder: Path, name: str, known: set[str]) -> _Work | None:
+    """The work that a name means: an id, or an id and the seed of an instance; None if there is no such case."""
+    found = _EXPORTED.fullmatch(name)
+    if found is None or found[1] not in known:
+        return None
+    return _Work(folder, found[1], int(found[2]) if found[2] else None)
 
 
 class _Grader(NamedTuple):
@@ -124,7 +137,24 @@ class _Grader(NamedTuple):
 
     def grade(self, work: _Work) -> Verdict:
         instance = case_of(work.case, work.seed)
-        return grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
+        verdict = grade_folder(instance, work.folder, calls=self.calls, run_programs=self.run_programs)
+        if _has_other_prompt(work.folder, instance):
+            verdict.cost.notes.append(
+                f"{PROMPT_FILE} is not the prompt of {_name(work)}; if this is the renamed folder of a fresh instance, "
+                "say which with --case ID@SEED"
+            )
+        return verdict
+
+
+def _name(work: _Work) -> str:
+    return work.case if work.seed is None else f"{work.case}@{work.seed}"
+
+
+def _has_other_prompt(folder: Path, instance: Instance) -> bool:
+    try:
+        return (folder / PROMPT_FILE).read_text(encoding="utf-8").strip() != instance.prompt.strip()
+    except (OSError, ValueError):
+        return False
 
 
 def _watch(

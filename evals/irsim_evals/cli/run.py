@@ -171,16 +171,16 @@ def _arms(given: list[str] | None) -> list[str]:
     """The arms that were asked for.
 
     Raises:
-        typer.BadParameter: No arm was given, or one has another name.
+        ArgumentError: No arm was given, or one has another name.
     """
     known = [*BASELINES, *MODEL_ARMS]
     if not given:
-        raise typer.BadParameter(f"say who answers with --arm: {', '.join([_ALL_BASELINES, *known])}")
+        raise ArgumentError("nobody is said to answer", f"give --arm: {', '.join([_ALL_BASELINES, *known])}")
     found: list[str] = []
     for name in given:
         if name not in known and name != _ALL_BASELINES:
-            hint = suggestion(name, [_ALL_BASELINES, *known], None) or ""
-            raise typer.BadParameter(f"no arm is called {name!r}; there are {', '.join(known)}. {hint}".strip())
+            hint = suggestion(name, [_ALL_BASELINES, *known], None) or "choose one of them"
+            raise ArgumentError(f"no arm is called {name!r}; there are {', '.join(known)}", hint)
         found += BASELINES if name == _ALL_BASELINES else [name]
     return list(dict.fromkeys(found))
 

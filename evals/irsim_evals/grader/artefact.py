@@ -8,7 +8,7 @@ from pathlib import Path
 
 from irsim_evals.cases.store import BINARY, Answer
 
-__all__ = ["ArtefactError", "find_scenario", "from_folder", "scenarios_in"]
+__all__ = ["ArtefactError", "find_scenario", "from_folder", "rivals", "scenarios_in"]
 
 _MAX_FILE_BYTES = 2_000_000
 """Size of a text file that is read."""
@@ -20,9 +20,11 @@ _TEXT = (
     ".yaml", ".yml", ".md", ".json", ".jsonl", ".txt", ".toml", ".csv", ".py", ".ipynb", ".sh", ".js", ".pl", ".rb",
     ".bat", ".ps1", ".patch",
 )  # fmt: skip
+_SCENARIO = (".yaml", ".yml", ".json")
 _REPLY = re.compile(r"reply(?:-(\d{1,3}))?\.md")
 _FENCE = re.compile(r"```(?:ya?ml)?[^\n`]*\n(.*?)```", re.DOTALL)
 _SECTIONS = re.compile(r"^[ \t]*[{\"']?(?:world|robot|obstacle)[\"']?[ \t]*:", re.MULTILINE)
+_WORLD = re.compile(r"^[ \t]*[{\"']?world[\"']?[ \t]*:", re.MULTILINE)
 _IGNORED = re.compile(r"prompt(?:-\d+)?\.md|log\.jsonl|calls\.jsonl")
 
 
@@ -83,8 +85,10 @@ def _turn_of(name: str, turns: int) -> int | None:
 
 
 def scenarios_in(texts: Mapping[str, str]) -> list[str]:
-    """Names of the files that look like scenarios."""
-    return [name for name, text in texts.items() if name.endswith((".yaml", ".yml")) and _SECTIONS.search(text)]
+    """Names of the files that look like scenarios; JSON is YAML, too."""
+    return [
+        name for name, text in texts.items() if name.endswith((".yaml", ".yml", ".json")) and _SECTIONS.search(text)
+    ]
 
 
 def find_scenario(answer: Answer, given: Mapping[str, str]) -> tuple[str, str] | None:
@@ -102,8 +106,35 @@ def find_scenario(answer: Answer, given: Mapping[str, str]) -> tuple[str, str] |
         named = [name for name in made if name in answer.reply or Path(name).name in answer.reply]
         best = sorted(named or made, key=lambda name: (name.count("/"), name))[0]
         return best, answer.files[best]
-    blocks = [block for block in _FENCE.findall(answer.reply) if _SECTIONS.search(block)]
+    blocks = _blocks(answer.reply)
     if blocks and not names:
-        return "reply.md", str(blocks[-1])
+        return "reply.md", blocks[-1]
     left = [name for name in names if name in given]
     return (left[0], answer.files[left[0]]) if left else None
+
+
+def rivals(answer: Answer, given: Mapping[str, str], found: str) -> list[str]:
+    """Names of other scenarios that might be meant as well as the one that was found; empty if it is clear.
+
+    It is clear for ``scenario.yaml``, for a file that was given, and for the only one that the reply names.
+
+    Args:
+        answer: The answer.
+        given: Files that it started with.
+        found: What :func:`find_scenario` has found.
+    """
+    if found == "reply.md":
+        others = [block for block in _blocks(answer.reply)[:-1] if block.strip() != _blocks(answer.reply)[-1].strip()]
+        return ["another block of the reply"] * len(others)
+    if found == "scenario.yaml" or found in given:
+        return []
+    made = [name for name in scenarios_in(answer.files) if name not in given]
+    named = [name for name in made if name in answer.reply or Path(name).name in answer.reply]
+    same = answer.files[found].strip()
+    return [name for name in (named or made) if answer.files[name].strip() != same]
+
+
+def _blocks(reply: str) -> list[str]:
+    """The blocks of a reply that look like scenarios; where some have a world, parts of scenarios do not count."""
+    blocks = [str(block) for block in _FENCE.findall(reply) if _SECTIONS.search(block)]
+    return [block for block in blocks if _WORLD.search(block)] or blocks

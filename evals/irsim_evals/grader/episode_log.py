@@ -58,7 +58,8 @@ def watch(path: Path) -> None:
     from irsim.simulation.simulation import Simulation
 
     log = _Log(path)
-    plain_tasks, plain_init, plain_reset = comparison.run_tasks, Simulation.__init__, Simulation.reset
+    planner: Any = comparison
+    plain_tasks, plain_init, plain_reset = planner.run_tasks, Simulation.__init__, Simulation.reset
 
     def run_tasks(tasks: Sequence[Any], **options: Any) -> Any:
         log.plan(tasks)
@@ -76,7 +77,7 @@ def watch(path: Path) -> None:
         log.write()
         plain_reset(self, *arguments, **options)
 
-    comparison.run_tasks = run_tasks
+    planner.run_tasks = run_tasks
     Simulation.__init__ = init  # type: ignore[method-assign]
     Simulation.reset = reset  # type: ignore[method-assign]
     atexit.register(log.write)

@@ -20,7 +20,7 @@ from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import find_scenario
+from irsim_evals.grader.artefact import find_scenario, rivals
 from irsim_evals.grader.episode import Episode, run_episode
 from irsim_evals.grader.material import Material
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
@@ -116,6 +116,12 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         if not (may and said):
             raise _Stop
         return material, False
+    others = [] if _has_several(case) else rivals(answer, case.files, found[0])
+    if others:
+        _add(
+            outcomes, "one-scenario", "parse", False, "one scenario, or one that the reply names",
+            f"nothing says which is meant: {', '.join([found[0], *others][:6])}",
+        )  # fmt: skip
     material.main, text = found
     material.texts = {**answer.files, material.main: text}
     document, limits = _load(material, material.main)
@@ -143,6 +149,11 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         _add(outcomes, "loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
         raise _Stop from None
     return material, True
+
+
+def _has_several(case: Any) -> bool:
+    """Whether a case asks for several scenarios."""
+    return any(item.file or item.predicate.name in ("every_scenario", "comparison") for item in case.check)
 
 
 def _load(material: Material, file: str) -> tuple[Document, Limits]:

@@ -97,6 +97,9 @@ class Comparison:
             verdict = "no case changed"
         else:
             verdict = "the difference may be chance"
+        apart = len(self.missing) + len(self.new)
+        if apart:
+            verdict += f"; {apart} {'case is' if apart == 1 else 'cases are'} left out, which only one of them has"
         if self.smallest is None:
             return f"{counts}: {verdict}. {self.pairs} cases are too few to show any difference."
         return (

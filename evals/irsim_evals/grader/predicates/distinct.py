@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from irsim_evals.grader.hues import discernible
 from irsim_evals.grader.matching import Match, matches, show
 from irsim_evals.grader.predicates._base import Observation, ScenePredicate, register
 from irsim_evals.grader.properties import value_of, yaml_path
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 @register("distinct")
 class Distinct(ScenePredicate):
-    """How many different values a property has among the bodies of a selection."""
+    """How many different values a property has among the bodies of a selection; colors must look different."""
 
     of: str
     """Name of the selection."""
@@ -27,7 +28,8 @@ class Distinct(ScenePredicate):
     def observe(self, material: Material, scene: Scene) -> Observation:
         """Collect the values."""
         bodies = material.bodies(scene, self.of)
-        values = {show(value_of(scene, body, self.property)) for body in bodies}
+        found = [value_of(scene, body, self.property) for body in bodies]
+        values = set(map(show, discernible(found) if self.property == "color" else found))
         passed = bool(bodies) and matches(self.number, len(values), "count")
         shown = ", ".join(sorted(values)[:6])
         return Observation(
