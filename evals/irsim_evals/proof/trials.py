@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import yaml
 
@@ -19,6 +20,7 @@ from irsim_evals.proof.kinds import scene_of
 from irsim_evals.proof.mutants import mutants_of
 from irsim_evals.proof.mutants_of_answers import mutants_of_answer
 from irsim_evals.proof.mutants_of_text import mutants_of_text
+from irsim_evals.proof.rewrite import Data, dump
 from irsim_evals.proof.rewrites import rewrites_of
 from irsim_evals.proof.trial import Trial
 
@@ -43,13 +45,16 @@ def trials_of(
             yield Trial(case_id, gold.name, "gold", "gold", what, instance, gold)
     instance = case_of(case_id)
     for gold in golds_of(instance):
-        yield from (trial for trial in _changed(case_id, instance, gold, left_out) if keep())
+        yield from _changed(case_id, instance, gold, left_out, keep)
     yield from (trial for trial in _null(case_id, instance) if keep())
 
 
-def _changed(case_id: str, instance: Instance, gold: Answer, left_out: Counter[str]) -> Iterator[Trial]:
+def _changed(
+    case_id: str, instance: Instance, gold: Answer, left_out: Counter[str], keep: Callable[[], bool]
+) -> Iterator[Trial]:
     found = find_scenario(gold, instance.case.files)
-    yield from _changed_words(case_id, instance, gold, found[0] if found else None, left_out)
+    words = _changed_words(case_id, instance, gold, found[0] if found else None, left_out)
+    yield from (trial for trial in words if keep())
     if found is None:
         return
     name, text = found
@@ -61,22 +66,27 @@ def _changed(case_id: str, instance: Instance, gold: Answer, left_out: Counter[s
         return replace(gold, files={**gold.files, name: new})
 
     for operator, new in rewrites_of(instance.case, name, text, scene):
-        yield Trial(case_id, gold.name, "rewrite", operator, operator, instance, answer(new))
-    for operator, what, new in _mutants(text, edited=name in instance.case.files):
+        if keep():
+            yield Trial(case_id, gold.name, "rewrite", operator, operator, instance, answer(new))
+    for operator, what, write in _mutants(text, edited=name in instance.case.files):
         if _is_waived(instance, operator, what):
             left_out["waived"] += 1
-        else:
-            yield Trial(case_id, gold.name, "mutant", operator, what, instance, answer(new), name, text)
+        elif keep():
+            yield Trial(case_id, gold.name, "mutant", operator, what, instance, answer(write()), name, text)
 
 
-def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, str]]:
-    """Operator, what was changed and text of each mutant of a scenario; those of an edited file keep its comments."""
+def _mutants(text: str, edited: bool) -> Iterator[tuple[str, str, Callable[[], str]]]:
+    """Operator and what was changed of each mutant of a scenario, and what writes it; those of an edited file keep its
+    comments."""
     comments = _comments(text) if edited else ""
     for mutant in mutants_of(yaml.safe_load(text)):
-        new = yaml.safe_dump(mutant.data, sort_keys=False, allow_unicode=True)
-        yield mutant.operator, mutant.what, new + comments
+        yield mutant.operator, mutant.what, partial(_written, mutant.data, comments)
     if edited:
-        yield from (("number_in_text", what, new) for what, new, _ in mutants_of_text(text))
+        yield from (("number_in_text", what, partial(str, new)) for what, new, _ in mutants_of_text(text))
+
+
+def _written(data: Data, comments: str) -> str:
+    return dump(data) + comments
 
 
 def _comments(text: str) -> str:

@@ -19,6 +19,7 @@ KINDS: dict[str, Kind] = {
     "range_min": "size",
     "angle_range": "angle",
     "direction": "heading",
+    "mounted": "length",
     "noise": "flag",
     "std": "size",
     "angle_std": "angle",
@@ -38,7 +39,8 @@ class Sensor(ScenePredicate):
     """Name of the selection."""
     has: dict[str, Match] = {}
     """Parameter of the sensor as the simulator holds it → accepted values. ``direction`` is where its middle beam
-    points relative to the body, ``spacing`` the angle between two beams."""
+    points relative to the body, ``mounted`` how far it sits from the origin of the body, ``spacing`` the angle between
+    two beams."""
     number: Match = Match(eq=1)
     """How many sensors of each body have them."""
 
@@ -66,8 +68,10 @@ class Sensor(ScenePredicate):
 
 def parameter(sensor: dict[str, Any], key: str) -> Any:
     """A parameter of a sensor; None if it has no such parameter."""
+    offset = sensor.get("offset") or [0.0, 0.0, 0.0]
+    if key == "mounted":
+        return math.hypot(*offset[:2])
     if key == "direction":
-        offset = sensor.get("offset") or [0.0, 0.0, 0.0]
         return float(offset[2]) if len(offset) > 2 else 0.0
     if key == "spacing":
         number, angle = sensor.get("number"), sensor.get("angle_range")
