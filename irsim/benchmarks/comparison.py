@@ -42,7 +42,7 @@ DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
 _SEEDS_PER_TURN = 5
 """Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
-_COPIED = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
+_COPIED = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures", "zones")
 """Keys of the result of an episode that its row repeats."""
 
 

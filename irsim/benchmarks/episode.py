@@ -95,7 +95,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     Returns:
         ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (number of robots without a
         path to their goal), ``failures`` (outcome of robots without success, by name), and ``metrics`` of the episode
-        by key (NaN where undefined).
+        by key (NaN where undefined), and ``zones``: metrics of each zone by its name.
     """
     job = task.job
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
@@ -121,6 +121,7 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
         "failures": _failures(measured),
         "metrics": measured.episode,
+        "zones": measured.zones,
     }
 
 

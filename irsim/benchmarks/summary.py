@@ -136,6 +136,7 @@ def _row(
             for key in KEYS
             if pairs
         },
+        zones={} if name == ALL else _zones(episodes),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
             for outcome in ("collision", "timeout")
@@ -144,6 +145,14 @@ def _row(
         failures={} if name == ALL else _frequent_failures(episodes),
         **shares,
     )
+
+
+def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
+    """Estimates of the metrics of each zone; all episodes of a scenario have the same zones."""
+    return {
+        zone: {key: estimate([episode.zones[zone][key] for episode in episodes]) for key in values}
+        for zone, values in episodes[0].zones.items()
+    }
 
 
 def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:

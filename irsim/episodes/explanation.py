@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,8 @@ from irsim.episodes.stuck import (
     jam_message,
     no_progress_since,
 )
-from irsim.results.run import HorizonSource, Left, RobotResult
+from irsim.episodes.watching import sights_message, zones_message
+from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ def summary_message(
     held: dict[str, Event],
     events: Sequence[Event],
     left: Sequence[Left],
+    zones: Mapping[str, ZoneResult],
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
@@ -64,6 +66,10 @@ def summary_message(
         parts.append(others)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
+    if zone := zones_message(zones):
+        parts.append(zone)
+    if sight := sights_message(env, events):
+        parts.append(sight)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
     return changed + "; ".join(parts)
 

@@ -11,6 +11,21 @@ bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal)
   return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
 }
 
+bool same_goal(const Goal& a, const Goal& b) {
+  const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  return same(a.x, b.x) && same(a.y, b.y) && same(a.theta, b.theta);
+}
+
+void note_standings(const World& world, State& state, int w) {
+  for (const int i : world.moving) {
+    const int row = w * world.objects + i;
+    std::vector<Standing>& past = state.standings[row];
+    const Standing now{state.count[w], state.goal[row], state.stopped[row]};
+    if (past.empty() || past.back().stopped != now.stopped || !same_goal(past.back().goal, now.goal))
+      past.push_back(now);
+  }
+}
+
 }  // namespace
 
 void arrive(const World& world, State& state, int w) {
@@ -37,6 +52,7 @@ void arrive(const World& world, State& state, int w) {
       state.arrived[row] = 1;
     }
   }
+  if (state.keep_history) note_standings(world, state, w);
 }
 
 }  // namespace irsim

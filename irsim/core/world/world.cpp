@@ -84,7 +84,7 @@ void add_fog_beams(World& world) {
   if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
   if (std::max(fog.columns, fog.rows) > kMaxFogCells) throw std::invalid_argument("fog has too many cells");
   const double cell = std::min(fog.cell().x, fog.cell().y);
-  for (const FogView& view : fog.views) {
+  for (const View& view : fog.views) {
     if (view.object < 0 || view.object >= world.objects)
       throw std::invalid_argument("a view of the fog names an object that does not exist");
     Mount mount = mount_of(view.object, 0);
@@ -122,7 +122,8 @@ void check(const ObjectSpec& spec) {
 }  // namespace
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
-             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_)
+             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_, Zones zones_,
+             std::vector<View> views_)
     : step_time(step_time_),
       collision_mode(collision_mode_),
       gravity(gravity_),
@@ -131,8 +132,14 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       extra_rows(1),
       specs(std::move(specs_)),
       fog(std::move(fog_)),
-      placements(std::move(placements_)) {
+      placements(std::move(placements_)),
+      zones(std::move(zones_)),
+      views(std::move(views_)) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
+  for (const View& view : views) {
+    if (view.object < 0 || view.object >= objects)
+      throw std::invalid_argument("a field of view names an object that does not exist");
+  }
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
     for (const int i : placement.objects) {

@@ -12,6 +12,7 @@
 #include "kinematics.gen.hpp"
 #include "sensing/fog.hpp"
 #include "world/scene.hpp"
+#include "world/zones.hpp"
 
 namespace irsim {
 
@@ -48,7 +49,8 @@ struct BodyDynamics {
 
 struct World {
   World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
-        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog);
+        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog, Zones zones,
+        std::vector<View> views);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -81,6 +83,8 @@ struct World {
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<RandomPlacement> placements;
+  Zones zones;              // what objects enter or cross
+  std::vector<View> views;  // fields of view that are watched
 
   std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
   std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed
