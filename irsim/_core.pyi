@@ -445,7 +445,8 @@ class World:
     Args:
         zones: Lines (a Linestring of two points) and regions (a Circle or Polygon), world frame. Events name who
             crosses or enters them.
-        views: Fields of view that are watched. Events name who comes into them or goes out of them.
+        views: Fields of view that are watched. Events name which targets come into them or go out of them.
+        targets: Indices of the objects that count as seen.
     """
 
     def __init__(
@@ -460,6 +461,7 @@ class World:
         fog: Fog | None = None,
         zones: Sequence[Part] = (),
         views: Sequence[View] = (),
+        targets: Sequence[int] = (),
     ) -> None: ...
     # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles, 3 contact
     copies: int

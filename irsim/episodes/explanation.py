@@ -68,7 +68,7 @@ def summary_message(
         parts.append(jam)
     if zone := zones_message(zones):
         parts.append(zone)
-    if sight := sights_message(env, events):
+    if sight := sights_message(events):
         parts.append(sight)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
     return changed + "; ".join(parts)

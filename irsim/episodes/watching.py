@@ -119,12 +119,11 @@ def _zone_message(name: str, zone: ZoneResult) -> str:
     return f"{quoted(name)}: crossed {'once' if crossings == 1 else f'{crossings} times'} ({first})"
 
 
-def sights_message(env: Env, events: Sequence[Event]) -> str | None:
-    """Say which object first saw a robot or moving obstacle, and how many more such pairs there are; None without."""
-    moving = {record.name for record in env.scenario.objects if not record.static}
-    pairs: dict[tuple[str, str], float] = {}
+def sights_message(events: Sequence[Event]) -> str | None:
+    """Say which object saw another first, and how many such pairs there are; None if none did."""
+    pairs: dict[tuple[str, str | None], float] = {}
     for event in events:
-        if event.kind == "sight_start" and event.partner in moving:
+        if event.kind == "sight_start":
             pairs.setdefault((event.object, event.partner), event.time)
     if not pairs:
         return None

@@ -10,7 +10,7 @@ from irsim.simulation.events import Event
 
 __all__ = ["sight_view", "zone_view"]
 
-_TIMES = ["step", "time", "to_step", "to_time", "duration", "x", "y"]
+_TIMES = ["step", "time", "to_step", "duration", "x", "y"]
 
 
 class _Span(NamedTuple):
@@ -32,7 +32,7 @@ def zone_view(asked: Question) -> Table:
     for begin, end in _within(asked, _spans(events, "zone_exit")):
         times: list[Cell] = [*_times(asked, begin, end)]
         if begin.kind == "line_crossing":
-            times[2:5] = [None, None, None]
+            times[2:4] = [None, None]
         rows.append([begin.zone, begin.object, begin.direction or "inside", *times])
     return paged(asked, ["zone", "object", "what", *_TIMES], rows)
 
@@ -75,12 +75,5 @@ def _times(asked: Question, begin: Event, end: int | None) -> list[Cell]:
     """Cells of :data:`_TIMES`; the end is empty, and the duration counts to the last step, if there is no end."""
     step_time = asked.trace.step_time
     last = int(asked.trace.step[-1]) if end is None else end
-    until: list[Cell] = [None, None] if end is None else [end, rounded(end * step_time)]
-    return [
-        begin.step,
-        rounded(begin.time),
-        *until,
-        rounded((last - begin.step) * step_time),
-        rounded(begin.x),
-        rounded(begin.y),
-    ]
+    duration = rounded((last - begin.step) * step_time)
+    return [begin.step, rounded(begin.time), end, duration, rounded(begin.x), rounded(begin.y)]

@@ -22,7 +22,7 @@ from irsim.options.registry import (
 )
 from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
-from irsim.simulation.watching import build_views, build_zones
+from irsim.simulation.watching import build_targets, build_views, build_zones
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -218,6 +218,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         fog=build_fog(scenario),
         zones=build_zones(scenario),
         views=build_views(scenario),
+        targets=build_targets(scenario),
     )
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1

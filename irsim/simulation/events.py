@@ -54,7 +54,7 @@ class Event(NamedTuple):
             (``follow`` has found no path), ``zone_entry`` and ``zone_exit`` (the body of an object that can move begins
             or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses a line of
             ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of, the field of
-            view that the scenario gives the object with ``fov``; maps and the walls around the world do not count).
+            view that the scenario gives the object with ``fov``; of static obstacles only those with tags count).
         time: Simulated time [s].
         step: Number of executed steps at the event; 0 is the initial state.
         object: Name of the object; for a collision, of the first of the two objects; for a sight, of the one that sees.

@@ -9,7 +9,7 @@ import irsim._core as core
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["build_views", "build_zones", "is_watching"]
+__all__ = ["build_targets", "build_views", "build_zones", "is_watching"]
 
 
 def build_zones(scenario: ResolvedScenario) -> list[core.Part]:
@@ -36,4 +36,16 @@ def build_views(scenario: ResolvedScenario) -> list[core.View]:
         core.View(object=index, angle=record.fov, reach=record.fov_radius, occlusion=record.fov_occlusion)
         for index, record in enumerate(scenario.objects)
         if is_watching(record) and record.fov is not None and record.fov_radius is not None
+    ]
+
+
+def build_targets(scenario: ResolvedScenario) -> list[int]:
+    """Indices of the objects that count as seen: those that can move, robots, and obstacles with tags.
+
+    Plain static obstacles, maps and walls do not count: whoever turns sees and loses them all the time.
+    """
+    return [
+        index
+        for index, record in enumerate(scenario.objects)
+        if not record.static or record.role == "robot" or record.tags
     ]

@@ -7,6 +7,8 @@
 namespace irsim {
 namespace {
 
+constexpr double kSlack = 1e-6;  // covers the rounding errors of a first test of distances
+
 /// Whether a path from `from` to `to` leads from one side of the line ab to the other, at `where` between its ends. A
 /// point on the line counts as right of it, so that a path that only touches the line does not cross it, and a path
 /// that pauses on the line crosses it once.
@@ -47,12 +49,14 @@ void watch_region(const World& world, State& state, int w, int zone) {
 
 void watch_view(const World& world, State& state, int w, std::size_t number, Workspace& work) {
   const View& view = world.views[number];
-  const Shapes& shapes = *state.scenes[w].shapes;
   std::uint8_t* seen = state.scenes[w].watched.seen.data() + number * world.objects;
+  const Vec2 from = state.pose[w * world.objects + view.object].position();
   for (int i = 0; i < world.objects; ++i) {
-    const Kind kind = shapes.parts[shapes.body[i].part].kind;
-    if (kind == Kind::cells || kind == Kind::room) continue;  // maps and walls around the world are in every view
-    const bool now = sees(world, state, w, view, i, work);
+    if (!world.is_target[i]) continue;
+    const auto [centre, radius] = state.bounds(world, w, i);
+    const double reach = view.reach + radius + kSlack;
+    const bool near = squared(centre - from) <= reach * reach * (1.0 + kSlack);  // most others are not
+    const bool now = near && sees(world, state, w, view, i, work);
     if (now == (seen[i] != 0)) continue;
     seen[i] = now;
     state.log(world, w, now ? EventKind::sight_start : EventKind::sight_end, view.object, i,

@@ -78,7 +78,7 @@ Watched continue_watching(const World& world, State& state, const World& world_b
                                   [&](const View& view) { return view.object == new_row[object]; });
     for (std::size_t i = 0; i < old_n; ++i) {
       if (!old.seen[v * old_n + i]) continue;
-      if (now != world.views.end() && new_row[i] >= 0) {
+      if (now != world.views.end() && new_row[i] >= 0 && world.is_target[new_row[i]]) {
         out.seen[(now - world.views.begin()) * n + new_row[i]] = 1;
       } else {
         state.log_numbers(0, EventKind::sight_end, world_before.number[object], world_before.number[i],

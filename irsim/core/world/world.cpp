@@ -123,7 +123,7 @@ void check(const ObjectSpec& spec) {
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
              std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_, Zones zones_,
-             std::vector<View> views_)
+             std::vector<View> views_, const std::vector<int>& targets)
     : step_time(step_time_),
       collision_mode(collision_mode_),
       gravity(gravity_),
@@ -134,11 +134,16 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       fog(std::move(fog_)),
       placements(std::move(placements_)),
       zones(std::move(zones_)),
-      views(std::move(views_)) {
+      views(std::move(views_)),
+      is_target(objects, 0) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   for (const View& view : views) {
     if (view.object < 0 || view.object >= objects)
       throw std::invalid_argument("a field of view names an object that does not exist");
+  }
+  for (const int i : targets) {
+    if (i < 0 || i >= objects) throw std::invalid_argument("a target is an object that does not exist");
+    is_target[i] = 1;
   }
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {

@@ -19,9 +19,10 @@ __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
     Look into a run: why did it fail? view=collisions: which objects touched, where, how fast; closest: closest
-    approaches of each robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest
-    stop; rows: `fields` step by step, spread over the run unless `every` is given. Of a benchmark: its episodes.
-    Returns a table, in pages (next_cursor). Next: draw the moment with render_snapshot run_id step.
+    approaches of each robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards), turn rates, longest
+    stop; zones: who entered or crossed what; sight: who saw whom; rows: `fields` step by step, spread over the run
+    unless `every` is given. Of a benchmark: its episodes. Returns a table, in pages (next_cursor). Next: draw the
+    moment with render_snapshot run_id step.
 """
 _MAX_CELL_LENGTH = 60
 """Number of characters of a cell."""

@@ -45,7 +45,7 @@ class Robot(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: str
-    outcome: Literal["success", "collision", "timeout"]
+    outcome: str
     time_to_goal: float | None = None
     distance_to_goal: float | None = None
     min_clearance: float | None = None
@@ -57,13 +57,13 @@ class Robot(BaseModel):
 
 
 class Event(BaseModel):
-    """An event of the episode."""
+    """An event of the episode; the partner is the other object, or the zone."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
 
     time: float
     step: int
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    kind: str
     object: str
     partner: str | None = None
     x: float
@@ -186,13 +186,16 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
 
 
 def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:
-    """The first events in order; a concise result prefers those of robots, which wandering people would crowd out."""
+    """The first events in order; a concise result prefers those of robots, and leaves out sights first."""
     events: list[dict[str, Any]] = found["events"]
     if detailed:
         return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
     important = [event for event in events if event["kind"] != "waypoint"]
-    kept = sorted(important, key=lambda event: not robots & {event["object"], event["partner"]})[:most]
+    sights = ("sight_start", "sight_end")
+    kept = sorted(
+        important, key=lambda event: (event["kind"] in sights, not robots & {event["object"], event["partner"]})
+    )[:most]
     return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
 
@@ -217,8 +220,11 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
 
 
 def _event(event: dict[str, Any]) -> Event:
-    names = {key: None if event[key] is None else clean(event[key]) for key in ("object", "partner")}
-    return Event(**{**{key: _rounded(value) for key, value in event.items()}, **names})
+    partner = event["partner"] or event["zone"]
+    kind = event["kind"] if event["direction"] is None else f"{event['kind']} {event['direction']}"
+    numbers = {key: _rounded(event[key]) for key in ("time", "step", "x", "y")}
+    name = clean(event["object"])
+    return Event(kind=kind, object=name, partner=None if partner is None else clean(partner), **numbers)
 
 
 def _advice(found: dict[str, Any]) -> str:
@@ -265,7 +271,8 @@ def _text(episode: Episode) -> str:
     if episode.events:
         lines.append(f"Events ({len(episode.events)} of {episode.event_count}):")
     for event in episode.events:
-        partner = f" with {event.partner!r}" if event.partner is not None else ""
+        link = " with" if event.kind == "collision" else ":"
+        partner = "" if event.partner is None else f"{link} {event.partner!r}"
         place = f"({event.x:g}, {event.y:g})"
         lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{partner} at {place}")
     lines += [f"Warning: {warning}" for warning in episode.warnings]
