@@ -70,8 +70,7 @@ EVERYDAY: dict[str, str] = {
     "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
     "world.obstacle_map.ros": "ros map, map server, pgm, slam",
     "world.obstacle_map.perlin": "random map, forest, procedural",
-    "world.zones": "zone, region, area, line, gate, finish line, checkpoint, enter, entry, crossing, crosses, trip wire, "
-    "geofence",
+    "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",

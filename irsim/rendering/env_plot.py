@@ -22,7 +22,6 @@ from irsim.graphics.figure.pyplot_entry import PyplotEntry, activate, active
 from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Scene, region_extent
 from irsim.graphics.scene.style import STYLE_KEYS
-from irsim.graphics.scene.zones import DrawnZones, draw_zones
 from irsim.objects.drawing.scene_builder import MODES, SceneBuilder
 from irsim.objects.views import views
 from irsim.rendering.plot_steps import PlotSteps
@@ -86,7 +85,6 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         self._unknown: set[str] = set()
         self._hidden: set[int] = set()
         self._region: tuple[float, float, float, float] | None = None
-        self._zones: DrawnZones | None = None
         self._entry: PyplotEntry | None = None
         self._frame = 0
         self._looking = False
@@ -251,9 +249,7 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         if self._region is not None:
             scene.look_at(self._region)
         if self._options.show_zones:
-            if self._zones is None:
-                self._zones = draw_zones(self.env.simulation.scenario.world.zones, self.palette.zone, scene.extent)
-            self._zones.add_to(scene)
+            self._builder.add_zones(scene)
         return self._without_hidden(scene)
 
     def _title(self) -> str | None:
