@@ -37,12 +37,19 @@ _MAX_CONCISE = 10
 _MAX_DETAILED = 50
 """Number of robots and events in a detailed result."""
 _DECIMALS = 3
+_WATCHED = {
+    "time_in_zone": "in zones for {:g} s",
+    "zone_crossings": "{:g} zone crossings",
+    "seen_ratio": "seen {:g} of the time",
+    "goal_visible_ratio": "saw its goal {:g} of the time",
+}
+"""Metrics of zones and of sight, and how the text says them."""
 
 
 class Robot(BaseModel):
     """Result of one robot; lengths in m, times in s."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="allow")  # and those of _WATCHED that are defined
 
     name: str
     outcome: str
@@ -216,7 +223,13 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
+        **{key: _rounded(robot[key]) for key in _shown(detailed) if robot[key] is not None},
     )
+
+
+def _shown(detailed: bool) -> list[str]:
+    """Keys of :data:`_WATCHED` of a result; a concise one leaves out what every robot has."""
+    return [key for key in _WATCHED if detailed or key != "goal_visible_ratio"]
 
 
 def _event(event: dict[str, Any]) -> Event:
@@ -295,6 +308,9 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"{robot.infeasible_steps} steps in which its behavior found no collision-free velocity")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
+    facts += [
+        words.format(value) for key, words in _WATCHED.items() if (value := getattr(robot, key, None)) is not None
+    ]
     if robot.pose is not None:
         facts.append("ends at x {:g} y {:g} heading {:g}".format(*robot.pose))
     return ", ".join(facts)
