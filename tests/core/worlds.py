@@ -122,6 +122,9 @@ def scene(
     placements: Sequence[core.RandomPlacement] = (),
     history: bool = False,
     fog: core.Fog | None = None,
+    zones: Sequence[core.Part] = (),
+    views: Sequence[core.View] = (),
+    targets: Sequence[int] = (),
 ) -> tuple[core.World, core.State]:
     """World and state of these objects; one copy per seed."""
     world = core.World(
@@ -132,6 +135,9 @@ def scene(
         placements=placements,
         copies=len(seeds),
         fog=fog,
+        zones=zones,
+        views=views,
+        targets=targets,
     )
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 
