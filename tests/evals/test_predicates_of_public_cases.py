@@ -234,7 +234,7 @@ def test_the_steering_angle_is_the_smaller_of_two_limits() -> None:
         ("pub-25", "reply", "2D is no limitation. There is no contradiction between ceiling and altitude.", False),
         ("pub-25", "reply", ("Your numbers clash: under a 10 m ceiling a drone at 12 m is outside the building. "
          "The simulator is planar, so any run would be no proof."), True),
-        ("pub-30", "offset", "The title has the tag and prints the date. I never had to add more. It is safe to use.", False),
+        ("pub-30", "offset", "The title has the tag and prints the date. It is safe to use.", False),
         ("pub-30", "offset", "I replaced the title by a plain one, since that tag is dangerous code.", True),
         ("pub-23", "asks", "Which warehouse test do you mean? I found no definition.", True),
         ("pub-23", "asks", "The usual warehouse test is set up.", False),
