@@ -41,18 +41,27 @@ _MEDIUM_WIDTH = 96
 
 
 def benchmark(
-    files: Annotated[list[str], typer.Argument(help="Scenario files (YAML).", show_default=False)],
+    files: Annotated[
+        list[str] | None,
+        typer.Argument(help="Scenario files (YAML), or one suite: a name or a suite file.", show_default=False),
+    ] = None,
     behaviors: Annotated[
         str,
         typer.Option(
             metavar="A,B,…",
             help="Behaviors of all robots to compare, such as rvo,orca or '{name: orca, timeHorizon: 5}'. The first is "
-            "the reference for differences.",
+            "the reference for differences. Of a suite: names of its policies, or other behaviors.",
+            show_default="as-written, or all of a suite",
         ),
-    ] = "as-written",
+    ] = "",
     seeds: Annotated[
-        str, typer.Option(metavar="N|LIST", help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7.")
-    ] = "10",
+        str,
+        typer.Option(
+            metavar="N|LIST",
+            help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7. Of a suite: the number of its seeds.",
+            show_default="10, or those of a suite",
+        ),
+    ] = "",
     steps: Steps = None,
     json_output: Json = False,
     csv_output: Annotated[
@@ -67,11 +76,17 @@ def benchmark(
         ),
     ] = None,
     max_objects: MaxObjects = None,
+    output: Output = None,
+    resume: Resume = False,
+    full: Full = False,
+    protocols: Protocols = None,
+    scenarios: Scenarios = None,
 ) -> None:
     """Compare behaviors: run every scenario with every behavior and the same seeds, on all cores.
 
     The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
-    --json and --csv contain all metrics.
+    --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
+    as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
     """
     from irsim.benchmarks import BenchmarkError
     from irsim.benchmarks import benchmark as compare
@@ -82,11 +97,14 @@ def benchmark(
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
+    chosen = split_behaviors(behaviors)
+    if output is not None or resume or len(files or ()) == 1 and is_suite(files[0]):
+        ...
     with progress("simulating") as report:
         result = compare(
             files,
-            split_behaviors(behaviors),
-            seeds,
+            chosen or ["as-written"],
+            seeds or str(DEFAULT_SEEDS),
             steps=steps,
             strict=strict,
             imports=imports or (),
