@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +92,7 @@ def map_hashes(documents: Sequence[Document]) -> list[dict[str, str]]:
     return [_hashes(document) for document in documents]
 
 
-def _hashes(document: Document) -> Mapping[str, str]:
+def _hashes(document: Document) -> dict[str, str]:
     scenario = read(document, limits=document.limits).scenario
     if scenario is None:
         return {}

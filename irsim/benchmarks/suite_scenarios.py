@@ -115,10 +115,7 @@ def _set(data: Any, path: str, value: Any, name: str) -> None:
     try:
         for part in way:
             data = data[part]
-        if isinstance(data, list):
-            data[last] = value  # type: ignore[call-overload]
-        else:
-            data[last] = value
+        data[last] = value
     except (LookupError, TypeError):
         raise SuiteError(
             f"scenario {name!r} has nothing at {path!r}",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -76,11 +77,39 @@ def benchmark(
         ),
     ] = None,
     max_objects: MaxObjects = None,
-    output: Output = None,
-    resume: Resume = False,
-    full: Full = False,
-    protocols: Protocols = None,
-    scenarios: Scenarios = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            show_default=False,
+            help="Folder for the episodes and the result. A suite has .irsim/benchmarks/NAME-HASH by default.",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with the interrupted benchmark in -o, else with the last one here."),
+    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="Run all seeds of a suite.")] = False,
+    protocols: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--protocol",
+            metavar="NAME",
+            show_default=False,
+            help="Only this protocol of a suite: freeze, yield or as-written. Repeatable.",
+        ),
+    ] = None,
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--scenario",
+            metavar="NAME",
+            show_default=False,
+            help="Only these scenarios of a suite, by their names or the name of their family. Repeatable.",
+        ),
+    ] = None,
 ) -> None:
     """Compare behaviors: run every scenario with every behavior and the same seeds, on all cores.
 
@@ -89,29 +118,19 @@ def benchmark(
     as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
     """
     from irsim.benchmarks import BenchmarkError
-    from irsim.benchmarks import benchmark as compare
-    from irsim.cli.findings import import_user_modules, limits_for
-    from irsim.cli.output import console, print_json, progress
-    from irsim.scenario.behavior_override import split_behaviors
+    from irsim.cli.benchmark_run import Wanted, run_benchmark
+    from irsim.cli.findings import import_user_modules
+    from irsim.cli.output import console, print_json
 
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
-    chosen = split_behaviors(behaviors)
-    if output is not None or resume or len(files or ()) == 1 and is_suite(files[0]):
-        ...
-    with progress("simulating") as report:
-        result = compare(
-            files,
-            chosen or ["as-written"],
-            seeds or str(DEFAULT_SEEDS),
-            steps=steps,
-            strict=strict,
-            imports=imports or (),
-            workers=workers,
-            limits=limits_for(max_objects),
-            progress=report,
-        )
+    wanted = Wanted(
+        files=files or [], behaviors=behaviors, seeds=seeds, steps=steps, strict=strict, imports=imports or [],
+        workers=workers, max_objects=max_objects, folder=output, resume=resume, full=full, protocols=protocols or [],
+        scenarios=scenarios or [],
+    )  # fmt: skip
+    result = run_benchmark(wanted)
     if json_output:
         print_json(result)
     elif csv_output:
@@ -145,7 +164,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     table.add_column("behavior", no_wrap=True, overflow="ellipsis")
     for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
         table.add_column(heading, justify="right", no_wrap=True)
-    labels, behaviors = _labels(result.scenarios), labels_of(result.behaviors)
+    labels, behaviors = _labels(result.scenarios), _policies(result) or labels_of(result.behaviors)
     last = None
     for row in result.rows:
         if last not in (None, row.scenario):
@@ -187,6 +206,11 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     periods = sorted(set(result.step_time.values()))
     out.print(f"metrics are sampled in every step ({', '.join(f'{period:g} s' for period in periods)})")
     out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _policies(result: BenchmarkResult) -> dict[str, str]:
+    """Behavior → name that a suite gives it; empty without a suite."""
+    return {text: name for name, text in getattr(result, "policies", {}).items()}
 
 
 def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
