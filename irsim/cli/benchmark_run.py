@@ -36,11 +36,12 @@ class Wanted:
 
 
 def run_benchmark(wanted: Wanted) -> BenchmarkResult:
-    """Run a benchmark, and say on standard error where its files are.
+    """Run a benchmark, and write its report where it has a folder.
 
     Raises:
         ArgumentError: The arguments do not fit together.
     """
+    from irsim.api.benchmark_report import write_report
     from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
     from irsim.benchmarks.suite_files import is_suite
     from irsim.cli.findings import limits_for
@@ -75,7 +76,8 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
                 progress=report,
             )  # fmt: skip
-    console(stderr=True).print(f"episodes and result are in {folder}", soft_wrap=True)
+    page = write_report(result, folder)
+    console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
     return result
 
 
