@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
@@ -19,7 +19,7 @@ def policy_labels(result: BenchmarkResult) -> dict[str, str]:
     return labels_of(result.behaviors)
 
 
-def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[Mapping[str, Any], str]]]]:
+def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[dict[str, Any], str]]]]:
     """Family, protocol, and (values, name) of its scenarios, of each family of a suite with several scenarios."""
     if not isinstance(result, SuiteResult):
         return
