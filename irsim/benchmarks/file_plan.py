@@ -9,7 +9,6 @@ from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
 from irsim.benchmarks.seeds import seeds_from
 from irsim.episodes.episode import source_of
-from irsim.scenario.behavior_override import AS_WRITTEN
 from irsim.scenario.yaml.document import Document, load_path
 
 __all__ = ["file_plan"]
@@ -41,7 +40,7 @@ def file_plan(
     return Plan(
         name="benchmark",
         scenarios=scenarios,
-        policies={text: text for text in policies or [AS_WRITTEN]},
+        policies={text: text for text in policies},
         seeds=seeds_from(seeds or DEFAULT_SEEDS),
         steps=steps,
         strict=strict,

@@ -75,6 +75,8 @@ def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]
 
 def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
     """Label → behavior as text. A name that the suite does not have is a behavior of its own."""
+    if wanted is not None and not wanted:
+        raise SuiteError("there must be at least one policy, got none", f"choose from {', '.join(suite.policies)}")
     own = {name: behavior_text(policy) for name, policy in suite.policies.items()}
     return own if wanted is None else {name: own.get(name, name) for name in wanted}
 

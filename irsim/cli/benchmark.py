@@ -47,14 +47,14 @@ def benchmark(
         typer.Argument(help="Scenario files (YAML), or one suite: a name or a suite file.", show_default=False),
     ] = None,
     behaviors: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="A,B,…",
             help="Behaviors of all robots to compare, such as rvo,orca or '{name: orca, timeHorizon: 5}'. The first is "
             "the reference for differences. Of a suite: names of its policies, or other behaviors.",
             show_default="as-written, or all of a suite",
         ),
-    ] = "",
+    ] = None,
     seeds: Annotated[
         str,
         typer.Option(

@@ -21,7 +21,7 @@ class Wanted:
     """The arguments of the command; see there."""
 
     files: Sequence[str]
-    behaviors: str
+    behaviors: str | None
     seeds: str
     steps: int | None
     strict: bool
@@ -71,10 +71,10 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
             from irsim.benchmarks import DEFAULT_SEEDS, benchmark
             from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
+            policies = [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors)
             return benchmark(
-                list(wanted.files), split_behaviors(wanted.behaviors) or [AS_WRITTEN], wanted.seeds or DEFAULT_SEEDS,
-                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
-                progress=report,
+                list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, steps=wanted.steps, strict=wanted.strict,
+                imports=wanted.imports, workers=wanted.workers, limits=limits, progress=report,
             )  # fmt: skip
     page = write_report(result, folder)
     console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
@@ -97,7 +97,7 @@ def _suite(name: str, wanted: Wanted) -> Plan:
         raise ArgumentError(f"--seeds of a suite is their number, got {wanted.seeds}", "give a number such as 20")
     return suite_plan(
         name,
-        policies=split_behaviors(wanted.behaviors) or None,
+        policies=None if wanted.behaviors is None else split_behaviors(wanted.behaviors),
         protocols=wanted.protocols or None,  # type: ignore[arg-type]
         seeds=int(wanted.seeds) if wanted.seeds else None,
         full=wanted.full,
@@ -108,11 +108,11 @@ def _suite(name: str, wanted: Wanted) -> Plan:
 def _plan(wanted: Wanted) -> Plan:
     """The plan of scenario files."""
     from irsim.benchmarks.file_plan import file_plan
-    from irsim.scenario.behavior_override import split_behaviors
+    from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
     return file_plan(
         wanted.files,
-        split_behaviors(wanted.behaviors),
+        [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors),
         wanted.seeds,
         steps=wanted.steps,
         strict=wanted.strict,

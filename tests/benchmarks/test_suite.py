@@ -89,7 +89,10 @@ def test_what_cannot_be_expanded_is_named(scenario: dict[str, Any], problem: str
 def test_every_combination_of_values_is_a_scenario_under_every_protocol(tmp_path: Path) -> None:
     scenario = {
         "name": "field",
-        "scenario": {"world": {"width": 5, "step_time": 0.2}, "robot": [{"number": 1, "distribution": {"name": "random"}}]},
+        "scenario": {
+            "world": {"width": 5, "step_time": 0.2},
+            "robot": [{"number": 1, "distribution": {"name": "random"}}],
+        },
         "vary": {"robot[0].number": [1, 2], "world.height": [5, 7.5]},
     }  # fmt: skip
     plan = suite_plan(str(written(tmp_path, scenarios=[scenario], protocols=["yield", "freeze"])))
@@ -131,8 +134,13 @@ def test_a_file_is_a_suite_if_it_says_so(tmp_path: Path) -> None:
 MEETING = """
 world: {{width: 10, height: 10, after_arrival: {mode}}}
 robot:
-  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.3}}, state: [2, 5], goal: [5, 5], behavior: {{name: orca}}}}
-  - {{kinematics: {{name: omni}}, shape: {{name: circle, radius: 0.3}}, state: [0.5, 5], goal: [9, 5.02], behavior: {{name: orca}}}}
+  - number: 2
+    distribution: {{name: manual}}
+    kinematics: {{name: omni}}
+    shape: {{name: circle, radius: 0.3}}
+    state: [[2, 5, 0], [0.5, 5, 0]]
+    goal: [[5, 5], [9, 5.02]]
+    behavior: {{name: orca}}
 """
 
 

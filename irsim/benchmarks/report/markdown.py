@@ -44,10 +44,8 @@ def title_of(result: BenchmarkResult) -> str:
 def facts_of(result: BenchmarkResult) -> list[str]:
     """What was run, in a few lines."""
     count = len(result.seeds)
-    lines = [
-        (f"{len(result.scenarios)} scenarios, {len(result.behaviors)} policies, {count} seeds from {result.seeds[0]}; "
-        f"{len(result.episodes):,} episodes.")
-    ]
+    size = f"{len(result.scenarios)} scenarios, {len(result.behaviors)} policies, {count} seeds from {result.seeds[0]}"
+    lines = [f"{size}; {len(result.episodes):,} episodes."]
     if isinstance(result, SuiteResult):
         lines.append(f"Suite version {result.suite_version}, content hash {result.hash}, irsim {result.version}.")
     return lines

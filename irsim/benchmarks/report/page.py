@@ -71,8 +71,8 @@ _SHELL = """<!doctype html>
 :root {{ color-scheme: light dark; --line: #ccc; --soft: #666; --back: #fff; --text: #111; }}
 @media (prefers-color-scheme: dark) {{ :root {{ --line: #444; --soft: #aaa; --back: #16181c; --text: #eee; }}
   figure svg {{ background: #fff; border-radius: 6px; }} }}
-body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem; background: var(--back);
-  color: var(--text); }}
+body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem;
+  background: var(--back); color: var(--text); }}
 .wide {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }}
 th, td {{ padding: .2rem .7rem .2rem 0; text-align: left; white-space: nowrap; }}

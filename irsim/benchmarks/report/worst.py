@@ -12,8 +12,9 @@ _ORDER = {"collision": 0, "timeout": 1, "success": 2}
 
 
 def worst_episodes(result: BenchmarkResult) -> list[EpisodeRow]:
-    """For each policy the failed episodes that say most: in the scenarios in which it fails least often, collisions
-    before time-outs, the first seeds first.
+    """For each policy some failed episodes, each of another scenario.
+
+    Those of scenarios in which the policy fails least often come first, collisions before time-outs, low seeds first.
     """
     rates = {(row.scenario, row.behavior): row.success.rate for row in result.rows}
     chosen: list[EpisodeRow] = []
