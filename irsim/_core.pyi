@@ -468,6 +468,7 @@ class World:
     objects: int  # N
     step_time: float
     collision_mode: int  # may be set at run time
+    after_arrival: int  # 0: arrived only while at the goal, 1: stands still for good, 2: arrived for good
     extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
     def scans(self) -> list[tuple[int, int, int]]:
         """(object, first beam, number of beams) of each native sensor of one world, in order.

@@ -18,12 +18,13 @@ from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
-from irsim.simulation.events import first_events
+from irsim.simulation.events import first_collisions, first_events
 from irsim.simulation.trace import record
 
-__all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
+__all__ = ["Job", "Outcome", "Task", "Until", "run_task", "scenario_of"]
 
 Outcome = Literal["success", "collision", "timeout"]
+Until = Literal["done", "first_collision"]
 _STRIDE = 100
 """Number of steps between two checks whether all humans have arrived."""
 _MAX_FAILURES = 10
@@ -42,6 +43,7 @@ class Job:
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
         limits: Limits of the loader and of the run, as (name, value) pairs.
+        until: ``done``, or ``first_collision`` to end the episode when a robot collides.
     """
 
     text: str
@@ -51,6 +53,7 @@ class Job:
     strict: bool
     imports: tuple[str, ...]
     limits: tuple[tuple[str, Any], ...]
+    until: Until = "done"
 
 
 @dataclass(frozen=True)
@@ -101,9 +104,12 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
     horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     simulation = env.simulation
-    trace = record(simulation, horizon)
-    steps = int(simulation.count[0])
-    measured = episode_metrics(trace, simulation, env.events, ways=ways)
+    trace, events = record(simulation, horizon), env.events
+    if job.until == "first_collision":
+        last = _first_collision(env)
+        trace, events = trace.until(last), [event for event in events if event.step <= last]
+    steps = int(trace.step[-1])
+    measured = episode_metrics(trace, simulation, events, ways=ways)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)
     env.end(ending_time=0.0)
     robots = measured.robots
@@ -123,6 +129,13 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "metrics": measured.episode,
         "zones": measured.zones,
     }
+
+
+def _first_collision(env: Env) -> int:
+    """Step of the first collision of a robot; that of the last step without one."""
+    robots = {robot.name for robot in env.robot_list}
+    steps = [event.step for name, event in first_collisions(env.simulation, env.events).items() if name in robots]
+    return min([*steps, int(env.simulation.count[0])])
 
 
 def _pedestrian_delay(task: Task, env: Env, horizon: int) -> float:

@@ -148,10 +148,11 @@ def _row(
 
 
 def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
-    """Estimates of the metrics of each zone; all episodes of a scenario have the same zones."""
+    """Estimates of the metrics of each zone; episodes that were measured have the same zones."""
+    measured = [episode.zones for episode in episodes if episode.zones]
     return {
-        zone: {key: estimate([episode.zones[zone][key] for episode in episodes]) for key in values}
-        for zone, values in episodes[0].zones.items()
+        zone: {key: estimate([zones[zone][key] for zones in measured]) for key in values}
+        for zone, values in (measured[0] if measured else {}).items()
     }
 
 

@@ -6,7 +6,21 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli import benchmark, demo, describe, diff, inspect, new, render, replay, run, schema, templates, validate
+from irsim.cli import (
+    benchmark,
+    demo,
+    describe,
+    diff,
+    inspect,
+    new,
+    render,
+    replay,
+    run,
+    schema,
+    suites,
+    templates,
+    validate,
+)
 from irsim.cli.guard import handle_errors
 from irsim.cli.map import map_app
 from irsim.cli.skills import skills_app
@@ -51,6 +65,7 @@ for _command in (
     inspect.inspect,
     replay.replay,
     benchmark.benchmark,
+    suites.suites,
     render.render,
     describe.describe,
     schema.schema,

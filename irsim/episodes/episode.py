@@ -40,6 +40,7 @@ __all__ = [
     "default_time_limit",
     "horizon_of",
     "import_modules",
+    "read_document",
     "read_scenario",
     "seed_of",
     "source_of",
@@ -137,6 +138,16 @@ def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
     return max(MIN_HORIZON, HORIZON_FACTOR * longest)
+
+
+def read_document(document: Document, *, strict: bool) -> tuple[ResolvedScenario, list[Finding]]:
+    """Read a scenario from a document; see :func:`read_scenario`.
+
+    Raises:
+        ScenarioError: The scenario has errors.
+    """
+    scenario, diagnostics = or_raise(read(document, strict=strict, limits=document.limits))
+    return scenario, [as_finding(diagnostic) for diagnostic in diagnostics]
 
 
 def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
 
+AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
 """Name of a collision mode -> its number in the core."""
 PLACEMENT_ATTEMPTS = 1000
@@ -220,6 +221,7 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         views=build_views(scenario),
         targets=build_targets(scenario),
     )
+    world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
     return world

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["Rollout", "Trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
 
 Flags = NDArray[np.bool_]
+_ROWS = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
+"""Names of the arrays of a trace that have a row for each step."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,15 @@ class Trace:
 
     def __len__(self) -> int:
         return len(self.step)
+
+    def until(self, step: int) -> Trace:
+        """The rows up to a step."""
+        rows = int(np.searchsorted(self.step, step, side="right"))
+        if rows == len(self):
+            return self
+        kept = {name: getattr(self, name)[:rows] for name in _ROWS}
+        ranges = {key: values[:rows] for key, values in self.ranges.items()}
+        return replace(self, **kept, ranges=ranges)
 
 
 def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
@@ -137,10 +148,7 @@ def join_traces(parts: Sequence[Trace]) -> Trace:
     if len(parts) == 1:
         return parts[0]
     first = parts[0]
-    stacked = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
-    }
+    stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ROWS}
     ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
     return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time)
 

@@ -30,6 +30,7 @@ void bind_world(nb::module_& m) {
       .def_ro("objects", &World::objects)
       .def_ro("step_time", &World::step_time)
       .def_rw("collision_mode", &World::collision_mode)
+      .def_rw("after_arrival", &World::after_arrival)
       .def_rw("extent", &World::extent)
       .def_ro("beams_per_world", &World::beams_per_world)
       .def_ro("velocities_per_world", &World::velocities_per_world)

@@ -26,6 +26,12 @@ void note_standings(const World& world, State& state, int w) {
   }
 }
 
+/// Whether an object has arrived for good: a robot with nowhere else to go, where the world says so.
+bool is_settled(const World& world, const State& state, int row, int object) {
+  return world.after_arrival != kUnlatched && state.arrived[row] && world.is_robot[object] && !world.wander[object] &&
+         !world.loop[object];
+}
+
 }  // namespace
 
 void arrive(const World& world, State& state, int w) {
@@ -37,6 +43,10 @@ void arrive(const World& world, State& state, int w) {
       continue;
     }
     const Pose& pose = state.pose[row];
+    if (is_settled(world, state, row, i)) {
+      if (world.after_arrival == kFreeze) state.stopped[row] = 1;
+      continue;
+    }
     if (!at_goal(world, i, pose, state.goal[row])) {
       state.arrived[row] = 0;
       continue;
@@ -50,6 +60,7 @@ void arrive(const World& world, State& state, int w) {
     } else {
       if (!state.arrived[row]) state.log(world, w, EventKind::arrival, i, -1, pose.position());
       state.arrived[row] = 1;
+      if (world.after_arrival == kFreeze && is_settled(world, state, row, i)) state.stopped[row] = 1;
     }
   }
   if (state.keep_history) note_standings(world, state, w);

@@ -35,6 +35,8 @@ struct Mount {
 };
 
 enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
+/// What a robot does at its last goal: it counts as arrived only while it is there, it stands still, it arrives for good.
+enum AfterArrival { kUnlatched = 0, kFreeze = 1, kYield = 2 };
 
 /// What contacts need to know about an object besides its shape.
 struct BodyDynamics {
@@ -57,6 +59,7 @@ struct World {
 
   double step_time;                // [s]
   int collision_mode;              // CollisionMode
+  int after_arrival = 0;           // AfterArrival
   double gravity;                  // [m/s^2]
   std::array<double, 4> extent{};  // x0, y0, x1, y1 [m]: paths are planned within this box
   int copies;
