@@ -18,8 +18,9 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 class EventRecord(Result):
     """Something that happened in an episode."""
 
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path."""
+    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
+    object passes its goal within ``goal_threshold`` between two steps without arriving."""
     time: float
     """Simulated time [s]."""
     step: int

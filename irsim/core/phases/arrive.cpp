@@ -1,4 +1,5 @@
 // Arrival at goals and waypoints.
+#include "geometry/predicates.hpp"
 #include "phases.hpp"
 
 namespace irsim {
@@ -9,6 +10,14 @@ bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal)
   const bool with_heading = world.state_arrival[object] && !std::isnan(goal.theta);
   const double turn = with_heading ? wrap(pose.theta - goal.theta) : 0.0;
   return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
+}
+
+/// Whether an object passed its goal in this step without being at it at the beginning or the end.
+bool overshoots(const World& world, const State& state, int row, int object, const Goal& goal) {
+  if (world.is_static[object] || world.state_arrival[object] || state.overshot[row]) return false;
+  const Vec2 from = state.before[row], to = state.pose[row].position(), at = goal.position();
+  const double threshold = world.goal_threshold[object];
+  return norm(from - at) >= threshold && norm(nearest_on_segment(from, to, at) - at) < threshold;
 }
 
 }  // namespace
@@ -23,6 +32,10 @@ void arrive(const World& world, State& state, int w) {
     }
     const Pose& pose = state.pose[row];
     if (!at_goal(world, i, pose, state.goal[row])) {
+      if (!state.arrived[row] && overshoots(world, state, row, i, state.goal[row])) {
+        state.log(world, w, EventKind::overshoot, i, -1, pose.position());
+        state.overshot[row] = 1;
+      }
       state.arrived[row] = 0;
       continue;
     }
@@ -37,6 +50,7 @@ void arrive(const World& world, State& state, int w) {
       state.arrived[row] = 1;
     }
   }
+  for (int row = first; row < first + world.objects; ++row) state.before[row] = state.pose[row].position();
 }
 
 }  // namespace irsim

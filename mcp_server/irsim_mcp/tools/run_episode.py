@@ -63,7 +63,7 @@ class Event(BaseModel):
 
     time: float
     step: int
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
     object: str
     partner: str | None = None
     x: float
