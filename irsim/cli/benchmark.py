@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
+from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -53,6 +53,7 @@ def benchmark(
     seeds: Annotated[
         str, typer.Option(metavar="N|LIST", help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7.")
     ] = "10",
+    perturb: Perturb = None,
     steps: Steps = None,
     json_output: Json = False,
     csv_output: Annotated[
@@ -87,6 +88,7 @@ def benchmark(
             files,
             split_behaviors(behaviors),
             seeds,
+            perturb=perturb,
             steps=steps,
             strict=strict,
             imports=imports or (),
@@ -128,6 +130,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
         table.add_column(heading, justify="right", no_wrap=True)
     labels, behaviors = _labels(result.scenarios), labels_of(result.behaviors)
+    if result.incidents:
+        out.print(f"{clean('; '.join(result.incidents), 400)}")
     last = None
     for row in result.rows:
         if last not in (None, row.scenario):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.incidents import contacts_message, find_human_contacts, find_jumps, jumps_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -58,10 +59,14 @@ def summary_message(
         parts.append(hit)
     if out := exits_message(env.scenario, left):
         parts.append(out)
+    if jumps := jumps_message(find_jumps(events)):
+        parts.append(jumps)
     if gone := _departures_message(env, robots):
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
+    if touched := contacts_message(find_human_contacts(env.scenario.objects, events), brief=bool(held)):
+        parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
@@ -177,6 +182,9 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
+    if env.simulation.waits(view.row):
+        start = float(env.simulation.start_step[view.row]) * env.step_time
+        return f"still waits {place} (its start is delayed to {seconds(start)})"
     if speed >= standing:
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"
