@@ -838,4 +838,6 @@ def nearest_points(
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""
 
-STREAMS: dict[str, int]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation
+STREAMS: dict[
+    str, int
+]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation

@@ -9,7 +9,6 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
 
-from irsim.benchmarks.incidents import CROWDED
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
@@ -20,6 +19,7 @@ from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
+from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.perturbation import perturbed, read_perturbations
@@ -159,7 +159,9 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
         "failures": _failures(measured),
         "human_contacts": len(find_human_contacts(env.scenario.objects, events)),
-        "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][:_MAX_NAMES],
+        "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][
+            :_MAX_NAMES
+        ],
         "jumped": list(find_jumps(events))[:_MAX_NAMES],
         "metrics": measured.episode,
     }

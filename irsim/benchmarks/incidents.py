@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 from irsim.common.text import listed
 from irsim.results.benchmark import EpisodeRow
+from irsim.results.labels import CROWDED
 
-__all__ = ["CROWDED", "incident_counts", "incident_messages", "placed"]
+__all__ = ["incident_counts", "incident_messages", "placed"]
 
-CROWDED = "placement-crowded"
-"""Outcome of an episode whose seed leaves no room for an object."""
 _MAX_SEEDS = 5
 """Number of seeds that a message lists."""
 
@@ -51,8 +50,7 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})
         if crowded:
             where = f" of {name}" if len({episode.scenario for episode in episodes}) > 1 else ""
-            seeds = f"{len(crowded)} of {len({episode.seed for episode in mine})} seeds{where}"
-            found.append(
-                f"{seeds} had no room and do not count ({CROWDED}): {listed([str(seed) for seed in crowded], _MAX_SEEDS)}"
-            )
+            count = f"{len(crowded)} of {len({episode.seed for episode in mine})} seeds{where}"
+            seeds = listed([str(seed) for seed in crowded], _MAX_SEEDS)
+            found.append(f"{count} had no room and do not count ({CROWDED}): {seeds}")
     return found

@@ -100,13 +100,13 @@ def read_perturbations(given: Any) -> tuple[Perturbation, ...]:
 
     Args:
         given: None, one perturbation, or several: a :class:`Perturbation`, a mapping with its keys, or text as on the
-            command line (``position=0.1,heading=10deg,objects=scout,people``, or a mapping in YAML).
+            command line: ``position=0.1,heading=10deg; delay=2,objects=scout,people``, or a mapping in YAML.
 
     Raises:
         BenchmarkError: ``given`` is none of these; the message has everything that is wrong.
     """
     one = given is None or isinstance(given, (str, Mapping, Perturbation)) or not isinstance(given, Iterable)
-    listed_items = [] if given is None else [given] if one else list(given)
+    listed_items = [part for item in ([] if given is None else [given] if one else given) for part in _parts(item)]
     found, problems = list[Perturbation](), list[str]()
     for number, item in enumerate(listed_items):
         made, wrong = _read_one(item)
@@ -125,7 +125,9 @@ def perturbation_text(perturbation: Perturbation) -> str:
     objects: list[str] = given.pop("objects", [])
     spreads = {key: f"{value:.{_DIGITS}g}" for key, value in given.items()}
     if any(not _is_plain(name) for name in objects):
-        return "{" + ", ".join(f"{key}: {value}" for key, value in spreads.items()) + f", objects: {yaml_flow(objects)}}}"
+        return (
+            "{" + ", ".join(f"{key}: {value}" for key, value in spreads.items()) + f", objects: {yaml_flow(objects)}}}"
+        )
     words = [f"{key}={value}" for key, value in spreads.items()]
     return ",".join([*words, *([f"objects={','.join(objects)}"] if objects else [])])
 
@@ -149,7 +151,9 @@ def perturbed(scenario: ResolvedScenario, perturbations: Sequence[Perturbation])
     if wanted and all(record.spreads is None for record in objects):
         why = "the chosen objects have no drive, never move, or are placed at random"
         raise BenchmarkError(
-            f"there is nothing to perturb in {clean(scenario.name)!r}: {why}", "choose other spreads or objects", "perturb"
+            f"there is nothing to perturb in {clean(scenario.name)!r}: {why}",
+            "choose other spreads or objects",
+            "perturb",
         )
     return replace(scenario, objects=objects)
 
@@ -166,6 +170,13 @@ def perturbed_message(scenario: ResolvedScenario) -> list[str]:
         parts = [_PARTS[key].format(value) for key, value in values.items() if value]
         found.append(f"{', '.join(parts)} of {listed([repr(clean(name, 40)) for name in names], _MAX_NAMED)}")
     return found
+
+
+def _parts(item: Any) -> list[Any]:
+    """The perturbations in a text that may hold several; anything else as it is."""
+    if not isinstance(item, str) or item.strip().startswith("{"):
+        return [item]
+    return [part.strip() for part in item.split(";")]
 
 
 def _read_one(item: Any) -> tuple[Perturbation | None, list[str]]:
@@ -193,7 +204,7 @@ def _read_text(text: str) -> tuple[dict[str, Any] | None, list[str]]:
 
         document = load_text(text)
         data = document.data
-        return (None, [f"{as_given(text)} is not a mapping"]) if document.problems else (data, [])  # type: ignore[return-value]
+        return (None, [f"{as_given(text)} is not a mapping"]) if document.problems else (data, [])
     found: dict[str, Any] = {}
     problems = []
     last = None
@@ -225,7 +236,7 @@ def _problem(error: Any, keys: Mapping[Any, Any]) -> str:
 
 def _is_plain(name: str) -> bool:
     """Whether a name can be a word of ``objects=…``."""
-    return bool(name) and name == name.strip() and not any(mark in name for mark in ",={") and name.isprintable()
+    return bool(name) and name == name.strip() and not any(mark in name for mark in ",;={") and name.isprintable()
 
 
 def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbation]) -> None:
@@ -239,7 +250,9 @@ def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbatio
     words = listed([repr(clean(word, 40)) for word in unknown], _MAX_NAMED)
     raise BenchmarkError(
         f"no object of {clean(scenario.name)!r} has the name, tag or role {words}",
-        f"did you mean {clean(near, 40)}?" if near else f"give one of {listed([clean(word, 40) for word in known], 10)}",
+        f"did you mean {clean(near, 40)}?"
+        if near
+        else f"give one of {listed([clean(word, 40) for word in known], 10)}",
         "perturb",
     )
 
