@@ -18,7 +18,7 @@ pytestmark = pytest.mark.anyio
 
 async def test_a_perturbed_benchmark_and_one_of_its_episodes(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (workspace / "crossing.yaml").write_text(CROSSING)
-    spreads = "position=0.5; speed=10%,delay=3,objects=walker"
+    spreads = "position=0.5; speed=10%,delay=1,objects=walker"
     async with connected(workspace) as client:
         arguments = {"scenarios": ["crossing.yaml"], "seeds": 6, "perturb": spreads}
         result = await client.call_tool("benchmark", arguments)
@@ -30,7 +30,7 @@ async def test_a_perturbed_benchmark_and_one_of_its_episodes(workspace: Path, mo
         assert len(found["rows"][0]["success"]) == 3  # random, so with an interval
         assert any(note.startswith("perturbed, drawn uniformly for each seed: start ±0.5 m") for note in found["notes"])
         assert "Note: perturbed" in told
-        assert "--seeds 6 --perturb position=0.5 --perturb speed=0.1,delay=3,objects=walker" in found["reproduce"]
+        assert "--seeds 6 --perturb position=0.5 --perturb speed=0.1,delay=1,objects=walker" in found["reproduce"]
         call = re.search(r"run_episode scenario_path='crossing.yaml' seed=(\d) perturb='([^']+)' \(collision\)", told)
         assert call is not None
         again = await client.call_tool(
