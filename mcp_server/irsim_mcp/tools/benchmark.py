@@ -254,7 +254,8 @@ def _text(found: Benchmark) -> str:
     for row in found.rows:
         values = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
         values += [f"failed: {row['failed']}"] if "failed" in row else []
-        values += [f"{name} {count}" for name, count in row.get("incidents", {}).items()]
+        if incidents := row.get("incidents"):
+            values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:
