@@ -12,10 +12,11 @@ bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal)
   return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
 }
 
-/// Whether an object passed its goal in this step without being at it at the beginning or the end.
-bool overshoots(const World& world, const State& state, int row, int object, const Goal& goal) {
+/// Whether an object that came from `from`, and is not at its goal, passed it in this step and was not at it before.
+bool overshoots(const World& world, const State& state, int row, int object, Vec2 from) {
+  const Vec2 to = state.pose[row].position(), at = state.goal[row].position();
+  if (dot(at - to, to - from) >= 0.0) return false;  // it is still ahead
   if (world.is_static[object] || world.state_arrival[object] || state.overshot[row]) return false;
-  const Vec2 from = state.before[row], to = state.pose[row].position(), at = goal.position();
   const double threshold = world.goal_threshold[object];
   return norm(from - at) >= threshold && norm(nearest_on_segment(from, to, at) - at) < threshold;
 }
@@ -26,13 +27,15 @@ void arrive(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;
+    const Vec2 from = state.before[row];
+    state.before[row] = state.pose[row].position();
     if (std::isnan(state.goal[row].x)) {
       state.arrived[row] = 0;
       continue;
     }
     const Pose& pose = state.pose[row];
     if (!at_goal(world, i, pose, state.goal[row])) {
-      if (!state.arrived[row] && overshoots(world, state, row, i, state.goal[row])) {
+      if (!state.arrived[row] && overshoots(world, state, row, i, from)) {
         state.log(world, w, EventKind::overshoot, i, -1, pose.position());
         state.overshot[row] = 1;
       }
@@ -50,7 +53,6 @@ void arrive(const World& world, State& state, int w) {
       state.arrived[row] = 1;
     }
   }
-  for (int row = first; row < first + world.objects; ++row) state.before[row] = state.pose[row].position();
 }
 
 }  // namespace irsim
