@@ -1,4 +1,4 @@
-"""Prove a grader with a fault: ``python -m tests.evals.faulty FILE OLD NEW CASE…`` prints how many verdicts are wrong.
+"""Prove a grader with a fault: ``python -m tests.evals.faulty FILE OLD NEW CASE…`` prints the first wrong verdict.
 
 The fault is put in while the module is imported; no file changes.
 """
@@ -6,13 +6,12 @@ The fault is put in while the module is imported; no file changes.
 from __future__ import annotations
 
 import importlib.util
-import json
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections import Counter
+from dataclasses import replace
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
-from typing import Any
 
 
 class _Fault(MetaPathFinder, Loader):
@@ -40,16 +39,24 @@ class _Fault(MetaPathFinder, Loader):
 
 
 def main(file: str, old: str, new: str, *cases: str) -> None:
-    """Prove the cases with the fault; print what is wrong as JSON."""
+    """Try the cases with the fault until a verdict is wrong; print it, or nothing."""
     sys.meta_path.insert(0, _Fault(f"irsim_evals.{file.removesuffix('.py').replace('/', '.')}", old, new))
-    from irsim_evals.proof.prove import prove
+    from irsim_evals.grader.outcome import NOT_REACHED
+    from irsim_evals.proof.prove import tried
+    from irsim_evals.proof.trials import trials_of
 
-    def here(work: Callable[..., Any], jobs: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-        return (work(trial, False) for trial, _ in jobs)
-
-    proof = prove(list(cases), runner=here)
-    wrong = [f"{t.case}/{t.gold} {t.kind}, {t.operator}: {t.what}" for t, _ in proof.wrong]
-    print(json.dumps({"accepted": proof.false_accepts[0], "rejected": proof.false_rejects[0], "wrong": wrong[:5]}))
+    for trial in (trial for case in cases for trial in trials_of(case, Counter())):
+        result = tried(trial, False)
+        if result is None:
+            continue
+        kind, verdict, second = result
+        right = replace(trial, kind=kind).right
+        told = {o["assertion"]: o["passed"] for o in verdict["outcomes"] if o["observed"] != NOT_REACHED}
+        other = [name for name, passed in second.items() if name in told and told[name] != passed]
+        if verdict["strict"] != right or other:
+            what = "disagreed" if verdict["strict"] == right else "rejected" if right else "accepted"
+            print(f"{what}: {trial.case}/{trial.gold} {kind}, {trial.operator}: {trial.what}")
+            return
 
 
 if __name__ == "__main__":
