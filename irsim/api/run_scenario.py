@@ -26,7 +26,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.perturbation import perturbation_text, perturbed, read_perturbations
+from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.validation.validate import diff, fix, validate
 
 __all__ = [
@@ -50,7 +50,7 @@ def run(
     steps: int | None = None,
     strict: bool = False,
     behavior: str | Mapping[str, Any] | None = None,
-    perturb: Any = None,
+    perturb: Perturbations | None = None,
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,

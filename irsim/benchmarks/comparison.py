@@ -33,7 +33,13 @@ from irsim.scenario.behavior_override import (
     parse_behavior,
 )
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
-from irsim.scenario.perturbation import perturbation_text, perturbed, perturbed_message, read_perturbations
+from irsim.scenario.perturbation import (
+    Perturbations,
+    perturbation_text,
+    perturbed,
+    perturbed_message,
+    read_perturbations,
+)
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
@@ -55,7 +61,7 @@ def benchmark(
     behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
     seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
     *,
-    perturb: Any = None,
+    perturb: Perturbations | None = None,
     steps: int | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
-from irsim.episodes.incidents import find_human_contacts, find_jumps
+from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import find_exits
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
@@ -140,8 +140,8 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     simulation = env.simulation
     trace = record(simulation, horizon)
     steps = int(simulation.count[0])
-    events = env.events
-    measured = episode_metrics(trace, simulation, events, ways=ways)
+    events, records = env.events, env.scenario.objects
+    measured, incidents = episode_metrics(trace, simulation, events, ways=ways), find_incidents(records, events)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)
     env.end(ending_time=0.0)
     robots = measured.robots
@@ -158,11 +158,11 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         "robots": len(robots),
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
         "failures": _failures(measured),
-        "human_contacts": len(find_human_contacts(env.scenario.objects, events)),
+        "human_contacts": len(incidents.human_contacts),
         "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][
             :_MAX_NAMES
         ],
-        "jumped": list(find_jumps(events))[:_MAX_NAMES],
+        "jumped": list(incidents.jumps)[:_MAX_NAMES],
         "metrics": measured.episode,
     }
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
-from irsim.episodes.incidents import contacts_message, find_human_contacts, find_jumps, jumps_message
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -52,6 +52,7 @@ def summary_message(
     held: dict[str, Event],
     events: Sequence[Event],
     left: Sequence[Left],
+    incidents: Incidents,
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
@@ -59,13 +60,13 @@ def summary_message(
         parts.append(hit)
     if out := exits_message(env.scenario, left):
         parts.append(out)
-    if jumps := jumps_message(find_jumps(events)):
+    if jumps := jumps_message(incidents.jumps):
         parts.append(jumps)
     if gone := _departures_message(env, robots):
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
-    if touched := contacts_message(find_human_contacts(env.scenario.objects, events), brief=bool(held)):
+    if touched := contacts_message(incidents.human_contacts, brief=bool(held)):
         parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)

@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from irsim.common.text import quoted, seconds
 from irsim.metrics.roles import HUMAN, kinds_of
 from irsim.scenario.resolve.resolved import ObjectRecord
 from irsim.simulation.events import Event
 
-__all__ = ["contacts_message", "find_human_contacts", "find_jumps", "jumps_message"]
+__all__ = ["Incidents", "contacts_message", "find_incidents", "jumps_message"]
 
 
-def find_human_contacts(records: Sequence[ObjectRecord], events: Sequence[Event]) -> list[Event]:
-    """Find the contacts that began between two humans (:func:`irsim.metrics.roles.kinds_of`).
+class Incidents(NamedTuple):
+    """What happened in an episode besides outcomes.
+
+    Attributes:
+        human_contacts: Events of the contacts that began between two humans (:func:`irsim.metrics.roles.kinds_of`).
+        jumps: Name of each object that jumped over a goal and has not reached one since -> its last event
+            ``overshoot``, in order of time.
+    """
+
+    human_contacts: list[Event]
+    jumps: dict[str, Event]
+
+
+def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> Incidents:
+    """Find what happened besides outcomes.
 
     Args:
         records: Objects of the scenario.
@@ -21,26 +35,16 @@ def find_human_contacts(records: Sequence[ObjectRecord], events: Sequence[Event]
     """
     kinds = kinds_of(records)
     humans = {record.name for record, kind in zip(records, kinds, strict=True) if kind == HUMAN}
-    return [event for event in events if event.kind == "collision" and humans >= {event.object, event.partner}]
-
-
-def find_jumps(events: Sequence[Event]) -> dict[str, Event]:
-    """Find the objects that jumped over a goal and have not reached it since.
-
-    Args:
-        events: Events of the episode.
-
-    Returns:
-        Name of each object -> its last event ``overshoot``, in order of time.
-    """
-    jumps: dict[str, Event] = {}
+    found = Incidents([], {})
     for event in events:
-        if event.kind == "overshoot":
-            jumps.pop(event.object, None)
-            jumps[event.object] = event
-        elif event.kind in ("arrival", "waypoint"):
-            jumps.pop(event.object, None)
-    return jumps
+        if event.kind == "collision":
+            if event.object in humans and event.partner in humans:
+                found.human_contacts.append(event)
+        elif event.kind != "no_path":
+            found.jumps.pop(event.object, None)
+            if event.kind == "overshoot":
+                found.jumps[event.object] = event
+    return found
 
 
 def contacts_message(contacts: Sequence[Event], *, brief: bool) -> str | None:

@@ -22,7 +22,7 @@ from irsim.scenario.messages.number_text import read_number
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario, Spreads
 from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["Perturbation", "perturbation_text", "perturbed", "perturbed_message", "read_perturbations"]
+__all__ = ["Perturbation", "Perturbations", "perturbation_text", "perturbed", "perturbed_message", "read_perturbations"]
 
 _ROLES = ("robot", "obstacle")
 _MAX_NAMED = 3
@@ -73,12 +73,14 @@ class Perturbation(Options):
     """Largest change of all speeds, either way, as a share: limits of forward and sideways speed, and the speeds in
     the options of behaviors."""
     delay: Annotated[Seconds, Field(ge=0), _WithUnit("s"), AfterValidator(_rounded)] | None = None
-    """Longest time for which an object stands still at its start; the shortest is 0."""
+    """Longest time for which an object stands still at its start; the shortest is 0. The clock runs meanwhile."""
     objects: Annotated[list[str], Field(min_length=1)] | None = None
     """Names, tags and roles (`robot`, `obstacle`) of the objects; null is all. Objects that never move take part only
     if their name or tag is given."""
 
 
+Perturbations = str | Mapping[str, Any] | Perturbation | Sequence[str | Mapping[str, Any] | Perturbation]
+"""What :func:`read_perturbations` reads."""
 _SPREADS = ("position", "heading", "speed", "delay")
 _ALLOWED = {
     "position": "a number ≥ 0 [m]",
@@ -95,7 +97,7 @@ _PARTS = {
 }
 
 
-def read_perturbations(given: Any) -> tuple[Perturbation, ...]:
+def read_perturbations(given: Perturbations | None) -> tuple[Perturbation, ...]:
     """Read perturbations; of two that give the same spread to an object, the later one counts.
 
     Args:
