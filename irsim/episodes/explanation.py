@@ -66,7 +66,8 @@ def summary_message(
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
-    if touched := contacts_message(incidents.human_contacts, brief=bool(held)):
+    said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
+    if touched := contacts_message(incidents.human_contacts, brief=said):
         parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)

@@ -53,6 +53,17 @@ def test_contacts_between_people_are_in_the_summary_of_a_run() -> None:
     )
 
 
+def test_the_first_contact_is_said_once() -> None:
+    """Robots can be people, too: their collisions are in the summary already."""
+    both = (PEOPLE % "stop").replace("goal: [3, 1]", "goal: [9, 1], tags: [pedestrian]")
+    found = irsim.run(
+        text=both.replace("state: [2, 5, 0]", "state: [9, 1, 3.14]").replace("goal: [9, 5]", "goal: [1, 1]")
+    )
+    assert found.human_contacts == 1
+    assert found.summary.count("hit 'ann' at") == 1
+    assert "; 1 contact between people" in found.summary
+
+
 def test_robots_that_left_or_jumped_are_in_the_summary_of_a_run() -> None:
     found = irsim.run(text=AWAY)
     assert [item.name for item in found.left] == ["stray"]
