@@ -37,6 +37,10 @@ TOOLS: dict[str, Code] = {
     "import-failed": Code(
         "module cannot be imported", "A module named by --import raised an error; the message has it."
     ),
+    "missing-extra": Code(
+        "library not installed",
+        "This needs a library that irsim does not install by itself; the message has the command that installs it.",
+    ),
     "behavior-failed": Code(
         "behavior in Python failed",
         "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
