@@ -6,7 +6,22 @@ from typing import Annotated
 
 import typer
 
-from irsim.cli import benchmark, demo, describe, diff, inspect, new, render, replay, run, schema, templates, validate
+from irsim.cli import (
+    benchmark,
+    demo,
+    describe,
+    diff,
+    diff_runs,
+    export,
+    inspect,
+    new,
+    render,
+    replay,
+    run,
+    schema,
+    templates,
+    validate,
+)
 from irsim.cli.guard import handle_errors
 from irsim.cli.map import map_app
 from irsim.cli.skills import skills_app
@@ -49,12 +64,14 @@ for _command in (
     diff.diff,
     run.run,
     inspect.inspect,
+    diff_runs.diff_runs,
     replay.replay,
+    export.export,
     benchmark.benchmark,
     render.render,
     describe.describe,
     schema.schema,
 ):
-    app.command()(handle_errors(_command))
+    app.command(_command.__name__.replace("_", "-"))(handle_errors(_command))
 app.add_typer(map_app)
 app.add_typer(skills_app)

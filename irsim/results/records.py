@@ -47,13 +47,15 @@ class Parting(Result):
     """Name of the object."""
     quantity: str
     """``x``, ``y``, ``heading``, ``control_0``, …, ``goal_x``, ``goal_y``, ``goal_heading``, ``arrived``, ``collided``,
-    ``stopped``, or ``ranges_0[17]``: beam 17 of its first lidar."""
+    ``stopped``, or ``ranges_0[17]``: of its first lidar, beam 17 is the first one that differs."""
     before: float | bool | None
-    """Value in the first run; None where there is no number, such as a goal."""
+    """Value in the first run; None where there is no number: no goal, or nothing hit."""
     after: float | bool | None
     """Value in the second run."""
     difference: float | None
     """``after - before``, of headings the smaller way around; None without two numbers."""
+    beams: int | None = None
+    """Number of beams of the lidar that differ; None for other quantities."""
 
 
 class RunsDiff(Result):

@@ -15,7 +15,17 @@ from irsim.common.arrays import Floats
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Rollout", "Trace", "cut_trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
+__all__ = [
+    "Rollout",
+    "Trace",
+    "cut_trace",
+    "join_traces",
+    "next_rows",
+    "present_row",
+    "record",
+    "record_rollout",
+    "sensors",
+]
 
 Flags = NDArray[np.bool_]
 _BY_ROW = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")

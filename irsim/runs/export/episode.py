@@ -47,9 +47,14 @@ class Actor:
         return str(self.facts["role"])
 
     @property
+    def can_move(self) -> bool:
+        """Whether it has a drive and may use it."""
+        return self.drive is not None and not self.facts["static"]
+
+    @property
     def has_goal(self) -> bool:
-        """Whether it has a goal at the start."""
-        return bool(self.facts["goals"])
+        """Whether it has a goal at the start; that of an obstacle which cannot move is only a default."""
+        return bool(self.facts["goals"]) and (self.role == "robot" or self.can_move)
 
     @property
     def goes_on(self) -> bool:
@@ -199,6 +204,7 @@ class Episode:
         rows = min(_MAX_BLOCK_ROWS, max(2, _BLOCK_NUMBERS // max(1, width)))
         before: Floats | None = None
         chosen = [actor.index for actor in self.actors]
+        aimless = [column for column, actor in enumerate(self.actors) if not actor.has_goal]
         for trace in self.run.blocks(rows, chosen, scans=scans and self.with_ranges):
             led = np.concatenate([trace.pose[:1] if before is None else before, trace.pose[:-1]])
             velocity = (trace.pose - led) / trace.step_time
@@ -206,6 +212,7 @@ class Episode:
             if before is None:
                 velocity[0] = math.nan
             before = trace.pose[-1:].copy()
+            trace.goal[:, aimless] = math.nan
             yield Block(trace, velocity, led[:, :, 2])
             self.progress(len(trace))
 

@@ -135,9 +135,9 @@ def _triangles(rings: list[Floats]) -> Floats:
     """(3 K, 2) corners of K triangles that fill a region, whose outlines run counter-clockwise and holes clockwise."""
     import shapely
 
-    parts = [shapely.Polygon(ring) for ring in rings]
-    outlines = [part for part in parts if part.exterior.is_ccw]
-    holes = [part for part in parts if not part.exterior.is_ccw]
+    areas = [shapely.Polygon(ring) for ring in rings]
+    outlines = [area for area in areas if area.exterior.is_ccw]
+    holes = [area for area in areas if not area.exterior.is_ccw]
     region = shapely.union_all(outlines).difference(shapely.union_all(holes))
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
-    return np.concatenate([shapely.get_coordinates(part)[:3] for part in parts])
+    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(region))
+    return np.concatenate([shapely.get_coordinates(triangle)[:3] for triangle in triangles])

@@ -111,13 +111,13 @@ def _learners(episodes: Sequence[Episode]) -> tuple[list[_Learner], list[str]]:
         for column, actor in enumerate(episode.actors):
             if actor.role != "robot":
                 continue
-            if not actor.has_goal or not actor.controls:
-                notes.append(f"'{actor.name}' of run {episode.run.id} was left out: it has no goal or no drive")
+            if not actor.has_goal or not actor.can_move:
+                notes.append(f"'{actor.name}' of run {episode.run.id} was left out: it has no goal or cannot move")
                 continue
             scans = [(lidar.key, lidar.limits[1]) for lidar in episode.lidars if lidar.actor == column]
             learners.append(_Learner(episode, actor, column, scans))
     if not learners:
-        raise RunError("bad-argument", "no robot has a goal and a drive", "choose robots that have both")
+        raise RunError("bad-argument", "no robot has a goal and can move", "choose robots that do")
     return learners, notes
 
 
@@ -129,7 +129,7 @@ def _spaces(learners: Sequence[_Learner]) -> tuple[Any, Any]:
     """
     from gymnasium.spaces import Box, Dict
 
-    kinds = {}
+    kinds: dict[tuple[Any, Any], _Learner] = {}
     for learner in learners:
         beams = [lidar.beams for lidar in learner.run.lidars if lidar.actor == learner.column]
         kinds.setdefault((tuple(learner.actor.controls), tuple(beams)), learner)
@@ -138,7 +138,7 @@ def _spaces(learners: Sequence[_Learner]) -> tuple[Any, Any]:
         what = f"'{first.actor.name}' and '{second.actor.name}' have different controls or lidars"
         raise RunError("bad-argument", what, "name robots of one kind with --objects", where="objects")
     [(_, beams)] = kinds
-    parts = {
+    parts: dict[str, Any] = {
         "pose": Box(-_MAX, _MAX, (3,), np.float64),
         "velocity": Box(-_MAX, _MAX, (3,), np.float64),
         "goal": Box(-_MAX, _MAX, (3,), np.float64),
