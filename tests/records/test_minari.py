@@ -119,7 +119,7 @@ robot:
     kinematics: {name: diff}
     state: [3, 3, 0]
     behavior: {name: dash, wander: true, range_low: [2, 2, -3.14], range_high: [4, 4, 3.14]}
-  - {name: far, shape: {name: circle, radius: 0.2}, kinematics: {name: diff}, vel_max: [0, 0], state: [1, 1, 0], goal: [5, 1, 0]}
+  - {name: far, shape: {name: circle, radius: 0.2}, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0]}
 """
     run = open_run(str(irsim.run(text=text, seed=1, steps=400, record=True).run_id))
     arrivals = [event.step for event in run.events if event.kind == "arrival"]

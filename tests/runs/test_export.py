@@ -194,7 +194,7 @@ def test_what_cannot_be_written_leaves_nothing(traffic: Run, monkeypatch: pytest
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("irsim.runs.export.formats.csv._texts", full)
-    with pytest.raises(RunError, match="'run.csv' cannot be written: No space left on device"):
+    with pytest.raises(RunError, match=r"'run\.csv' cannot be written: No space left on device"):
         irsim.export_run(traffic, "run.csv")
     assert sorted(path.name for path in Path().iterdir()) == before
 
