@@ -19,9 +19,10 @@ pytestmark = pytest.mark.records
 
 def decoded(file: str) -> dict[str, list[tuple[float, Any]]]:
     """Time [s] and message of each topic."""
-    reader = pytest.importorskip("mcap_ros2.reader")
+    from mcap_ros2.reader import read_ros2_messages
+
     found = defaultdict(list)
-    for message in reader.read_ros2_messages(file):
+    for message in read_ros2_messages(file):
         found[message.channel.topic].append((message.log_time_ns / 1e9, message.ros_msg))
     return dict(found)
 
@@ -122,10 +123,11 @@ def area(points: list[Any]) -> float:
 
 
 def test_the_file_tells_what_it_shows(hall: Run) -> None:
-    reader = pytest.importorskip("mcap.reader")
+    from mcap.reader import make_reader
+
     irsim.export_run(hall, "run.mcap")
     with open("run.mcap", "rb") as file:
-        bag = reader.make_reader(file)
+        bag = make_reader(file)
         header, summary = bag.get_header(), bag.get_summary()
         [attachment] = bag.iter_attachments()
         [metadata] = bag.iter_metadata()
@@ -143,11 +145,13 @@ def test_the_file_tells_what_it_shows(hall: Run) -> None:
 
 
 def test_messages_are_in_the_order_of_time(hall: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    stream, records = pytest.importorskip("mcap.stream_reader"), pytest.importorskip("mcap.records")
+    from mcap.records import Message
+    from mcap.stream_reader import StreamReader
+
     monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", 700)
     irsim.export_run(hall, "run.mcap")
     with open("run.mcap", "rb") as file:
-        messages = [record for record in stream.StreamReader(file).records if isinstance(record, records.Message)]
+        messages = [record for record in StreamReader(file).records if isinstance(record, Message)]
     times = [message.log_time for message in messages]
     assert len(times) > 500
     assert times == sorted(times)

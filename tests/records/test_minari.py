@@ -19,8 +19,10 @@ pytestmark = pytest.mark.records
 @pytest.fixture
 def minari(monkeypatch: pytest.MonkeyPatch, workspace: Path) -> Any:
     """The library, with datasets in the current directory."""
+    import minari as library
+
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(workspace))
-    return pytest.importorskip("minari")
+    return library
 
 
 def test_an_episode_for_each_robot(hall: Run, minari: Any) -> None:

@@ -16,7 +16,8 @@ pytestmark = pytest.mark.records
 
 
 def test_pandas_reads_what_was_recorded(hall: Run) -> None:
-    pandas = pytest.importorskip("pandas")
+    import pandas
+
     irsim.export_run(hall, "run.parquet")
     frame, trace = pandas.read_parquet("run.parquet"), hall.trace()
     assert len(frame) == 3 * 61
@@ -36,7 +37,8 @@ def test_pandas_reads_what_was_recorded(hall: Run) -> None:
 
 
 def test_duckdb_answers_questions(hall: Run) -> None:
-    duckdb = pytest.importorskip("duckdb")
+    import duckdb
+
     other = open_run(str(irsim.run(text=HALL, seed=4, steps=10, record=True).run_id))
     irsim.export_run([hall, other], "runs.parquet", objects="all")
     trace = hall.trace()
@@ -54,7 +56,8 @@ def test_duckdb_answers_questions(hall: Run) -> None:
 
 
 def test_units_and_scenario_are_in_the_file(hall: Run) -> None:
-    parquet = pytest.importorskip("pyarrow.parquet")
+    from pyarrow import parquet
+
     irsim.export_run(hall, "run.parquet")
     schema = parquet.read_schema("run.parquet")
     units = {field.name: field.metadata[b"unit"].decode() for field in schema}
@@ -73,7 +76,8 @@ def test_units_and_scenario_are_in_the_file(hall: Run) -> None:
 
 
 def test_row_groups_are_small_and_change_nothing(hall: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    parquet = pytest.importorskip("pyarrow.parquet")
+    from pyarrow import parquet
+
     irsim.export_run(hall, "whole.parquet")
     monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", 640)
     irsim.export_run(hall, "parts.parquet")
@@ -84,7 +88,8 @@ def test_row_groups_are_small_and_change_nothing(hall: Run, monkeypatch: pytest.
 
 
 def test_scans_end_where_the_record_has_no_more(workspace: object, monkeypatch: pytest.MonkeyPatch) -> None:
-    pandas = pytest.importorskip("pandas")
+    import pandas
+
     monkeypatch.setattr("irsim.runs.recorder._MAX_SCANS_BYTES", 4 * 16 * 20)
     run = open_run(str(irsim.run(text=HALL, seed=3, steps=60, record=True).run_id))
     result = irsim.export_run(run, "run.parquet")

@@ -1,4 +1,8 @@
-"""``csv``: the table of the format ``parquet`` as text; it needs no library and has no metadata."""
+"""``csv``: the table of the format ``parquet`` as text, which needs no library; without metadata.
+
+Numbers read back exactly, empty cells stand for missing values, and flags are 0 and 1. Ranges are left out unless asked
+for; a scan is then one cell, its ranges separated by spaces.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +20,7 @@ __all__ = ["FORMAT"]
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write one line per row, with numbers that read back exactly; empty cells stand for missing values.
-
-    Flags are 0 and 1. A scan is one cell, its ranges separated by spaces.
-    """
+    """Write one line for each row of the table."""
     columns = columns_of(episodes)
     with open(target, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

@@ -1,4 +1,18 @@
-"""``mcap``: ROS 2 messages, which Foxglove, PlotJuggler and ``ros2 bag play`` show without irsim."""
+"""``mcap``: ROS 2 messages, which Foxglove, PlotJuggler and ``ros2 bag play`` show without irsim.
+
+All stamps are simulated time, the fixed frame is ``world``, and the topics are:
+
+- ``/clock``, and ``/tf`` from ``world`` to ``<name>/base_link`` of each object that moves, in every step
+- ``/<robot>/odom`` (twist in the body frame), ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step; the range of a
+  beam that hit nothing is infinite
+- ``/<robot>/goal`` whenever it changes, and ``/obstacles``, a PoseArray of the moving obstacles, in every step
+- ``/rosout`` with the events
+- once, for those who subscribe later as well: ``/tf_static`` with the mounts of the lidars, ``/markers`` with all
+  bodies, and ``/map``
+
+Names of objects become parts of topics and frames with letters, digits and underscores only. The file has the scenario
+as an attachment, and seed, versions and result as metadata ``irsim``.
+"""
 
 from __future__ import annotations
 
@@ -51,18 +65,7 @@ class _Layout:
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write a run with these topics; all stamps are simulated time, and the fixed frame is ``world``.
-
-    - ``/clock``, and ``/tf`` from ``world`` to ``<name>/base_link`` of each object that moves, in every step
-    - ``/<robot>/odom`` (twist in the body frame), ``/<robot>/scan``, ``/<robot>/scan_1``, … in every step
-    - ``/<robot>/goal`` whenever it changes, and ``/obstacles``, a PoseArray of the moving obstacles, in every step
-    - ``/rosout`` with the events
-    - once, for those who subscribe later as well: ``/tf_static`` with the mounts of the lidars, ``/markers`` with all
-      bodies, and ``/map``
-
-    Names of objects become parts of topics and frames as :func:`ros_names` says. The file has the scenario as an
-    attachment, and seed, versions and result as metadata ``irsim``.
-    """
+    """Write the messages of a run in the order of their stamps."""
     [episode] = episodes
     messages = Messages()
     notes = []

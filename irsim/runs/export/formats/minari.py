@@ -1,4 +1,21 @@
-"""``minari``: a dataset for offline reinforcement learning and imitation, one episode per run and robot."""
+"""``minari``: a dataset for offline reinforcement learning and imitation, one episode for each run and robot.
+
+It is a folder whose name is that of the dataset and ends with a version, such as ``room-v0``. With its parent as
+``MINARI_DATASETS_PATH``, ``minari.load_dataset("room-v0")`` loads it. All robots must have the same controls and
+lidars; robots without a goal are left out. An episode ends when the robot arrives, unless another goal follows
+(``wander``, ``loop``), or when a collision has stopped it (both terminated), or with the record (truncated).
+
+Row t of the observations is the state before action t:
+
+- ``pose``: x, y [m], heading [rad], world frame
+- ``velocity``: forward and leftward velocity [m/s] and yaw rate [rad/s] of the step that led here
+- ``goal``: x ahead and y to the left [m] of the present goal, and its heading [rad], in the frame of the robot
+- ``scan``, with lidars: ranges [m] from right to left, one lidar after the other; the greatest range for a miss
+
+Actions are the controls that the drive executed, in the units of the scenario, after its limits. The reward is 1 for
+arriving, -1 for each contact that begins, else 0. Infos are ``step``, ``time`` [s], the ``goal`` in the world frame,
+and the flags ``arrived``, ``collided`` and ``stopped``. Each episode has run, robot, seed and scenario as metadata.
+"""
 
 from __future__ import annotations
 
@@ -52,22 +69,7 @@ class _Learner:
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write one episode for each run and each robot with a goal, all with the same spaces.
-
-    An episode ends when the robot arrives, unless another goal follows (``wander``, ``loop``), or when a collision has
-    stopped it (both terminated), or with the record (truncated). Row t of the observations is the state before action
-    t:
-
-    - ``pose``: x, y [m], heading [rad], world frame
-    - ``velocity``: forward and leftward velocity [m/s] and yaw rate [rad/s] of the step that led here
-    - ``goal``: x ahead and y to the left [m] of the present goal, and its heading [rad], in the frame of the robot
-    - ``scan``, with lidars: ranges [m] from right to left, one lidar after the other; the greatest range for a miss
-
-    Actions are the controls that the drive executed, in the units of the scenario, after its limits. The reward is 1
-    for arriving, -1 for each contact that begins, else 0. Infos are ``step``, ``time`` [s], the ``goal`` in the world
-    frame, and the flags ``arrived``, ``collided`` and ``stopped``; each episode has run, robot, seed and scenario as
-    metadata.
-    """
+    """Write all episodes, block by block; those of one run side by side."""
     from minari.dataset.minari_storage import MinariStorage
 
     if not _NAME.fullmatch(name):

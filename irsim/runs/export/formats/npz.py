@@ -1,4 +1,9 @@
-"""``npz``: arrays by name for NumPy, with one row per step and one column per object."""
+"""``npz``: arrays by name for NumPy, with one row per step and one column per object.
+
+The arrays are ``step`` and ``time`` (T,), ``pose``, ``velocity``, ``control`` and ``goal`` (T, N, 3), the flags
+``arrived``, ``collided`` and ``stopped`` (T, N), ``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles`` (N,),
+and ``about``, a JSON text with the units, and with the scenario, seed, versions, result and objects of the run.
+"""
 
 from __future__ import annotations
 
@@ -39,12 +44,7 @@ _TRACE: Mapping[str, Callable[[Block], NDArray[Any]]] = {
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write one uncompressed array after the other; the run is read once for each, so that it need not fit in memory.
-
-    The arrays are ``step`` and ``time`` (T,), ``pose``, ``velocity``, ``control`` and ``goal`` (T, N, 3), the flags
-    ``arrived``, ``collided`` and ``stopped`` (T, N), ``ranges/<object>/<number>`` (T, beams), ``names`` and ``roles``
-    (N,), and ``about``, a JSON text with the units and with the scenario, seed and versions of the run.
-    """
+    """Write one array after the other; the run is read once for each, so that it need not fit in memory."""
     [episode] = episodes
     about = {"units": _UNITS, "run": episode.facts}
     whole = {

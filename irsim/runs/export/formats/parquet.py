@@ -1,4 +1,14 @@
-"""``parquet``: a table for pandas, DuckDB, Polars and Spark, with units and scenarios as metadata of the file."""
+"""``parquet``: a table for pandas, DuckDB, Polars and Spark, with one row per step and object.
+
+Its columns are ``run``, ``step``, ``time``, ``name``, ``role``, the pose ``x``, ``y``, ``theta``, the velocity ``vx``,
+``vy``, ``yaw_rate``, ``speed``, the executed controls ``control_0``, …, the present goal ``goal_x``, ``goal_y``,
+``goal_theta``, ``goal_distance``, the flags ``arrived``, ``collided``, ``stopped``, and a list of ranges ``ranges_0``,
+… for each lidar of an object. Numbers that do not exist are null: velocities and controls at the start, goals of
+objects without one, controls that only other drives have, scans that were not recorded.
+
+The metadata of each field are ``unit`` and ``description``; those of the file are ``irsim`` (version that wrote it) and
+``irsim.runs``, a JSON list with the scenario, seed, versions, step time, options, result and objects of each run.
+"""
 
 from __future__ import annotations
 
@@ -18,11 +28,7 @@ __all__ = ["FORMAT"]
 
 
 def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
-    """Write a row group for each part of the table, so that only one part is in memory.
-
-    The metadata of each field are ``unit`` and ``description``; those of the file are ``irsim`` (version that wrote the
-    file) and ``irsim.runs`` (a JSON list with the scenario, seed, step time, options and objects of each run).
-    """
+    """Write a row group for each part of the table, so that only one part is in memory."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
