@@ -19,11 +19,14 @@ pytestmark = pytest.mark.records
 
 def decoded(file: str) -> dict[str, list[tuple[float, Any]]]:
     """Time [s] and message of each topic."""
-    from mcap_ros2.reader import read_ros2_messages
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
 
     found = defaultdict(list)
-    for message in read_ros2_messages(file):
-        found[message.channel.topic].append((message.log_time_ns / 1e9, message.ros_msg))
+    with open(file, "rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for _, channel, message, content in reader.iter_decoded_messages():
+            found[channel.topic].append((message.log_time / 1e9, content))
     return dict(found)
 
 
