@@ -15,11 +15,21 @@ from irsim.common.arrays import Floats
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Rollout", "Trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
+__all__ = [
+    "Rollout",
+    "Trace",
+    "cut_trace",
+    "join_traces",
+    "next_rows",
+    "present_row",
+    "record",
+    "record_rollout",
+    "sensors",
+]
 
 Flags = NDArray[np.bool_]
-_ROWS = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
-"""Names of the arrays of a trace that have a row for each step."""
+_BY_ROW = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
+"""Arrays of a trace that always have one row for each step."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +94,7 @@ class Trace:
         rows = int(np.searchsorted(self.step, step, side="right"))
         if rows == len(self):
             return self
-        kept = {name: getattr(self, name)[:rows] for name in _ROWS}
+        kept = {name: getattr(self, name)[:rows] for name in _BY_ROW}
         ranges = {key: values[:rows] for key, values in self.ranges.items()}
         return replace(self, **kept, ranges=ranges)
 
@@ -148,9 +158,16 @@ def join_traces(parts: Sequence[Trace]) -> Trace:
     if len(parts) == 1:
         return parts[0]
     first = parts[0]
-    stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ROWS}
+    stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _BY_ROW}
     ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
     return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time)
+
+
+def cut_trace(trace: Trace, rows: slice) -> Trace:
+    """Return some rows of a trace as views; its ranges have fewer rows where scans were not recorded to the end."""
+    cut = {name: getattr(trace, name)[rows] for name in _BY_ROW}
+    ranges = {key: block[rows] for key, block in trace.ranges.items()}
+    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time)
 
 
 def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:

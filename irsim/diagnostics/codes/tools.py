@@ -37,6 +37,10 @@ TOOLS: dict[str, Code] = {
     "import-failed": Code(
         "module cannot be imported", "A module named by --import raised an error; the message has it."
     ),
+    "missing-extra": Code(
+        "library not installed",
+        "This needs a library that irsim does not install by itself; the message has the command that installs it.",
+    ),
     "behavior-failed": Code(
         "behavior in Python failed",
         "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
@@ -68,7 +72,7 @@ TOOLS: dict[str, Code] = {
     ),
     "bad-suite": Code(
         "suite cannot be used",
-        "The suite file has keys or values that it may not have, or its scenarios cannot be made; the message lists all.",
+        "The suite file has keys or values that are not allowed, or its scenarios cannot be made; the message lists all.",
     ),
     "unknown-suite": Code(
         "unknown suite", "There is no suite of that name, and no such file; irsim suites lists them."
@@ -79,7 +83,7 @@ TOOLS: dict[str, Code] = {
     ),
     "other-benchmark": Code(
         "folder of another benchmark",
-        "The folder holds a benchmark of other scenarios, policies or seeds, or of another version; results do not mix.",
+        "The folder holds a benchmark of other scenarios, policies, seeds or version; results do not mix.",
     ),
     "no-benchmark": Code("nothing to resume", "The folder holds no benchmark; start one, or name its folder with -o."),
     "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
