@@ -26,7 +26,7 @@ from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
 from irsim.simulation.events import first_collisions, first_events
-from irsim.simulation.trace import record
+from irsim.simulation.trace import cut_trace, record
 
 __all__ = ["Job", "Outcome", "Task", "Until", "run_task", "scenario_of"]
 
@@ -144,7 +144,7 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     trace, events, records = record(simulation, horizon), env.events, env.scenario.objects
     if job.until == "first_collision":
         last = _first_collision(env)
-        trace, events = trace.until(last), [event for event in events if event.step <= last]
+        trace, events = cut_trace(trace, slice(last + 1)), [event for event in events if event.step <= last]
     steps = int(trace.step[-1])
     measured, incidents = episode_metrics(trace, simulation, events, ways=ways), find_incidents(records, events)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)

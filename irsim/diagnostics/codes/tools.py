@@ -72,7 +72,7 @@ TOOLS: dict[str, Code] = {
     ),
     "bad-suite": Code(
         "suite cannot be used",
-        "The suite file has keys or values that are not allowed, or its scenarios cannot be made; the message lists all.",
+        "Keys or values of the suite file are not allowed, or its scenarios cannot be made; the message lists all.",
     ),
     "unknown-suite": Code(
         "unknown suite", "There is no suite of that name, and no such file; irsim suites lists them."
