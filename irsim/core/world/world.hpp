@@ -35,7 +35,8 @@ struct Mount {
 };
 
 enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
-/// What a robot does at its last goal: it counts as arrived only while it is there, it stands still, it arrives for good.
+/// What a robot does at its last goal: it counts as arrived only while it is there, it stands still, it arrives for
+/// good.
 enum AfterArrival { kUnlatched = 0, kFreeze = 1, kYield = 2 };
 
 /// What contacts need to know about an object besides its shape.
