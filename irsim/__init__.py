@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.env.batch import Batch, batch
     from irsim.objects.handlers.registration import register_behavior
+    from irsim.runs.comparison import diff_runs
+    from irsim.runs.export.export import export_run
     from irsim.runs.replay.export import replay
 
     __version__: str
@@ -49,6 +51,8 @@ __all__ = [
     "batch",
     "benchmark",
     "diff",
+    "diff_runs",
+    "export_run",
     "fix",
     "make",
     "register_behavior",

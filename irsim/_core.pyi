@@ -412,6 +412,33 @@ class RandomPlacement:
         attempts: int,
     ) -> None: ...
 
+class Perturbation:
+    """How far start, speeds and departure of an object may differ between scenes: uniform draws within these spreads.
+
+    Starts do not overlap other objects, except those that overlap at the poses of the template, do not leave `extent`,
+    and have no static object between them and the start of the template.
+
+    Args:
+        position: Largest change of x and of y [m].
+        heading: Largest change of the heading [rad].
+        speed: Largest change of the speeds, as a share of them.
+        delay: Longest time for which the object stands still at its start [s].
+        speeds: Controls that are speeds.
+        attempts: Maximum number of draws of a start.
+    """
+
+    def __init__(
+        self,
+        *,
+        object: int,
+        position: float,
+        heading: float,
+        speed: float,
+        delay: float,
+        speeds: Sequence[int],
+        attempts: int,
+    ) -> None: ...
+
 class View:
     """The field of view of an object: a sector of `angle` [rad] about its heading and of `reach` [m].
 
@@ -459,6 +486,7 @@ class World:
         placements: Sequence[RandomPlacement],
         copies: int,
         fog: Fog | None = None,
+        perturbations: Sequence[Perturbation] = (),
         zones: Sequence[Part] = (),
         views: Sequence[View] = (),
         targets: Sequence[int] = (),
@@ -510,6 +538,8 @@ class State:
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
+    pace: Floats  # (R,) factor on the speeds of the object in this scene
+    start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
@@ -540,9 +570,9 @@ class State:
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
         """Events since the last reset except the first `start`: (kind, step, object, partner or -1, x, y).
 
-        The kind is "arrival", "waypoint", "collision", "no_path", "zone_entry", "zone_exit", "crossing_to_right",
-        "crossing_to_left", "sight_start" or "sight_end". Objects are given by their number, zones by their index in
-        place of the partner. Who sees is the object, who is seen is the partner.
+        The kind is "arrival", "waypoint", "collision", "no_path", "overshoot", "zone_entry", "zone_exit",
+        "crossing_to_right", "crossing_to_left", "sight_start" or "sight_end". Objects are given by their number, zones
+        by their index in place of the partner. Who sees is the object, who is seen is the partner.
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) sorted pairs i < j whose closed shapes intersect now, including `unobstructed` ones."""
@@ -846,4 +876,6 @@ def nearest_points(
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""
 
-STREAMS: dict[str, int]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user
+STREAMS: dict[
+    str, int
+]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation

@@ -59,7 +59,7 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     document = scenario.document()
     job = Job(
         text=scenario.text, path=document.path, behavior=one.behavior, steps=plan.steps, strict=plan.strict,
-        imports=tuple(plan.imports), limits=tuple(vars(DEFAULT_LIMITS).items()),
+        imports=tuple(plan.imports), limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb),
     )  # fmt: skip
     env = Env(scenario_of(job), seed=one.seed, display=False, headless=True, log_level="ERROR")
     png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX)
@@ -82,7 +82,7 @@ def _replay(text: str, one: EpisodeRow, plan: Plan, target: Path) -> bool:
         record = Path(place) / "run"
         run(
             text=text, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports, record=record,
-            behavior=None if one.behavior == "as-written" else one.behavior,
+            behavior=None if one.behavior == "as-written" else one.behavior, perturb=plan.perturb or None,
         )  # fmt: skip
         replay(record, target)
     return True

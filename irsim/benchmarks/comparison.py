@@ -33,6 +33,13 @@ from irsim.scenario.behavior_override import (
     parse_behavior,
 )
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.perturbation import (
+    Perturbations,
+    perturbation_text,
+    perturbed,
+    perturbed_message,
+    read_perturbations,
+)
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
@@ -42,7 +49,10 @@ DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
 _SEEDS_PER_TURN = 5
 """Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
-_COPIED = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures", "zones")
+_COPIED = (
+    *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
+    *("human_contacts", "left", "jumped", "zones"),
+)
 """Keys of the result of an episode that its row repeats."""
 
 
@@ -51,6 +61,7 @@ def benchmark(
     behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
     seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
     *,
+    perturb: Perturbations | None = None,
     steps: int | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
@@ -65,6 +76,7 @@ def benchmark(
     """Run every scenario under every behavior with every seed, and compare.
 
     Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+    An episode whose seed leaves no room for an object has the outcome ``placement-crowded`` and counts in no mean.
 
     Args:
         files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result. A
@@ -73,6 +85,10 @@ def benchmark(
             (``{name: orca, timeHorizon: 5}``), or ``as-written`` for those of the scenario. Differences are to the
             first one.
         seeds: The number of seeds (0, 1, 2, …), or the seeds: a list, or text such as ``5-9`` or ``1,4,7``.
+        perturb: What each seed changes, to see whether a scenario still works when things start slightly differently:
+            one or several of a mapping such as ``{"position": 0.1, "heading": 0.2, "speed": 0.1, "delay": 2}``, text
+            as on the command line (``position=0.1,heading=10deg,objects=scout``), or a
+            :class:`irsim.scenario.perturbation.Perturbation`, which describes the keys. Draws are uniform.
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first, for behaviors that they register.
@@ -90,13 +106,14 @@ def benchmark(
         ScenarioError: A scenario has errors, perhaps only with one of the behaviors; ScenarioNotFoundError: there is no
             such file.
         OverLimitError: More episodes or steps are requested than the limits allow.
-        BenchmarkError: A behavior or the seeds are invalid.
+        BenchmarkError: A behavior, the seeds or a perturbation are invalid.
         ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
     """
     names, given = _named_sources(files)
     wanted = _behavior_texts(behaviors)
-    chosen = seeds_from(seeds)
+    chosen, perturbations = seeds_from(seeds), read_perturbations(perturb)
+    texts = tuple(perturbation_text(item) for item in perturbations)
     if steps is not None:
         steps = check_whole_number("steps", steps)
     if workers is not None:
@@ -109,11 +126,14 @@ def benchmark(
             check_behavior_name(behavior)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
-    periods, chances = dict[str, float](), dict[str, list[str]]()
+    periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
         scenario, warnings[name] = read_document(document, strict=strict)
+        scenario = perturbed(scenario, perturbations)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
+        if texts:
+            changes[name] = perturbed_message(scenario)
         for number, behavior in enumerate(wanted):
             job = Job(
                 text=str(document.text),
@@ -124,6 +144,7 @@ def benchmark(
                 imports=tuple(imports),
                 limits=tuple(asdict(limits).items()),
                 until=until,
+                perturb=texts,
             )
             with _naming_behavior(number):
                 chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
@@ -141,13 +162,15 @@ def benchmark(
         behaviors=wanted,
         seeds=chosen,
         step_time=periods,
+        perturb=list(texts),
+        perturbed=changes,
         random=chances,
         rows=[],
         episodes=[],
         notes=[],
         warnings=warnings,
         version=version(),
-        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+        reproduce=_command(names, wanted, chosen, texts, steps, strict, imports),
     )
 
     def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
@@ -267,6 +290,7 @@ def _command(
     names: list[str],
     behaviors: list[str],
     seeds: list[int],
+    perturb: Sequence[str],
     steps: int | None,
     strict: bool,
     imports: Sequence[str],
@@ -278,6 +302,8 @@ def _command(
     if behaviors != [AS_WRITTEN]:
         words += ["--behaviors", ",".join(behaviors)]
     words += ["--seeds", _seeds_text(seeds)]
+    for text in perturb:
+        words += ["--perturb", text]
     if steps is not None:
         words += ["--steps", steps]
     if strict:

@@ -9,6 +9,7 @@ from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
 from irsim.benchmarks.seeds import seeds_from
 from irsim.episodes.episode import source_of
+from irsim.scenario.perturbation import perturbation_text, read_perturbations
 from irsim.scenario.yaml.document import Document, load_path
 
 __all__ = ["file_plan"]
@@ -22,6 +23,7 @@ def file_plan(
     steps: int | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
+    perturb: Sequence[str] = (),
 ) -> Plan:
     """Everything that a benchmark of scenario files depends on; arguments as of :func:`irsim.benchmark`.
 
@@ -45,6 +47,7 @@ def file_plan(
         steps=steps,
         strict=strict,
         imports=list(imports),
+        perturb=[perturbation_text(item) for item in read_perturbations(perturb)],
     )
 
 

@@ -59,6 +59,7 @@ class Plan(BaseModel):
         policies: Name in the results → behavior as text.
         seeds: The seeds.
         steps: Horizon in steps; None where each scenario has its own.
+        perturb: Perturbations of the scenarios, as on the command line.
         until: When episodes end, see :class:`irsim.benchmarks.suite.Suite`.
         strict: Whether what IR-SIM 2.12 ignores is an error.
         imports: Modules that register behaviors.
@@ -74,6 +75,7 @@ class Plan(BaseModel):
     policies: dict[str, str]
     seeds: list[int]
     steps: int | None = None
+    perturb: list[str] = []
     until: Until = "done"
     strict: bool = False
     imports: list[str] = []

@@ -79,6 +79,7 @@ def run_plan(
         {scenario.name: scenario.document() for scenario in plan.scenarios},
         list(plan.policies.values()),
         plan.seeds,
+        perturb=plan.perturb,
         steps=plan.steps,
         strict=plan.strict,
         imports=plan.imports,

@@ -24,6 +24,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from irsim.scenario.perturbation import Perturbation
+
 __all__ = ["Protocol", "Seeds", "Suite", "SuiteScenario"]
 
 Protocol = Literal["as-written", "freeze", "yield"]
@@ -111,6 +113,9 @@ class Suite(_Part):
     policies: Annotated[dict[Name, str | dict[str, Any]], Field(min_length=1)]
     """Name in the results → policy that the suite compares, with its options: a behavior (``dash`` or ``{name: orca,
     timeHorizon: 2}``) or ``as-written``. Differences are to the first one."""
+    perturb: list[Perturbation] = []
+    """How far starts, headings, speeds and departures may differ from the scenarios, drawn per seed, such as
+    ``[{position: 0.1}]``."""
     density: str | None = None
     """Key of ``vary`` that charts show from left to right, such as ``robot[0].number``."""
 

@@ -14,6 +14,7 @@ from irsim.benchmarks.suite_files import SuiteError, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand
 from irsim.diagnostics.diagnostic import suggestion
 from irsim.scenario.behavior_override import behavior_text
+from irsim.scenario.perturbation import perturbation_text, read_perturbations
 
 __all__ = ["suite_plan"]
 
@@ -26,6 +27,7 @@ def suite_plan(
     seeds: int | None = None,
     full: bool = False,
     scenarios: Sequence[str] | None = None,
+    perturb: Sequence[str] = (),
 ) -> Plan:
     """Everything that a run of a suite depends on.
 
@@ -36,6 +38,7 @@ def suite_plan(
         seeds: Number of seeds, instead of that of the suite.
         full: Run the number of seeds that the suite calls full.
         scenarios: Names of scenarios, or of their families; default: all.
+        perturb: Perturbations instead of those of the suite, as on the command line.
 
     Raises:
         SuiteError: There is no such suite, or it is not valid; or a protocol or scenario is not in it.
@@ -52,6 +55,8 @@ def suite_plan(
         names = _chosen("scenario", scenarios, sorted({name for one in made for name in (one.name, one.family)}))
         made = [one for one in made if one.name in names or one.family in names]
         words += [word for name in names for word in ("--scenario", name)]
+    perturbations = read_perturbations(perturb) or tuple(found.perturb)
+    words += [word for item in perturb for word in ("--perturb", item)]
     count = seeds or (found.seeds.full if full and found.seeds.full else found.seeds.count)
     words += ["--seeds", str(count)] if count != found.seeds.count else []
     return Plan(
@@ -61,6 +66,7 @@ def suite_plan(
         policies=_policies(found, policies),
         seeds=[found.seeds.first + k for k in range(count)],
         until=found.until,
+        perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
 

@@ -11,6 +11,8 @@ from irsim.cli import (
     demo,
     describe,
     diff,
+    diff_runs,
+    export,
     inspect,
     new,
     render,
@@ -63,13 +65,15 @@ for _command in (
     diff.diff,
     run.run,
     inspect.inspect,
+    diff_runs.diff_runs,
     replay.replay,
+    export.export,
     benchmark.benchmark,
     suites.suites,
     render.render,
     describe.describe,
     schema.schema,
 ):
-    app.command()(handle_errors(_command))
+    app.command(_command.__name__.replace("_", "-"))(handle_errors(_command))
 app.add_typer(map_app)
 app.add_typer(skills_app)

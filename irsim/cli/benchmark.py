@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
+from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -63,6 +63,7 @@ def benchmark(
             show_default="10, or those of a suite",
         ),
     ] = "",
+    perturb: Perturb = None,
     steps: Steps = None,
     json_output: Json = False,
     csv_output: Annotated[
@@ -126,9 +127,9 @@ def benchmark(
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
     wanted = Wanted(
-        files=files or [], behaviors=behaviors, seeds=seeds, steps=steps, strict=strict, imports=imports or [],
-        workers=workers, max_objects=max_objects, folder=output, resume=resume, full=full, protocols=protocols or [],
-        scenarios=scenarios or [],
+        files=files or [], behaviors=behaviors, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
+        imports=imports or [], workers=workers, max_objects=max_objects, folder=output, resume=resume, full=full,
+        protocols=protocols or [], scenarios=scenarios or [],
     )  # fmt: skip
     result = run_benchmark(wanted)
     if json_output:
@@ -165,6 +166,8 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
         table.add_column(heading, justify="right", no_wrap=True)
     labels, behaviors = _labels(result.scenarios), _policies(result) or labels_of(result.behaviors)
+    if result.incidents:
+        out.print(f"{clean('; '.join(result.incidents), 400)}")
     last = None
     for row in result.rows:
         if last not in (None, row.scenario):

@@ -23,6 +23,7 @@ class Wanted:
     files: Sequence[str]
     behaviors: str | None
     seeds: str
+    perturb: Sequence[str]
     steps: int | None
     strict: bool
     imports: Sequence[str]
@@ -73,8 +74,9 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
 
             policies = [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors)
             return benchmark(
-                list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, steps=wanted.steps, strict=wanted.strict,
-                imports=wanted.imports, workers=wanted.workers, limits=limits, progress=report,
+                list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
+                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
+                progress=report,
             )  # fmt: skip
     page = write_report(result, folder)
     console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
@@ -102,6 +104,7 @@ def _suite(name: str, wanted: Wanted) -> Plan:
         seeds=int(wanted.seeds) if wanted.seeds else None,
         full=wanted.full,
         scenarios=wanted.scenarios or None,
+        perturb=wanted.perturb,
     )
 
 
@@ -117,4 +120,5 @@ def _plan(wanted: Wanted) -> Plan:
         steps=wanted.steps,
         strict=wanted.strict,
         imports=wanted.imports,
+        perturb=wanted.perturb,
     )

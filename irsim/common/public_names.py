@@ -17,6 +17,8 @@ PUBLIC_HOMES = {
     "batch": "irsim.env.batch",
     "benchmark": "irsim.benchmarks",
     "diff": "irsim.api",
+    "diff_runs": "irsim.runs.comparison",
+    "export_run": "irsim.runs.export.export",
     "fix": "irsim.api",
     "make": "irsim.env",
     "register_behavior": "irsim.objects.handlers.registration",

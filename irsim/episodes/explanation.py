@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -31,7 +32,7 @@ __all__ = ["has_one_end", "others_arrived_message", "reason_message", "summary_m
 _MAX_NAMED = 3
 """Number of robots that a sentence names."""
 _MAX_EVENTS = 100
-"""Number of last events that are searched for a missing path."""
+"""Number of last events of a robot that are searched for a missing path."""
 _MAX_STANDING_SPEED = 1e-3
 """Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
 _LIMIT_SOURCES: dict[HorizonSource, str] = {
@@ -52,6 +53,7 @@ def summary_message(
     held: dict[str, Event],
     events: Sequence[Event],
     left: Sequence[Left],
+    incidents: Incidents,
     zones: Mapping[str, ZoneResult],
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
@@ -60,10 +62,15 @@ def summary_message(
         parts.append(hit)
     if out := exits_message(env.scenario, left):
         parts.append(out)
+    if jumps := jumps_message(incidents.jumps):
+        parts.append(jumps)
     if gone := _departures_message(env, robots):
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
+    said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
+    if touched := contacts_message(incidents.human_contacts, brief=said):
+        parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
     if zone := zones_message(zones):
@@ -177,12 +184,15 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
     standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
-    last = events[-_MAX_EVENTS:]
+    last = [event for event in events if event.object == robot.name][-_MAX_EVENTS:]
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _is_inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
+    if env.simulation.waits(view.row):
+        start = float(env.simulation.start_step[view.row]) * env.step_time
+        return f"still waits {place} (its start is delayed to {seconds(start)})"
     if speed >= standing:
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"

@@ -43,9 +43,10 @@ def runner() -> Pages:
     from irsim.env import Env
     from irsim.env.batch import Batch
     from irsim.objects.view import ObjectView
+    from irsim.runs.export.registry import format_names
 
     functions = (
-        *("make", "run", "render", "validate", "benchmark", "batch"),
+        *("make", "run", "render", "validate", "benchmark", "batch", "export_run", "diff_runs"),
         *("register_behavior", "irsim.lib.register_behavior_class"),
         *("irsim.lib.register_group_behavior", "irsim.lib.register_group_behavior_class"),
     )
@@ -65,6 +66,11 @@ def runner() -> Pages:
             "objects. Arrays are columns, (n, 1), unless stated otherwise, and read-only: use `set_…` to change an "
             "object.",
             _members(ObjectView),
+        ),
+        "exports": make_page(
+            "Formats of recorded runs",
+            "What `irsim export` and `irsim.export_run` write.",
+            *map(_format, format_names()),
         ),
         "batch": make_page("Batches", "`irsim.batch` returns a batch of worlds.", _attributes(Batch), _members(Batch)),
     }
@@ -173,6 +179,13 @@ def _function(name: str, function: Any) -> str:
     text, arguments = _docstring(function)
     listed = "\n".join(f"- `{key}`: {about}" for key, about in arguments)
     return f"## {name}\n\n`{name}{_signature(function)}`\n\n{text}\n\n{listed}"
+
+
+def _format(name: str) -> str:
+    """Return what the module of an export format says about it."""
+    doc = inspect.cleandoc(importlib.import_module(f"irsim.runs.export.formats.{name}").__doc__ or "")
+    text = _markup(doc.removeprefix(f"``{name}``: "))
+    return f"## {name}\n\n{text[0].upper()}{text[1:]}"
 
 
 def _options(cls: type) -> str:

@@ -23,13 +23,15 @@ class EventRecord(Result):
         "waypoint",
         "collision",
         "no_path",
+        "overshoot",
         "zone_entry",
         "zone_exit",
         "line_crossing",
         "sight_start",
         "sight_end",
     ]
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``zone_entry`` and
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
+    object passes its goal within ``goal_threshold`` between two steps without arriving, ``zone_entry`` and
     ``zone_exit`` when a body begins and ceases to touch a region of ``world.zones``, ``line_crossing`` when a centre
     crosses a line, ``sight_start`` and ``sight_end`` when another object comes into and goes out of a field of view."""
     time: float
@@ -127,6 +129,8 @@ class RunResult(Result):
     """What the seed decides; empty if every seed gives the same run."""
     behavior: str | None = None
     """Behavior of every robot instead of its own; None: the scenario as written."""
+    perturb: list[str] = Field(default_factory=list)
+    """Perturbations of starts, speeds and delays, as on the command line."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
@@ -149,6 +153,10 @@ class RunResult(Result):
     """Moving obstacles that a collision with another obstacle has stopped."""
     left: list[Left] = Field(default_factory=list)
     """The first moving objects whose position left the world; ``world.boundary: walls`` keeps objects in."""
+    jumped: list[str] = Field(default_factory=list)
+    """The first objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
+    human_contacts: int = 0
+    """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
     zones: dict[str, ZoneResult] = Field(default_factory=dict)
     """What happened in each zone of ``world.zones``, by its name."""
     events: list[EventRecord]

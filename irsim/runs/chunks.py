@@ -121,8 +121,14 @@ def _head(array: NDArray[Any]) -> bytes:
     return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
 
 
-def load_chunk(path: Path, layout: Layout) -> Trace:
+def load_chunk(path: Path, layout: Layout, objects: Sequence[int] | None = None, *, scans: bool = True) -> Trace:
     """Read the trace of a piece.
+
+    Args:
+        path: The piece.
+        layout: Properties of the run.
+        objects: Indices of the objects that the trace is to have, in this order, with their scans; default: all.
+        scans: Whether to read the scans.
 
     Raises:
         RunError: The file is not one that :func:`pack_chunk` makes.
@@ -130,8 +136,9 @@ def load_chunk(path: Path, layout: Layout) -> Trace:
     with _as_run_error(path):
         _check_size(path)
         with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        return _trace(json.loads(arrays.pop(_ABOUT)), arrays, layout)
+            arrays = {name: file[name] for name in file.files if scans or name != "ranges"}
+        chosen = range(len(layout.names)) if objects is None else objects
+        return _trace(json.loads(arrays.pop(_ABOUT)), arrays, layout, list(chosen))
 
 
 def load_events(path: Path) -> Any:
@@ -166,50 +173,63 @@ def _as_run_error(path: Path) -> Iterator[None]:
         raise unreadable(f"'{path.name}' of run {path.parent.name} has been changed: {error}") from None
 
 
-def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layout) -> Trace:
+def _trace(about: dict[str, Any], arrays: dict[str, NDArray[Any]], layout: Layout, chosen: list[int]) -> Trace:
     first, rows = int(about["first"]), int(about["rows"])
     count, beams = len(layout.names), sum(number for _, number in layout.sensors)
-    if first < 0 or not 0 < rows * max(1, count * 3, beams) <= _MAX_NUMBERS:
+    if first < 0 or not 0 < rows * max(1, len(chosen) * 3, beams) <= _MAX_NUMBERS:
         raise ValueError("more rows than irsim writes")
     movers, columns = [int(row) for row in about["movers"]], arrays["control"].shape[-1]
-    if movers and min(movers) < 0:
+    if movers and not 0 <= min(movers) <= max(movers) < count:
         raise ValueError("movers out of range")
     _expect(arrays["pose_at"], (count, 3))
     _expect(arrays["pose"], (rows, len(movers), 3))
     _expect(arrays["control"], (rows, len(movers), columns))
-    pose = np.repeat(arrays["pose_at"][None], rows, axis=0)
-    pose[:, movers] = arrays["pose"]
-    control = np.zeros((rows, count, 3))
-    control[:, movers, :columns] = arrays["control"]
-    flags = _expand(about["flag_rows"], arrays["flags"], rows, (count,)).astype(np.uint8)
+    place = {row: number for number, row in enumerate(movers)}
+    targets = [target for target, row in enumerate(chosen) if row in place]
+    sources = [place[chosen[target]] for target in targets]
+    pose = np.repeat(arrays["pose_at"][None, chosen], rows, axis=0)
+    pose[:, targets] = arrays["pose"][:, sources]
+    control = np.zeros((rows, len(chosen), 3))
+    control[:, targets, :columns] = arrays["control"][:, sources]
+    names = tuple(layout.names[row] for row in chosen)
+    flags = _expand(about["flag_rows"], arrays["flags"], rows, (count,), chosen).astype(np.uint8)
     ranges: dict[str, NDArray[np.float32]] = {}
-    if layout.sensors:
+    if layout.sensors and "ranges" in arrays:
         scans = np.zeros((0, beams), dtype=np.float32)
         if about["scan_rows"]:
             scans = _expand(about["scan_rows"], arrays["ranges"], rows, (beams,)).astype(np.float32, copy=False)
         cuts = np.cumsum([number for _, number in layout.sensors])[:-1]
-        ranges = {key: part for (key, _), part in zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)}
+        parts = zip(layout.sensors, np.split(scans, cuts, axis=1), strict=True)
+        ranges = {key: part for (key, _), part in parts if key.rpartition("/")[0] in names}
     step = np.arange(first, first + rows, dtype=np.int64)
     return Trace(
         step=step,
         time=step.astype(np.float64) * layout.step_time,
         pose=pose,
         control=control,
-        goal=_expand(about["goal_rows"], arrays["goal"], rows, (count, 3)),
+        goal=_expand(about["goal_rows"], arrays["goal"], rows, (count, 3), chosen),
         arrived=(flags & _BITS["arrived"]).astype(bool),
         collided=(flags & _BITS["collided"]).astype(bool),
         stopped=(flags & _BITS["stopped"]).astype(bool),
         ranges=ranges,
-        names=layout.names,
+        names=names,
         step_time=layout.step_time,
     )
 
 
-def _expand(begins: Sequence[int], values: NDArray[Any], rows: int, shape: tuple[int, ...]) -> NDArray[Any]:
-    """(T, …) array, one row per step, of values that each hold from their row on."""
+def _expand(
+    begins: Sequence[int],
+    values: NDArray[Any],
+    rows: int,
+    shape: tuple[int, ...],
+    chosen: list[int] | None = None,
+) -> NDArray[Any]:
+    """(T, …) array, one row per step, of values that each hold from their row on; only of the chosen objects."""
     _expect(values, (len(begins), *shape))
+    if chosen is not None:
+        values = values[:, chosen]
     if not values.size:
-        return np.zeros((rows, *shape), dtype=values.dtype)
+        return np.zeros((rows, *values.shape[1:]), dtype=values.dtype)
     lengths = np.diff([*begins, rows])
     if begins[0] != 0 or (lengths <= 0).any():
         raise ValueError("rows out of order")

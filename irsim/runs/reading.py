@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,7 +21,7 @@ from irsim.runs.omissions import omission_notes
 from irsim.runs.plain_scenario import with_options
 from irsim.runs.store import META, RESULT, Status, find_run, run_folders, runs_folder, status_of
 from irsim.simulation.events import Event
-from irsim.simulation.trace import Trace, join_traces
+from irsim.simulation.trace import Trace, cut_trace, join_traces
 
 __all__ = ["Run", "list_runs", "open_run"]
 
@@ -56,7 +57,7 @@ class Run:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Other options of the run: ``strict``, ``imports``, ``behavior``."""
+        """Other options of the run: ``strict``, ``imports``, ``behavior``, ``perturb``."""
         options = self.meta.get("options")
         return options if isinstance(options, dict) else {}
 
@@ -135,7 +136,7 @@ class Run:
     def last_step(self) -> int:
         """Step of the last row of the trace; -1 without any."""
         pieces = self._pieces("trace")
-        return int(self._piece(pieces[-1]).step[-1]) if pieces else -1
+        return int(self._piece(pieces[-1], [], scans=False).step[-1]) if pieces else -1
 
     def trace(self) -> Trace:
         """The recorded trace; that of an interrupted run ends with its last piece.
@@ -145,11 +146,43 @@ class Run:
         """
         pieces = [self._piece(name) for name in self._pieces("trace")]
         if not pieces:
-            raise unreadable(f"run {self.id} was interrupted before its first step was recorded")
+            raise self._no_steps()
         trace = join_traces(pieces)
         if (np.diff(trace.step) != 1).any():
             raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
         return trace
+
+    def blocks(self, rows: int, objects: Sequence[int] | None = None, *, scans: bool = True) -> Iterator[Trace]:
+        """Yield the recorded trace in blocks, of which only one is in memory at a time.
+
+        Args:
+            rows: Number of rows of each block; the last one may have fewer.
+            objects: Indices of the objects that the blocks are to have, with their scans; default: all.
+            scans: Whether the blocks are to have scans.
+
+        Raises:
+            RunError: No step has been recorded, or a file has been changed.
+        """
+        parts, count, following = list[Trace](), 0, None
+        for name in self._pieces("trace"):
+            piece = self._piece(name, objects, scans)
+            if following not in (None, int(piece.step[0])):
+                raise unreadable(f"the pieces of run {self.id} do not follow each other: they have been changed")
+            following = int(piece.step[-1]) + 1
+            while len(piece):
+                parts.append(cut_trace(piece, slice(rows - count)))
+                piece = cut_trace(piece, slice(rows - count, None))
+                count += len(parts[-1])
+                if count == rows:
+                    yield join_traces(parts)
+                    parts, count = [], 0
+        if parts:
+            yield join_traces(parts)
+        elif following is None:
+            raise self._no_steps()
+
+    def _no_steps(self) -> RunError:
+        return unreadable(f"run {self.id} was interrupted before its first step was recorded")
 
     def files(self) -> list[str]:
         """Names of the files of the run."""
@@ -173,9 +206,9 @@ class Run:
                 raise unreadable(f"piece {number:04d} of run {self.id} is missing, or exists twice")
         return [name for _, kind, name in found if kind in kinds]
 
-    def _piece(self, name: str) -> Trace:
+    def _piece(self, name: str, objects: Sequence[int] | None = None, scans: bool = True) -> Trace:
         sensors = [(str(key), int(beams)) for key, beams in self.meta["sensors"]]
-        return load_chunk(self._path(name), Layout(self.names, sensors, self.step_time))
+        return load_chunk(self._path(name), Layout(self.names, sensors, self.step_time), objects, scans=scans)
 
     def _events_in(self, name: str) -> Any:
         """Events in a piece of the trace, or in a file of events."""

@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 import os
 import platform
+import sys
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic_core import to_json
 
 import irsim._core as core
@@ -19,6 +22,7 @@ from irsim.common.files import Buffer
 from irsim.runs.chunks import pack_chunk
 from irsim.runs.files import Claim, RunError, claim, create_file, replace_file
 from irsim.runs.omissions import omission_notes
+from irsim.runs.piece_writer import PieceWriter
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
 from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, runs_path
@@ -36,6 +40,8 @@ _PIECE_BYTES = 4_000_000
 """Size of a piece of the trace."""
 _WRITE_PERIOD_S = 0.5
 """Time [s] after which a piece is written even if it is small."""
+_MAX_PIECE_NUMBERS = 8_000_000
+"""Number of values that the poses of all objects have when a piece is read."""
 _MAX_TRACE_BYTES = 200_000_000
 """Size of the trace of one run without its scans; of later steps only events and the result are recorded."""
 _MAX_SCANS_BYTES = 80_000_000
@@ -56,8 +62,9 @@ class Recorder:
         horizon: Greatest number of steps.
         scenario: Scenario file as the user named it, None for a text.
         options: Other options of the run, as JSON types.
-        folder: A new or empty folder for the run, which is never deleted; by default a folder in ``.irsim/runs`` of
-            the current directory, which :mod:`irsim.runs.pruning` deletes later.
+        folder: A new or empty folder for the run, which is never deleted and has every step and scan; by default a
+            folder in ``.irsim/runs`` of the current directory, which :mod:`irsim.runs.pruning` deletes later, and
+            which leaves out what is too large.
 
     Attributes:
         folder: Folder of the run.
@@ -87,10 +94,15 @@ class Recorder:
         self.run_id = os.path.basename(self.folder)
         self._claim: Claim | None = None
         self._scan = 4 * simulation.world.beams_per_world  # bytes of all ranges of one step
-        self._scans = scans = 0 < self._scan <= _MAX_SCAN_BYTES
-        self._scan_rows = _MAX_SCANS_BYTES // self._scan if scans else 0  # rows that may still be recorded
+        limited = self._runs is not None
+        self._scans = scans = 0 < self._scan <= (_MAX_SCAN_BYTES if limited else sys.maxsize)
+        self._scan_rows = (_MAX_SCANS_BYTES if limited else sys.maxsize) // self._scan if scans else 0  # rows left
+        self._most_bytes = _MAX_TRACE_BYTES if limited else sys.maxsize
+        self._piece_rows = max(1, _MAX_PIECE_NUMBERS // max(1, 3 * simulation.objects))
         self._revision = simulation.revision
         self._log, self._movers = _log_of(simulation, scans)
+        self._spare: core.Log | None = None  # holds the piece that is being written, or nothing
+        self._writer = PieceWriter()
         self._log.attach(simulation.state)
         self._log.add(simulation.state)
         simulation.log = self._log
@@ -168,12 +180,12 @@ class Recorder:
             )
         if self._scans and self._log.rows >= self._scan_rows:
             self._end_scans()
-        elif self._log.bytes >= _PIECE_BYTES or time.monotonic() >= self._due:
+        elif self._log.bytes >= _PIECE_BYTES or self._log.rows >= self._piece_rows or time.monotonic() >= self._due:
             self._flush()
 
     def finish(self, result: RunResult) -> None:
         """Write the last piece and the result, which gets the id and the files of the run."""
-        self._flush()
+        self._flush(last=True)
         result.notes = omission_notes(self._meta, result.steps)
         result.run_id = self.run_id
         result.artifacts = {name: self._path(name) for name in FILES}
@@ -186,7 +198,7 @@ class Recorder:
         if self._done:
             return
         try:
-            self._flush()
+            self._flush(last=True)
             if cancelled:
                 self._write_meta(cancelled=True)
             mark_used(self.folder)
@@ -196,6 +208,8 @@ class Recorder:
     def _stop(self) -> None:
         self._done = True
         self._detach()
+        with suppress(BaseException):  # the error that ends the recording is already on its way
+            self._writer.wait()
         if self._claim is not None:
             self._claim.release()
 
@@ -207,17 +221,28 @@ class Recorder:
         if self._simulation.log is None:
             return
         self._detach()
-        self._log, _ = _log_of(self._simulation, scans=False)
-        self._log.attach(self._simulation.state)
-        self._simulation.log = self._log
+        self._spare = None
+        self._attach(_log_of(self._simulation, scans=False)[0])
         self._write_meta(scans_until=last)
+
+    def _attach(self, log: core.Log) -> None:
+        """Record the next steps in a log."""
+        self._log = log
+        log.attach(self._simulation.state)
+        self._simulation.log = log
 
     def _detach(self) -> None:
         self._simulation.log = None
         self._log.detach(self._simulation.state)
 
-    def _flush(self) -> None:
-        """Write the trace and events since the last piece, or only the events once the trace is too large."""
+    def _flush(self, *, last: bool = False) -> None:
+        """Write the trace and events since the last piece, or only the events once the trace is too large.
+
+        Args:
+            last: Whether the run is over; the piece is then complete when this returns. Other pieces are written in a
+                thread, while the simulation fills another log.
+        """
+        self._writer.wait()
         events = read_events(self._simulation, start=self._events)
         self._events += len(events)
         records = [event._asdict() for event in events]
@@ -225,20 +250,39 @@ class Recorder:
         if log.rows or events:
             self._pieces += 1
         if log.rows:
-            movers, pose = self._movers, self._simulation.pose
-            self._write(f"trace-{number}.npz", *pack_chunk(log, movers, pose, records))
             self._bytes += log.bytes
             self._scan_bytes += 4 * log.ranges.size
             self._scan_rows -= log.rows
-            last = log.first + log.rows - 1
-            log.clear()
-            if self._bytes - self._scan_bytes >= _MAX_TRACE_BYTES:
+            until, pose = log.first + log.rows - 1, self._simulation.pose.copy()
+            full = self._bytes - self._scan_bytes >= self._most_bytes
+            write = partial(self._write_piece, f"trace-{number}.npz", log, pose, records)
+            if last or full:
+                write()
+                log.clear()
+            else:
+                self._exchange_logs()
+                self._writer.submit(write)
+            if full:
                 self._scans = False
                 self._detach()
-                self._write_meta(trace_until=last)
+                self._write_meta(trace_until=until)
         elif events:
             self._write(f"events-{number}.json", to_json(records))
         self._due = time.monotonic() + _WRITE_PERIOD_S
+
+    def _exchange_logs(self) -> None:
+        """Continue with the spare log, so that the present one can be written; its memory is used again later."""
+        spare = self._spare or _log_of(self._simulation, self._scans)[0]
+        spare.clear()
+        self._detach()
+        self._spare = self._log
+        self._attach(spare)
+
+    def _write_piece(
+        self, name: str, log: core.Log, pose: NDArray[np.float64], records: Sequence[Mapping[str, Any]]
+    ) -> None:
+        """Write a piece, and delete older runs from time to time."""
+        self._write(name, *pack_chunk(log, self._movers, pose, records))
         if self._runs is not None and self._bytes - self._pruned_at > _PRUNING_INTERVAL_BYTES:
             self._pruned_at = self._bytes
             prune(Path(self._runs), keep=self.run_id)
@@ -265,7 +309,8 @@ def recording(
         path: Scenario file, None for a text.
         record: Whether to record, or the folder to record to.
         horizon: Greatest number of steps.
-        options: Other options of the run: ``strict``, ``imports``, and ``behavior`` if that of the robots was replaced.
+        options: Other options of the run: ``strict``, ``imports``, ``behavior`` if that of the robots was replaced, and
+            ``perturb`` if starts were perturbed.
     """
     if record is False:
         yield None

@@ -26,6 +26,7 @@ EventKind = Literal[
     "waypoint",
     "collision",
     "no_path",
+    "overshoot",
     "zone_entry",
     "zone_exit",
     "line_crossing",
@@ -51,10 +52,12 @@ class Event(NamedTuple):
     Attributes:
         kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
             ``collision`` (a contact of two objects begins; reported once per contact, not per step), ``no_path``
-            (``follow`` has found no path), ``zone_entry`` and ``zone_exit`` (the body of an object that can move begins
-            or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses a line of
-            ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of, the field of
-            view that the scenario gives the object with ``fov``; of static obstacles only those with tags count).
+            (``follow`` has found no path), ``overshoot`` (the object passed its goal within the threshold between two
+            steps without arriving; reported once per goal), ``zone_entry`` and ``zone_exit`` (the body of an object
+            that can move begins or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses
+            a line of ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of,
+            the field of view that the scenario gives the object with ``fov``; of static obstacles only those with tags
+            count).
         time: Simulated time [s].
         step: Number of executed steps at the event; 0 is the initial state.
         object: Name of the object; for a collision, of the first of the two objects; for a sight, of the one that sees.

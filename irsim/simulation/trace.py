@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,11 +15,21 @@ from irsim.common.arrays import Floats
 if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["Rollout", "Trace", "join_traces", "next_rows", "present_row", "record", "record_rollout", "sensors"]
+__all__ = [
+    "Rollout",
+    "Trace",
+    "cut_trace",
+    "join_traces",
+    "next_rows",
+    "present_row",
+    "record",
+    "record_rollout",
+    "sensors",
+]
 
 Flags = NDArray[np.bool_]
-_ROWS = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
-"""Names of the arrays of a trace that have a row for each step."""
+_BY_ROW = ("step", "time", "pose", "control", "goal", "arrived", "collided", "stopped")
+"""Arrays of a trace that always have one row for each step."""
 
 
 @dataclass(frozen=True)
@@ -78,15 +88,6 @@ class Trace:
 
     def __len__(self) -> int:
         return len(self.step)
-
-    def until(self, step: int) -> Trace:
-        """The rows up to a step."""
-        rows = int(np.searchsorted(self.step, step, side="right"))
-        if rows == len(self):
-            return self
-        kept = {name: getattr(self, name)[:rows] for name in _ROWS}
-        ranges = {key: values[:rows] for key, values in self.ranges.items()}
-        return replace(self, **kept, ranges=ranges)
 
 
 def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:
@@ -148,9 +149,16 @@ def join_traces(parts: Sequence[Trace]) -> Trace:
     if len(parts) == 1:
         return parts[0]
     first = parts[0]
-    stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ROWS}
+    stacked = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _BY_ROW}
     ranges = {key: np.concatenate([part.ranges[key] for part in parts]) for key in first.ranges}
     return Trace(**stacked, ranges=ranges, names=first.names, step_time=first.step_time)
+
+
+def cut_trace(trace: Trace, rows: slice) -> Trace:
+    """Return some rows of a trace as views; its ranges have fewer rows where scans were not recorded to the end."""
+    cut = {name: getattr(trace, name)[rows] for name in _BY_ROW}
+    ranges = {key: block[rows] for key, block in trace.ranges.items()}
+    return Trace(**cut, ranges=ranges, names=trace.names, step_time=trace.step_time)
 
 
 def record_rollout(simulation: Simulation, steps: int, *, until_done: bool) -> Rollout:

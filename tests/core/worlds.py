@@ -122,6 +122,8 @@ def scene(
     placements: Sequence[core.RandomPlacement] = (),
     history: bool = False,
     fog: core.Fog | None = None,
+    perturbations: Sequence[core.Perturbation] = (),
+    extent: Sequence[float] = (0.0, 0.0, 10.0, 10.0),
     zones: Sequence[core.Part] = (),
     views: Sequence[core.View] = (),
     targets: Sequence[int] = (),
@@ -135,10 +137,13 @@ def scene(
         placements=placements,
         copies=len(seeds),
         fog=fog,
+        perturbations=perturbations,
         zones=zones,
         views=views,
         targets=targets,
     )
+    if perturbations:
+        world.extent = tuple(extent)
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 
 

@@ -14,10 +14,12 @@ import irsim
 from irsim.cli.app import app
 from irsim.env import Env
 from irsim.episodes.episode import read_scenario
+from irsim.episodes.incidents import find_incidents
 from irsim.runs import open_run
 from irsim.runs.artifacts import artifact
 from irsim.runs.inspection import inspect_run
 from irsim.runs.resimulation import resimulate
+from irsim.simulation.events import Event
 
 ROOM = """\
 world:
@@ -196,3 +198,11 @@ robot: {number: 12, kinematics: {name: diff}, distribution: {name: random, range
     others = sum(not event.kind.startswith("sight") for event in env.events)
     assert sum(not kind.startswith("sight") for kind in kinds) == others
     assert np.all(np.diff([event.step for event in result.events]) >= 0)
+
+
+def test_a_goal_that_was_jumped_over_stays_so_in_a_zone() -> None:
+    jump = Event("overshoot", 1.0, 10, "rover", None, 1.0, 1.0)
+    visit = Event("zone_entry", 1.1, 11, "rover", None, 1.0, 1.0, "box")
+    arrival = Event("arrival", 1.2, 12, "rover", None, 1.0, 1.0)
+    assert find_incidents([], [jump, visit]).jumps == {"rover": jump}
+    assert find_incidents([], [jump, visit, arrival]).jumps == {}

@@ -180,7 +180,8 @@ def test_what_it_names_exists() -> None:
     for name in ("state", "goal", "velocity_xy", "get_lidar_scan", "set_state"):
         assert hasattr(ObjectView, name)
     commands = {span.split()[1] for span in spans(BODY) if span.startswith("irsim ")}
-    assert commands <= {"run", "render", "benchmark", "inspect", "replay", "validate"}
+    known = {"run", "render", "benchmark", "inspect", "replay", "validate", "export", "diff-runs"}
+    assert commands <= known
 
 
 def test_what_it_warns_of_is_so(folder: Path) -> None:

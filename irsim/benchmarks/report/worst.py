@@ -8,7 +8,7 @@ __all__ = ["MAX_WORST", "worst_episodes"]
 
 MAX_WORST = 2
 """Number of episodes that are shown of each policy."""
-_ORDER = {"collision": 0, "timeout": 1, "success": 2}
+_ORDER = {"collision": 0, "timeout": 1}
 
 
 def worst_episodes(result: BenchmarkResult) -> list[EpisodeRow]:
@@ -19,7 +19,7 @@ def worst_episodes(result: BenchmarkResult) -> list[EpisodeRow]:
     rates = {(row.scenario, row.behavior): row.success.rate for row in result.rows}
     chosen: list[EpisodeRow] = []
     for behavior in result.behaviors:
-        failed = [one for one in result.episodes if one.behavior == behavior and one.outcome != "success"]
+        failed = [one for one in result.episodes if one.behavior == behavior and one.outcome in _ORDER]
         failed.sort(key=lambda one: (-rates.get((one.scenario, behavior), 0.0), _ORDER[one.outcome], one.seed))
         seen: set[str] = set()
         for one in failed:

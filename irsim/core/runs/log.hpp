@@ -23,6 +23,8 @@ struct Column {
     numbers->resize(numbers->size() + count);
     return numbers->data() + numbers->size() - count;
   }
+  /// Remove the numbers that were added last; nothing may view them.
+  void remove(std::size_t count) { numbers->resize(numbers->size() - count); }
   void clear() {
     if (numbers.use_count() > 1) numbers = std::make_shared<std::vector<T>>();
     numbers->clear();
@@ -56,8 +58,10 @@ struct Log {
   std::size_t bytes() const { return 8 * (pose.size() + 3 * goal.size()) + 4 * (control.size() + ranges.size()); }
 
  private:
+  /// Add the ranges of all beams, unless they equal the last ones bit for bit.
+  void add_scan(const State& state);
+
   std::vector<std::uint8_t> flags_now_;
-  std::vector<float> ranges_now_;
 };
 
 }  // namespace irsim

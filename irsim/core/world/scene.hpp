@@ -36,6 +36,7 @@ enum class EventKind {
   waypoint,
   collision,
   no_path,
+  overshoot,
   zone_entry,
   zone_exit,
   crossing_to_right,  // of a line, from its left side to its right
@@ -43,9 +44,9 @@ enum class EventKind {
   sight_start,
   sight_end
 };
-constexpr const char* kEventNames[] = {"arrival",     "waypoint",  "collision",         "no_path",
-                                       "zone_entry",  "zone_exit", "crossing_to_right", "crossing_to_left",
-                                       "sight_start", "sight_end"};
+constexpr const char* kEventNames[] = {"arrival",          "waypoint",    "collision", "no_path",
+                                       "overshoot",        "zone_entry",  "zone_exit", "crossing_to_right",
+                                       "crossing_to_left", "sight_start", "sight_end"};
 
 struct Event {
   EventKind kind;

@@ -13,12 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from irsim.common.text import clean
-from irsim.env import Env
-from irsim.runs.files import RunError
+from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
 from irsim.runs.replay.drawing import page_grid, page_objects, page_zones
-from irsim.runs.resimulation import scenario_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
@@ -34,13 +32,14 @@ _MAX_EVENTS = 4000
 _RANKS = {
     "collision": 0,
     "no_path": 1,
-    "arrival": 2,
-    "line_crossing": 3,
-    "zone_entry": 3,
-    "zone_exit": 3,
-    "waypoint": 4,
-    "sight_start": 5,
-    "sight_end": 5,
+    "overshoot": 2,
+    "arrival": 3,
+    "line_crossing": 4,
+    "zone_entry": 4,
+    "zone_exit": 4,
+    "waypoint": 5,
+    "sight_start": 6,
+    "sight_end": 6,
 }
 """Importance of the kinds of events, the most important first."""
 _MAX_RANGES = 2_000_000
@@ -83,19 +82,12 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         ScenarioError: The scenario has errors, for example because another file of it has changed.
     """
     trace = run.trace()
-    env = Env(scenario_of(run, limits), seed=int(run.meta["seed"]), headless=True, log_level="ERROR")
-    try:
-        start = env.simulation.pose
-        if trace.pose[0].shape != start.shape or not np.array_equal(trace.pose[0], start, equal_nan=True):
-            what = f"the scenario of run {run.id} now has other initial poses"
-            raise RunError("unreadable-run", what, "a map or the version of irsim has changed since: run it again")
+    with initial_scene(run, limits) as env:
         shapes, objects, lidars = page_objects(env)
         grid = page_grid(env)
         zones = page_zones(env)
         world = env.simulation.scenario.world
         title = env.simulation.scenario.name
-    finally:
-        env.end(ending_time=0.0)
     columns = Columns()
     x, y = (float(value) for value in world.offset)
     width, height = float(world.width), float(world.height)

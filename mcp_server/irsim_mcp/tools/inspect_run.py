@@ -18,11 +18,11 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
-    Look into a run: why did it fail? view=collisions: which objects touched, where, how fast; closest: closest
-    approaches of each robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards), turn rates, longest
-    stop; zones: who entered or crossed what; sight: who saw whom; rows: `fields` step by step, spread over the run
-    unless `every` is given. Of a benchmark: its episodes. Returns a table, in pages (next_cursor). Next: draw the
-    moment with render_snapshot run_id step.
+    Why did a run fail? view=collisions: which objects touched, where, how fast; closest: closest approaches of each
+    robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards), turn rates, longest stop; zones: who
+    entered or crossed what; sight: who saw whom; rows: `fields` step by step, spread over the run unless `every` is
+    given. Of a benchmark: its episodes. Returns a table, in pages (next_cursor). Next: draw the moment with
+    render_snapshot run_id step.
 """
 _MAX_CELL_LENGTH = 60
 """Number of characters of a cell."""

@@ -3,13 +3,14 @@
 import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
 
 const KINDS = {
-  collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way", zone_entry: "enters",
-  zone_exit: "leaves", line_crossing: "crosses", sight_start: "sees", sight_end: "no longer sees",
+  collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
+  overshoot: "jumps over its goal", zone_entry: "enters", zone_exit: "leaves", line_crossing: "crosses",
+  sight_start: "sees", sight_end: "no longer sees",
 };
 const MANY_OF = {
   collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
-  zone_entry: "zones entered", zone_exit: "zones left", line_crossing: "lines crossed", sight_start: "sights begun",
-  sight_end: "sights ended",
+  overshoot: "jumps over goals", zone_entry: "zones entered", zone_exit: "zones left", line_crossing: "lines crossed",
+  sight_start: "sights begun", sight_end: "sights ended",
 };
 
 export const manyWords = (kind) => MANY_OF[kind] ?? kind;

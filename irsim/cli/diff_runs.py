@@ -1,0 +1,84 @@
+"""``irsim diff-runs``: find the first step in which two recorded runs differ."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from irsim.cli.guard import FAILED
+from irsim.cli.options import Json
+
+if TYPE_CHECKING:
+    from irsim.results.records import RunsDiff
+
+__all__ = ["diff_runs"]
+
+MAX_ROWS = 20
+"""Quantities and events that are shown."""
+
+
+def diff_runs(
+    before: Annotated[str, typer.Argument(metavar="A", help="Id or folder of a run, or 'last'.", show_default=False)],
+    after: Annotated[str, typer.Argument(metavar="B", help="Id or folder of another run.", show_default=False)],
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, help="Numbers that differ by at most this much count as equal.")
+    ] = 0.0,
+    json_output: Json = False,
+) -> None:
+    """Find the first step in which two recorded runs differ, and in what; the exit code is 1 if they differ.
+
+    Differences of scenario, seed, version and options are listed, too, but do not count.
+    """
+    from irsim.cli.output import print_json
+    from irsim.runs import comparison
+
+    found = comparison.diff_runs(before, after, tolerance=tolerance)
+    if json_output:
+        print_json(found)
+    else:
+        _show(found)
+    if not found.same:
+        raise typer.Exit(FAILED)
+
+
+def _show(found: RunsDiff) -> None:
+    from rich.table import Table
+
+    from irsim.cli.output import console
+    from irsim.common.text import clean
+
+    out = console()
+    for change in found.setup:
+        out.print(f"{change.key}: {clean(change.before, 100)} -> {clean(change.after, 100)}", soft_wrap=True)
+        if change.key == "scenario":
+            out.print("  `irsim diff` with these two files lists the keys that differ", style="dim", soft_wrap=True)
+    if found.parted:
+        table = Table(box=None, pad_edge=False, header_style="dim")
+        for heading in ("object", "quantity", found.before, found.after, "difference"):
+            table.add_column(heading, overflow="fold")
+        for one in found.parted[:MAX_ROWS]:
+            numbers = [_cell(one.before), _cell(one.after), "-" if one.difference is None else f"{one.difference:.3g}"]
+            beams = f" and {one.beams - 1} beams" if one.beams is not None and one.beams > 1 else ""
+            table.add_row(clean(one.object, 40), one.quantity + beams, *numbers)
+        out.print(table)
+        if found.parted_count > MAX_ROWS:
+            out.print(f"... and {found.parted_count - MAX_ROWS} more")
+    for run, count, events in zip(
+        (found.before, found.after), found.event_counts, (found.events_before, found.events_after), strict=True
+    ):
+        for event in events[:MAX_ROWS]:
+            partner = "" if event.partner is None else f" with {clean(event.partner, 40)}"
+            who = f"{event.kind} of {clean(event.object, 40)}{partner}"
+            out.print(f"only in {run}: {who} at step {event.step}", soft_wrap=True)
+        if count > MAX_ROWS:
+            out.print(f"... and {count - MAX_ROWS} more events only in {run}")
+    for note in found.notes:
+        out.print(f"note: {clean(note, 200)}", style="yellow")
+    out.print(clean(found.summary, 600), soft_wrap=True, style="green" if found.same else "bold red")
+
+
+def _cell(value: float | bool | None) -> str:
+    if value is None:
+        return "-"
+    return ("yes" if value else "no") if isinstance(value, bool) else f"{value:.9g}"

@@ -1,0 +1,80 @@
+"""``irsim export``: write recorded runs as files of other tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["export"]
+
+
+def export(
+    runs: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="RUN...",
+            help="Id or folder of a run, or 'last', the default. Several runs go into one table or dataset.",
+            show_default=False,
+        ),
+    ] = None,
+    to: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FORMAT",
+            help="parquet, csv, npz, mcap or minari. Default: as the suffix of the file says.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--out",
+            metavar="PATH",
+            help="File to write; for minari a new folder. Default: named after the run, in the current directory.",
+            show_default=False,
+        ),
+    ] = None,
+    objects: Annotated[
+        str,
+        typer.Option(
+            metavar="WHICH",
+            help="movers (robots, and obstacles that can move), robots, all, or names separated by commas.",
+        ),
+    ] = "movers",
+    ranges: Annotated[
+        bool | None,
+        typer.Option(
+            "--ranges/--no-ranges", help="Write the ranges of lidars. Default: yes, but not to csv.", show_default=False
+        ),
+    ] = None,
+    json_output: Json = False,
+) -> None:
+    """Write recorded runs for other tools: Parquet, CSV or NumPy files, ROS 2 bags (MCAP), Minari datasets.
+
+    Parquet, MCAP and Minari need libraries, which the extra `records` installs; without them the message says how.
+    """
+    from rich.text import Text
+
+    from irsim.cli.output import console, print_json, progress
+    from irsim.runs.export.episode import CHOICES
+    from irsim.runs.export.export import export_run
+
+    chosen = objects if objects in CHOICES else [name.strip() for name in objects.split(",") if name.strip()]
+    with progress("exporting") as report:
+        result = export_run(runs or ["last"], out, to=to, objects=chosen, ranges=ranges, progress=report)
+    if json_output:
+        print_json(result)
+        return
+    size = f"{result.bytes / 1e6:.2f} MB" if result.bytes >= 1e5 else f"{result.bytes / 1e3:.0f} kB"
+    count = f"{len(result.run_ids)} runs, " if len(result.run_ids) > 1 else ""
+    who = f"{len(result.objects)} object{'s' * (len(result.objects) != 1)}"
+    console().print(
+        Text.assemble("wrote ", (result.file, "bold"), f" ({size}: {count}{who}, {result.steps} steps)"), soft_wrap=True
+    )
+    for note in result.notes:
+        console().print(f"note: {note}", style="yellow", soft_wrap=True)

@@ -1,0 +1,30 @@
+"""Libraries that only some users need: the extras of pyproject.toml."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from irsim.diagnostics.errors import CodedError
+
+__all__ = ["ExtraError", "require"]
+
+
+class ExtraError(CodedError, ImportError):
+    """A library that an extra installs is missing."""
+
+
+def require(extra: str, *modules: str) -> None:
+    """Check that libraries are installed, without importing them.
+
+    Args:
+        extra: The extra of pyproject.toml that installs them.
+        *modules: Their top-level modules.
+
+    Raises:
+        ExtraError: Some are missing; the message has the command that installs them.
+    """
+    missing = [module for module in modules if find_spec(module) is None]
+    if missing:
+        be = "is" if len(missing) == 1 else "are"
+        what = f"{' and '.join(missing)} {be} not installed"
+        raise ExtraError("missing-extra", what, f"install the extra: pip install 'irsim-mcp[{extra}]'")

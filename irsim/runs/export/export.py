@@ -1,0 +1,129 @@
+"""``irsim.export_run``: write recorded runs as files of other tools."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from irsim.common.extras import require
+from irsim.common.files import TEMPORARY, check_suffix, replacing
+from irsim.common.text import clean
+from irsim.episodes.episode import Progress
+from irsim.results.records import ExportResult
+from irsim.runs.export.episode import open_episode
+from irsim.runs.export.registry import Format, find_format
+from irsim.runs.files import RunError
+from irsim.runs.reading import Run, open_run
+from irsim.scenario.limits import Limits
+
+__all__ = ["export_run"]
+
+
+def export_run(
+    run: str | Path | Run | Sequence[str | Path | Run],
+    out: str | Path | None = None,
+    *,
+    to: str | None = None,
+    objects: str | Sequence[str] = "movers",
+    ranges: bool | None = None,
+    workspace: str | Path | None = None,
+    limits: Limits | None = None,
+    progress: Progress | None = None,
+) -> ExportResult:
+    """Write recorded runs as a file that other tools open.
+
+    Formats are ``parquet`` and ``csv`` (a table with one row per step and object), ``npz`` (arrays of shape (steps,
+    objects, …)), ``mcap`` (ROS 2 messages) and ``minari`` (a folder: a dataset for learning, one episode per run and
+    robot). Runs are read piece by piece, so that they need not fit in memory. Parquet, MCAP and Minari need libraries:
+    ``pip install 'irsim-mcp[records]'``.
+
+    Args:
+        run: Id of a run, its folder, or ``last``; or several of them for a table or a dataset.
+        out: File or folder to write. An existing file is replaced; a folder must not exist. Default: the id of the run
+            with the suffix of the format, in the current directory.
+        to: Name of the format. Default: as the suffix of ``out`` says.
+        objects: ``movers`` (robots, and obstacles that can move), ``robots``, ``all``, or a list of names.
+        ranges: Whether to write the ranges of lidars. Default: in all formats but ``csv``.
+        workspace: Folder whose ``.irsim/runs`` holds the runs; default: the current directory.
+        limits: Limits of the reader of the scenario.
+        progress: Callback ``(rows_done, rows_total)``.
+
+    Raises:
+        RunError: There is no such run, object or format, or the format does not hold these runs or their objects.
+        ExtraError: A library is missing.
+        TargetError: The file has another suffix than files of the format.
+        ScenarioError: The scenario of the run has errors now (only ``mcap`` reads it).
+    """
+    names = [run] if isinstance(run, (str, os.PathLike, Run)) else list(run)
+    runs = [one if isinstance(one, Run) else open_run(one, workspace) for one in names]
+    if not runs:
+        raise RunError("bad-argument", "no run was given", "give the id of a run, its folder, or 'last'", where="run")
+    form = find_format(to, None if out is None else Path(out))
+    if len(runs) > 1 and not form.several:
+        what = f"a file of the format {form.name} holds one run, got {len(runs)}"
+        raise RunError("bad-argument", what, "export each run to a file of its own", where="run")
+    require("records", *form.libraries)
+    target = _target(form, runs, out)
+    total, done = sum(one.last_step + 1 for one in runs), 0
+
+    def count(rows: int) -> None:
+        nonlocal done
+        done += rows
+        if progress is not None:
+            progress(min(done, total), total)
+
+    with_ranges = form.ranges if ranges is None else ranges
+    episodes = [open_episode(one, objects, with_ranges=with_ranges, limits=limits, progress=count) for one in runs]
+    try:
+        with _new_folder(target) if form.folder else replacing(target) as path:
+            notes = form.write(episodes, path, target.name)
+    except OSError as error:
+        what = f"'{target}' cannot be written: {error.strerror or error}"
+        raise RunError("file-access", what, "check permissions and the space left, or name another file") from None
+    return ExportResult(
+        run_ids=[one.id for one in runs],
+        format=form.name,
+        file=str(target),
+        bytes=_size_of(target),
+        objects=list(dict.fromkeys(actor.name for episode in episodes for actor in episode.actors)),
+        steps=sum(episode.last_step for episode in episodes),
+        notes=[*dict.fromkeys(note for one in runs for note in one.notes), *notes],
+    )
+
+
+def _target(form: Format, runs: Sequence[Run], out: str | Path | None) -> Path:
+    """The file or folder to write, whose name fits the format."""
+    if out is None:
+        if len(runs) > 1:
+            raise RunError("bad-argument", "several runs need a name for their file", "name it with -o", where="out")
+        out = f"{runs[0].id}{form.suffix}"
+    target = Path(out)
+    if not form.folder:
+        check_suffix(target, (form.suffix,))
+        if target.is_dir():
+            raise RunError("file-exists", f"'{clean(target, 200)}' is a folder", "name another file with -o")
+    elif target.exists():
+        raise RunError("file-exists", f"'{clean(target, 200)}' exists", "name another folder with -o")
+    return target
+
+
+@contextmanager
+def _new_folder(target: Path) -> Iterator[Path]:
+    """Yield a temporary folder beside ``target``, which gets that name if the block succeeds, else is deleted."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    temporary = target.with_name(f"{TEMPORARY}{os.urandom(4).hex()}")
+    temporary.mkdir()
+    try:
+        yield temporary
+        os.rename(temporary, target)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _size_of(target: Path) -> int:
+    """Size of a file, or of all files in a folder [bytes]."""
+    files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
+    return sum(path.stat().st_size for path in files)

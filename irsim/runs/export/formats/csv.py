@@ -1,0 +1,50 @@
+"""``csv``: the table of the format ``parquet`` as text, which needs no library; without metadata.
+
+Numbers read back exactly, empty cells stand for missing values, and flags are 0 and 1. Ranges are left out unless asked
+for; a scan is then one cell, its ranges separated by spaces.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from irsim.runs.export.columns import Cells, Ranges, Words, columns_of, table_parts
+from irsim.runs.export.episode import Episode
+from irsim.runs.export.registry import Format
+
+__all__ = ["FORMAT"]
+
+
+def _write(episodes: Sequence[Episode], target: Path, name: str) -> list[str]:
+    """Write one line for each row of the table."""
+    columns = columns_of(episodes)
+    with open(target, "w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([column.name for column in columns])
+        for episode in episodes:
+            for cells in table_parts(episode, columns):
+                writer.writerows(zip(*(_texts(cells[column.name]) for column in columns), strict=True))
+    return []
+
+
+def _texts(cells: Cells) -> list[str]:
+    """Cells as text."""
+    if isinstance(cells, Words):
+        return [cells.words[index] for index in cells.index.tolist()]
+    if isinstance(cells, Ranges):
+        texts, begin = [], 0
+        for length in cells.lengths.tolist():
+            scan = cells.values[begin : begin + max(0, length)]
+            begin += len(scan)
+            texts.append(" ".join(map(str, scan.tolist())))
+        return texts
+    if cells.dtype == np.bool_:
+        return ["1" if value else "0" for value in cells.tolist()]
+    return ["" if value != value else repr(value) for value in cells.tolist()]
+
+
+FORMAT = Format("csv", ".csv", _write, several=True, ranges=False)

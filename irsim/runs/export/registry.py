@@ -1,0 +1,80 @@
+"""The formats that runs are exported to, found by the names of their modules and imported on first use."""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import TypeAlias
+
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.runs.export.episode import Episode
+from irsim.runs.files import RunError
+
+__all__ = ["Format", "Writer", "find_format", "format_names"]
+
+_PACKAGE = "irsim.runs.export.formats"
+Writer: TypeAlias = Callable[[Sequence[Episode], Path, str], list[str]]
+"""Writes episodes to a path where nothing is yet, and returns notes on what it left out. The last argument is the name
+that the file or folder gets when it is complete."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format that recorded runs are exported to.
+
+    Attributes:
+        name: Its name, which is that of its module.
+        suffix: How names of its files end; for a folder, how the name of the folder ends.
+        write: Writes episodes to a path.
+        libraries: Modules that it needs, which the extra ``records`` installs.
+        several: Whether one file can hold several runs.
+        folder: Whether it writes a folder instead of a file.
+        ranges: Whether it has the ranges of lidars unless the caller decides.
+    """
+
+    name: str
+    suffix: str
+    write: Writer
+    libraries: tuple[str, ...] = ()
+    several: bool = False
+    folder: bool = False
+    ranges: bool = True
+
+
+@cache
+def format_names() -> tuple[str, ...]:
+    """Names of all formats."""
+    modules = pkgutil.iter_modules(import_module(_PACKAGE).__path__)
+    return tuple(sorted(info.name for info in modules if not info.name.startswith("_")))
+
+
+def find_format(name: str | None, out: Path | None) -> Format:
+    """The format with a name, or the one that the suffix of a file selects.
+
+    Raises:
+        RunError: There is no such format, or neither a name nor a file was given.
+    """
+    listed = f"the formats are {', '.join(format_names())}"
+    if name is None:
+        if out is None:
+            raise RunError("bad-argument", "no format was given", f"name one with --to; {listed}", where="to")
+        for known in map(_load, format_names()):
+            if out.suffix.lower() == known.suffix:
+                return known
+        what = f"the suffix of '{clean(out, 200)}' does not select a format"
+        raise RunError("unknown-format", what, f"name one with --to; {listed}", where="to")
+    if name not in format_names():
+        fix = suggestion(name, format_names(), listed)
+        raise RunError("unknown-format", f"{clean(name)!r} is not a format of runs", fix, where="to")
+    return _load(name)
+
+
+def _load(name: str) -> Format:
+    found = import_module(f"{_PACKAGE}.{name}").FORMAT
+    assert isinstance(found, Format)
+    return found

@@ -1,0 +1,161 @@
+"""Datasets as minari loads them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import irsim
+from irsim.runs import Run, RunError, open_run
+from tests.records.conftest import HALL
+
+pytestmark = pytest.mark.records
+
+
+@pytest.fixture
+def minari(monkeypatch: pytest.MonkeyPatch, workspace: Path) -> Any:
+    """The library, with datasets in the current directory."""
+    import minari as library
+
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(workspace))
+    return library
+
+
+def test_an_episode_for_each_robot(hall: Run, minari: Any) -> None:
+    result = irsim.export_run(hall, "hall-v0", to="minari")
+    assert result.file == "hall-v0"
+    dataset, trace = minari.load_dataset("hall-v0"), hall.trace()
+    assert dataset.total_episodes == 2
+    first, second = dataset[0], dataset[1]
+    arrival = next(event.step for event in hall.events if (event.kind, event.object) == ("arrival", "rover 1"))
+    assert 0 < arrival < 60
+    assert (len(first), len(second)) == (arrival, 60)
+    assert dataset.total_steps == arrival + 60
+    for column, episode in enumerate((first, second)):
+        steps = len(episode)
+        np.testing.assert_array_equal(episode.observations["pose"], trace.pose[: steps + 1, column])
+        np.testing.assert_array_equal(episode.actions, np.float32(trace.control[1 : steps + 1, column, :2]))
+        np.testing.assert_array_equal(episode.infos["step"], np.arange(steps + 1))
+        np.testing.assert_array_equal(episode.infos["goal"], trace.goal[: steps + 1, column])
+        for number in range(steps + 1):
+            assert dataset.observation_space.contains({k: v[number] for k, v in episode.observations.items()})
+        assert all(dataset.action_space.contains(action) for action in episode.actions)
+    assert first.terminations.tolist() == [False] * (arrival - 1) + [True]
+    assert not first.truncations.any()
+    assert not second.terminations.any()
+    assert second.truncations.tolist() == [False] * 59 + [True]
+    assert first.rewards.tolist() == [0] * (arrival - 1) + [1]
+    assert second.rewards.sum() == 0
+
+
+def test_goals_and_velocities_are_in_the_frame_of_the_robot(hall: Run, minari: Any) -> None:
+    irsim.export_run(hall, "hall-v0", to="minari")
+    episode, trace = minari.load_dataset("hall-v0")[1], hall.trace()
+    for row in (0, 1, 40):
+        x, y, theta = trace.pose[row, 1].tolist()
+        goal_x, goal_y, goal_theta = trace.goal[row, 1].tolist()
+        bearing = math.atan2(goal_y - y, goal_x - x) - theta
+        away = math.hypot(goal_x - x, goal_y - y)
+        wanted = (away * math.cos(bearing), away * math.sin(bearing), math.remainder(goal_theta - theta, 2 * math.pi))
+        assert episode.observations["goal"][row] == pytest.approx(wanted)
+    velocity = episode.observations["velocity"]
+    assert velocity[0].tolist() == [0, 0, 0]
+    np.testing.assert_allclose(velocity[1:, [0, 2]], episode.actions, atol=1e-6)  # what it did is what it then observes
+
+
+def test_scans_of_all_lidars_are_one_observation(hall: Run, minari: Any) -> None:
+    irsim.export_run(hall, "hall-v0", to="minari")
+    dataset, trace = minari.load_dataset("hall-v0"), hall.trace()
+    scan = dataset[1].observations["scan"]
+    assert scan.shape == (61, 8)
+    np.testing.assert_array_equal(scan[:, :5], np.minimum(trace.ranges["rover 2/0"], np.float32(3)))
+    np.testing.assert_array_equal(scan[:, 5:], np.minimum(trace.ranges["rover 2/1"], np.float32(9)))
+    assert dataset.observation_space["scan"].high.tolist() == [3.0] * 5 + [9.0] * 3
+    irsim.export_run(hall, "blind-v0", to="minari", ranges=False)
+    assert set(minari.load_dataset("blind-v0").observation_space) == {"pose", "velocity", "goal"}
+
+
+@pytest.mark.parametrize("numbers", [1, 800])
+def test_size_of_blocks_changes_nothing(hall: Run, minari: Any, monkeypatch: pytest.MonkeyPatch, numbers: int) -> None:
+    irsim.export_run(hall, "whole-v0", to="minari")
+    monkeypatch.setattr("irsim.runs.export.episode._BLOCK_NUMBERS", numbers)
+    irsim.export_run(hall, "parts-v0", to="minari")
+    whole, parts = (minari.load_dataset(f"{name}-v0") for name in ("whole", "parts"))
+    assert (whole.total_steps, whole.total_episodes) == (parts.total_steps, parts.total_episodes)
+    for one, other in zip(whole, parts, strict=True):
+        assert len(one) == len(other)
+        for field in ("actions", "rewards", "terminations", "truncations"):
+            np.testing.assert_array_equal(getattr(one, field), getattr(other, field))
+        for field in ("observations", "infos"):
+            for key, values in getattr(one, field).items():
+                np.testing.assert_array_equal(values, getattr(other, field)[key])
+    counts = [[facts["total_steps"] for facts in d.storage.get_episode_metadata([0, 1])] for d in (whole, parts)]
+    assert counts[0] == counts[1]
+
+
+def test_contacts_are_punished_and_end_the_episode_if_they_stop_the_robot(workspace: Path, minari: Any) -> None:
+    crash = HALL.replace("goal: [5, 1, 0]", "goal: [5, 6, 0]")
+    for mode, ends in (("stop", True), ("unobstructed", False)):
+        text = crash.replace("unobstructed", mode).replace("state: [4, 4, 0.3]", "state: [3, 3.5, 0.3]")
+        run = open_run(str(irsim.run(text=text, seed=3, steps=60, record=True).run_id))
+        begun = [e.step for e in run.events if e.kind == "collision" and "rover 1" in (e.object, e.partner)]
+        assert begun
+        irsim.export_run(run, f"{mode}-v0", to="minari", objects=["rover 1"])
+        episode = minari.load_dataset(f"{mode}-v0")[0]
+        assert episode.rewards[begun[0] - 1] == -1
+        assert (len(episode) == begun[0]) == ends
+        if ends:
+            assert episode.terminations[-1]
+
+
+def test_arrivals_of_a_wanderer_do_not_end_its_episode(workspace: Path, minari: Any) -> None:
+    text = """\
+world: {width: 6, height: 6}
+robot:
+  - name: nomad
+    shape: {name: circle, radius: 0.2}
+    kinematics: {name: diff}
+    state: [3, 3, 0]
+    behavior: {name: dash, wander: true, range_low: [2, 2, -3.14], range_high: [4, 4, 3.14]}
+  - {name: far, shape: {name: circle, radius: 0.2}, kinematics: {name: diff}, state: [1, 1, 0], goal: [5, 1, 0]}
+"""
+    run = open_run(str(irsim.run(text=text, seed=1, steps=400, record=True).run_id))
+    arrivals = [event.step for event in run.events if event.kind == "arrival"]
+    assert len(arrivals) > 2
+    irsim.export_run(run, "nomad-v0", to="minari", objects=["nomad"])
+    episode = minari.load_dataset("nomad-v0")[0]
+    assert len(episode) == 400
+    assert (np.flatnonzero(episode.rewards == 1) + 1).tolist() == arrivals
+    assert not episode.terminations.any()
+
+
+def test_several_runs_are_one_dataset_with_their_seeds(hall: Run, minari: Any) -> None:
+    other = open_run(str(irsim.run(text=HALL, seed=9, steps=20, record=True).run_id))
+    irsim.export_run([hall, other], "both-v3", to="minari")
+    dataset = minari.load_dataset("both-v3")
+    facts = list(dataset.storage.get_episode_metadata(range(4)))
+    assert [(item["run"], item["robot"], item["seed"]) for item in facts] == [
+        (run.id, robot, seed) for run, seed in ((hall, 3), (other, 9)) for robot in ("rover 1", "rover 2")
+    ]
+    assert [item["scenario"] for item in facts] == [HALL] * 4
+    assert dataset.storage.metadata["dataset_id"] == "both-v3"
+
+
+def test_what_is_no_dataset_is_refused_and_leaves_nothing(hall: Run, minari: Any) -> None:
+    for name, objects, message in (
+        ("hall", "movers", "end the name with -v and a number"),
+        ("hall-v0", ["walker"], "no robot has a goal and can move"),
+    ):
+        with pytest.raises(RunError, match=message):
+            irsim.export_run(hall, name, to="minari", objects=objects)
+    mixed = open_run(str(irsim.run(text=HALL.replace("diff", "omni", 1), seed=3, steps=5, record=True).run_id))
+    with pytest.raises(RunError, match="'rover 1' and 'rover 2' have different controls or lidars"):
+        irsim.export_run(mixed, "mixed-v0", to="minari")
+    assert [path.name for path in Path().iterdir()] == [".irsim"]
+    irsim.export_run(hall, "hall-v0", to="minari")
+    with pytest.raises(RunError, match="'hall-v0' exists"):
+        irsim.export_run(hall, "hall-v0", to="minari")
