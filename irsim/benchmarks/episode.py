@@ -49,6 +49,7 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
         "human_contacts": 0,
         "left": [],
         "jumped": [],
+        "zones": {},
     }
 )
 """Result of an episode that does not take place, without its outcome and metrics."""
