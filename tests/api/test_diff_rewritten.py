@@ -242,6 +242,7 @@ WORLD: dict[str, Any] = {
     "control_mode": "keyboard",
     "collision_mode": "stop",
     "boundary": "walls",
+    "after_arrival": "yield",
     "mdownsample": 2,
     "obstacle_map": {"name": "perlin", "resolution": 0.5},
     "fog_map": False,
