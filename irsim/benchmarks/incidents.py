@@ -25,6 +25,7 @@ def incident_counts(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
         "human_contacts": sum(episode.human_contacts > 0 for episode in episodes),
         "left": sum(bool(episode.left) for episode in episodes),
         "jumped": sum(bool(episode.jumped) for episode in episodes),
+        "seen": sum((episode.metrics.get("seen_ratio") or 0.0) > 0.0 for episode in episodes),
         CROWDED: len(episodes) - len(placed(episodes)),
     }
     return {key: count for key, count in counts.items() if count}
@@ -45,6 +46,8 @@ def incident_messages(episodes: Sequence[EpisodeRow]) -> list[str]:
         found.append(f"objects left the world in {many}{of_all}")
     if many := counts.get("jumped"):
         found.append(f"objects jumped over their goal in {many}{of_all}")
+    if many := counts.get("seen"):
+        found.append(f"robots were seen in {many}{of_all}")
     for name in dict.fromkeys(episode.scenario for episode in episodes):
         mine = [episode for episode in episodes if episode.scenario == name]
         crowded = sorted({episode.seed for episode in mine if episode.outcome == CROWDED})

@@ -75,8 +75,8 @@ class BenchmarkRow(Result):
     ``(all)``."""
     incidents: dict[str, int] = Field(default_factory=dict)
     """Number of episodes with what outcomes do not say: ``human_contacts`` (people touched each other), ``left`` (an
-    object left the world), ``jumped`` (one jumped over its goal); and ``placement-crowded``, the number of seeds
-    without room, which are not among ``episodes``. Only those above 0."""
+    object left the world), ``jumped`` (one jumped over its goal), ``seen`` (a robot was in the ``fov`` of another
+    object); and ``placement-crowded``, the number of seeds without room, which are not among ``episodes``. Only those above 0."""
 
 
 class EpisodeRow(Result):
@@ -135,7 +135,7 @@ class BenchmarkResult(Result):
     """Every episode."""
     incidents: list[str] = Field(default_factory=list)
     """What happened besides outcomes, in words: contacts between people, objects that left the world or jumped over
-    their goal, seeds without room."""
+    their goal, robots that were seen, seeds without room."""
     notes: list[str]
     """Remarks that matter for reading the numbers."""
     warnings: dict[str, list[Finding]]
