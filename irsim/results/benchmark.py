@@ -76,7 +76,8 @@ class BenchmarkRow(Result):
     incidents: dict[str, int] = Field(default_factory=dict)
     """Number of episodes with what outcomes do not say: ``human_contacts`` (people touched each other), ``left`` (an
     object left the world), ``jumped`` (one jumped over its goal), ``seen`` (a robot was in the ``fov`` of another
-    object); and ``placement-crowded``, the number of seeds without room, which are not among ``episodes``. Only those above 0."""
+    object); and ``placement-crowded``, the number of seeds without room, which are not among ``episodes``. Only those
+    above 0."""
 
 
 class EpisodeRow(Result):
