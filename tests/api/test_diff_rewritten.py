@@ -241,6 +241,7 @@ WORLD: dict[str, Any] = {
     "step_mode": "external",
     "control_mode": "keyboard",
     "collision_mode": "stop",
+    "after_arrival": "freeze",
     "boundary": "walls",
     "mdownsample": 2,
     "obstacle_map": {"name": "perlin", "resolution": 0.5},
