@@ -412,6 +412,33 @@ class RandomPlacement:
         attempts: int,
     ) -> None: ...
 
+class Perturbation:
+    """How far start, speeds and departure of an object may differ between scenes: uniform draws within these spreads.
+
+    Starts do not overlap other objects, except those that overlap at the poses of the template, do not leave `extent`,
+    and have no static object between them and the start of the template.
+
+    Args:
+        position: Largest change of x and of y [m].
+        heading: Largest change of the heading [rad].
+        speed: Largest change of the speeds, as a share of them.
+        delay: Longest time for which the object stands still at its start [s].
+        speeds: Controls that are speeds.
+        attempts: Maximum number of draws of a start.
+    """
+
+    def __init__(
+        self,
+        *,
+        object: int,
+        position: float,
+        heading: float,
+        speed: float,
+        delay: float,
+        speeds: Sequence[int],
+        attempts: int,
+    ) -> None: ...
+
 class FogView:
     """A robot without lidar that clears the fog in its field of view: a sector of `angle` [rad] and `reach` [m]."""
 
@@ -449,12 +476,14 @@ class World:
         placements: Sequence[RandomPlacement],
         copies: int,
         fog: Fog | None = None,
+        perturbations: Sequence[Perturbation] = (),
     ) -> None: ...
     # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles, 3 contact
     copies: int
     objects: int  # N
     step_time: float
     collision_mode: int  # may be set at run time
+    after_arrival: int  # 0: arrived only while at the goal, 1: stands still for good, 2: arrived for good
     extent: tuple[float, float, float, float]  # x0, y0, x1, y1 [m] of the box in which paths are planned; may be set
     def scans(self) -> list[tuple[int, int, int]]:
         """(object, first beam, number of beams) of each native sensor of one world, in order.
@@ -496,6 +525,8 @@ class State:
     collided: Flags  # (R,)
     stopped: Flags  # (R,)
     radius: Floats  # (R,) radius of the minimum bounding circle [m]
+    pace: Floats  # (R,) factor on the speeds of the object in this scene
+    start_step: NDArray[np.int64]  # (R,) steps for which the object stands still at its start in this scene
     infeasible: NDArray[np.int32]  # (R,) steps of the episode in which no velocity avoided every collision
     goal: Floats  # (R, 3) head of the goal queue; theta NaN for 2 numbers; x NaN without goal
     ranges: Floats  # (W * beams_per_world,)
@@ -526,7 +557,7 @@ class State:
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
         """Events since the last reset except the first `start`: (kind, step, object, partner or -1, x, y).
 
-        The kind is "arrival", "waypoint", "collision" or "no_path"; objects are given by their number.
+        The kind is "arrival", "waypoint", "collision", "no_path" or "overshoot"; objects are given by their number.
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) sorted pairs i < j whose closed shapes intersect now, including `unobstructed` ones."""
@@ -808,4 +839,6 @@ def nearest_points(
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""
 
-STREAMS: dict[str, int]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user
+STREAMS: dict[
+    str, int
+]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation

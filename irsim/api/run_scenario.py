@@ -26,6 +26,7 @@ from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.validation.validate import diff, fix, validate
 
 __all__ = [
@@ -49,6 +50,7 @@ def run(
     steps: int | None = None,
     strict: bool = False,
     behavior: str | Mapping[str, Any] | None = None,
+    perturb: Perturbations | None = None,
     imports: Sequence[str] = (),
     save: str | Path | None = None,
     show: bool = False,
@@ -67,6 +69,8 @@ def run(
         strict: Refuse what IR-SIM would ignore.
         behavior: Behavior of every robot instead of its own: a name, or a mapping with options (in Python or as YAML
             text, such as ``{name: orca, timeHorizon: 5}``).
+        perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
+            :func:`irsim.benchmark`.
         imports: Modules to import first, for behaviors that they register.
         save: Also write an animation to this file (gif, mp4, apng, …).
         show: Also show the episode live in a window.
@@ -80,14 +84,16 @@ def run(
     Raises:
         ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
         OverLimitError: ``steps`` exceeds the limits.
-        BenchmarkError: ``behavior`` is not a valid behavior.
+        PlacementError: There is no room for an object that is placed at random or perturbed.
+        BenchmarkError: ``behavior`` is not a valid behavior, or ``perturb`` not a valid perturbation.
         ArgumentError: ``steps`` is not a whole number.
         RunError: The folder to record to is not empty.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    behavior_text = _as_text(behavior)
+    behavior_text, perturbations = _as_text(behavior), read_perturbations(perturb)
     scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+    scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
     chosen = seed_of(scenario, seed)
     env = Env(scenario, seed=chosen, display=show, headless=save is None and not show, log_level="ERROR")
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
@@ -95,6 +101,7 @@ def run(
         "strict": strict,
         "imports": list(imports),
         **({} if behavior_text is None else {"behavior": behavior_text}),
+        **({"perturb": perturb_texts} if perturb_texts else {}),
     }
     with recording(env, path, record, horizon=horizon, options=options) as recorder:
         if recorder is not None and recorded is not None:
@@ -114,6 +121,7 @@ def run(
             imports=imports,
             strict=strict,
             behavior=behavior_text,
+            perturb=perturb_texts,
         )
         if recorder is not None:
             recorder.finish(result)

@@ -15,14 +15,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.episode import Job, Task, Until, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
-from irsim.episodes.episode import Progress, import_modules, read_scenario, source_of
+from irsim.episodes.episode import Progress, import_modules, read_document, source_of
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
 from irsim.scenario.behavior_override import (
@@ -33,6 +33,13 @@ from irsim.scenario.behavior_override import (
     parse_behavior,
 )
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
+from irsim.scenario.perturbation import (
+    Perturbations,
+    perturbation_text,
+    perturbed,
+    perturbed_message,
+    read_perturbations,
+)
 from irsim.scenario.resolve.randomness import random_parts
 from irsim.scenario.yaml.document import Document, load_path, load_text
 
@@ -42,15 +49,19 @@ DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
 _SEEDS_PER_TURN = 5
 """Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
-_COPIED = ("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures")
+_COPIED = (
+    *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
+    *("human_contacts", "left", "jumped"),
+)
 """Keys of the result of an episode that its row repeats."""
 
 
 def benchmark(
-    files: str | Path | Sequence[str | Path],
+    files: str | Path | Sequence[str | Path] | Mapping[str, str | Path | Document],
     behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
     seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
     *,
+    perturb: Perturbations | None = None,
     steps: int | None = None,
     strict: bool = False,
     imports: Sequence[str] = (),
@@ -59,17 +70,25 @@ def benchmark(
     most_episodes: int | None = None,
     progress: Progress | None = None,
     log: str | Path | None = None,
+    resume: bool = False,
+    until: Until = "done",
 ) -> BenchmarkResult:
     """Run every scenario under every behavior with every seed, and compare.
 
     Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+    An episode whose seed leaves no room for an object has the outcome ``placement-crowded`` and counts in no mean.
 
     Args:
-        files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result.
+        files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result. A
+            mapping gives them other names in the result.
         behaviors: Behaviors for all robots: names (``orca``), mappings with options, in Python or as YAML text
             (``{name: orca, timeHorizon: 5}``), or ``as-written`` for those of the scenario. Differences are to the
             first one.
         seeds: The number of seeds (0, 1, 2, …), or the seeds: a list, or text such as ``5-9`` or ``1,4,7``.
+        perturb: What each seed changes, to see whether a scenario still works when things start slightly differently:
+            one or several of a mapping such as ``{"position": 0.1, "heading": 0.2, "speed": 0.1, "delay": 2}``, text
+            as on the command line (``position=0.1,heading=10deg,objects=scout``), or a
+            :class:`irsim.scenario.perturbation.Perturbation`, which describes the keys. Draws are uniform.
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first, for behaviors that they register.
@@ -79,19 +98,22 @@ def benchmark(
         progress: Callback ``(episodes_done, episodes_total)``.
         log: File to which every episode is written as soon as it is done; ``irsim.benchmarks.logged(log)`` reads their
             result, also after the benchmark was interrupted.
+        resume: Go on with the log of an interrupted benchmark: its episodes are not run again.
+        until: ``done`` ends an episode when every robot has arrived or stopped, ``first_collision`` also when one
+            collides.
 
     Raises:
         ScenarioError: A scenario has errors, perhaps only with one of the behaviors; ScenarioNotFoundError: there is no
             such file.
         OverLimitError: More episodes or steps are requested than the limits allow.
-        BenchmarkError: A behavior or the seeds are invalid.
+        BenchmarkError: A behavior, the seeds or a perturbation are invalid.
         ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
     """
-    given = _sources(files)
-    names = _names(given)
+    names, given = _named_sources(files)
     wanted = _behavior_texts(behaviors)
-    chosen = seeds_from(seeds)
+    chosen, perturbations = seeds_from(seeds), read_perturbations(perturb)
+    texts = tuple(perturbation_text(item) for item in perturbations)
     if steps is not None:
         steps = check_whole_number("steps", steps)
     if workers is not None:
@@ -104,16 +126,14 @@ def benchmark(
             check_behavior_name(behavior)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
-    periods, chances = dict[str, float](), dict[str, list[str]]()
+    periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
-        scenario, warnings[name] = read_scenario(
-            None if document.path is None else name,
-            text=document.text if document.path is None else None,
-            strict=strict,
-            limits=limits,
-        )
+        scenario, warnings[name] = read_document(document, strict=strict)
+        scenario = perturbed(scenario, perturbations)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
+        if texts:
+            changes[name] = perturbed_message(scenario)
         for number, behavior in enumerate(wanted):
             job = Job(
                 text=str(document.text),
@@ -123,6 +143,8 @@ def benchmark(
                 strict=strict,
                 imports=tuple(imports),
                 limits=tuple(asdict(limits).items()),
+                until=until,
+                perturb=texts,
             )
             with _naming_behavior(number):
                 chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
@@ -140,13 +162,15 @@ def benchmark(
         behaviors=wanted,
         seeds=chosen,
         step_time=periods,
+        perturb=list(texts),
+        perturbed=changes,
         random=chances,
         rows=[],
         episodes=[],
         notes=[],
         warnings=warnings,
         version=version(),
-        reproduce=_command(names, wanted, chosen, steps, strict, imports),
+        reproduce=_command(names, wanted, chosen, texts, steps, strict, imports),
     )
 
     def row(number: int, result: Mapping[str, Any]) -> EpisodeRow:
@@ -155,16 +179,27 @@ def benchmark(
         copied = {key: result[key] for key in _COPIED}
         return EpisodeRow(scenario=name, behavior=behavior, seed=task.seed, metrics=metrics, **copied)
 
-    with nullcontext() if log is None else Log(log, head) as book:
+    known = dict(Log.known(log, head)) if log is not None and resume else {}
+    with nullcontext() if log is None else Log(log, head, known) as book:
 
         def keep(number: int, result: Mapping[str, Any]) -> None:
             if book is not None:
                 book.add(turns[number], row(turns[number], result))
 
-        tasks = [plan[number][2] for number in turns]
-        found = run_tasks(tasks, workers=workers or cores(), progress=progress, kept=keep)
-    results = dict(zip(turns, found, strict=True))
-    return with_episodes(head, [row(number, results[number]) for number in range(len(plan))])
+        turns = [number for number in turns if number not in known]
+        found = run_tasks(
+            [plan[number][2] for number in turns],
+            workers=workers or cores(),
+            progress=_after(progress, len(known)),
+            kept=keep,
+        )
+    episodes = known | {number: row(number, result) for number, result in zip(turns, found, strict=True)}
+    return with_episodes(head, [episodes[number] for number in range(len(plan))])
+
+
+def _after(progress: Progress | None, done: int) -> Progress | None:
+    """A callback that counts episodes which were done before, too."""
+    return None if progress is None else lambda now, total: progress(done + now, done + total)
 
 
 def _sources(files: Any) -> list[str]:
@@ -193,6 +228,17 @@ def _behavior_texts(behaviors: Any) -> list[str]:
     return found
 
 
+def _named_sources(files: Any) -> tuple[list[str], list[str | Document]]:
+    """Names of the scenarios in the result, and the scenarios: paths, texts or documents."""
+    if not isinstance(files, Mapping):
+        given = _sources(files)
+        return _names(given), list(given)
+    documents = {name: source for name, source in files.items() if isinstance(source, Document)}
+    others = _sources([source for source in files.values() if not isinstance(source, Document)])
+    texts = iter(others)
+    return list(map(str, files)), [documents[name] if name in documents else next(texts) for name in files]
+
+
 def _names(given: list[str]) -> list[str]:
     """Names of the scenarios in the result."""
     texts = [source for source in given if "\n" in source]
@@ -202,7 +248,9 @@ def _names(given: list[str]) -> list[str]:
     return [f"(text {next(number)})" if "\n" in source else source for source in given]
 
 
-def _document(source: str, limits: Limits) -> Document:
+def _document(source: str | Document, limits: Limits) -> Document:
+    if isinstance(source, Document):
+        return source
     if "\n" in source:
         return load_text(source, limits=limits)
     found = source_of(source, None, limits)
@@ -242,6 +290,7 @@ def _command(
     names: list[str],
     behaviors: list[str],
     seeds: list[int],
+    perturb: Sequence[str],
     steps: int | None,
     strict: bool,
     imports: Sequence[str],
@@ -253,6 +302,8 @@ def _command(
     if behaviors != [AS_WRITTEN]:
         words += ["--behaviors", ",".join(behaviors)]
     words += ["--seeds", _seeds_text(seeds)]
+    for text in perturb:
+        words += ["--perturb", text]
     if steps is not None:
         words += ["--steps", steps]
     if strict:

@@ -3,31 +3,55 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, Literal
 
+from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
+from irsim.episodes.incidents import find_incidents
+from irsim.episodes.out_of_bounds import find_exits
+from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
+from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
+from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
-from irsim.simulation.events import first_events
+from irsim.simulation.events import first_collisions, first_events
 from irsim.simulation.trace import record
 
-__all__ = ["Job", "Outcome", "Task", "run_task", "scenario_of"]
+__all__ = ["Job", "Outcome", "Task", "Until", "run_task", "scenario_of"]
 
 Outcome = Literal["success", "collision", "timeout"]
+Until = Literal["done", "first_collision"]
 _STRIDE = 100
 """Number of steps between two checks whether all humans have arrived."""
 _MAX_FAILURES = 10
 """Number of robots without success that an episode lists."""
+_MAX_NAMES = 10
+"""Number of objects that left the world, or jumped over their goal, that an episode lists."""
+_NOTHING: Mapping[str, Any] = MappingProxyType(
+    {
+        "steps": 0,
+        "sim_time": 0.0,
+        "time_limit": 0.0,
+        "robots": 0,
+        "unreachable": 0,
+        "failures": {},
+        "human_contacts": 0,
+        "left": [],
+        "jumped": [],
+    }
+)
+"""Result of an episode that does not take place, without its outcome and metrics."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +66,8 @@ class Job:
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
         limits: Limits of the loader and of the run, as (name, value) pairs.
+        until: ``done``, or ``first_collision`` to end the episode when a robot collides.
+        perturb: Perturbations of the scenario, as on the command line.
     """
 
     text: str
@@ -51,6 +77,8 @@ class Job:
     strict: bool
     imports: tuple[str, ...]
     limits: tuple[tuple[str, Any], ...]
+    until: Until = "done"
+    perturb: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -68,7 +96,7 @@ class Task:
     def of_data(data: dict[str, Any]) -> Task:
         """The task of the data that :meth:`as_data` returns."""
         job = data["job"]
-        job["imports"] = tuple(job["imports"])
+        job["imports"], job["perturb"] = tuple(job["imports"]), tuple(job["perturb"])
         job["limits"] = tuple((name, value) for name, value in job["limits"])
         return Task(Job(**job), data["seed"])
 
@@ -79,13 +107,24 @@ def scenario_of(job: Job) -> ResolvedScenario:
 
     Raises:
         ScenarioError: The scenario has errors.
+        BenchmarkError: The behavior or a perturbation does not fit the scenario.
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
-    return with_behavior(document, parse_behavior(job.behavior), strict=job.strict)
+    scenario = with_behavior(document, parse_behavior(job.behavior), strict=job.strict)
+    return perturbed(scenario, read_perturbations(job.perturb))
 
 
 def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
+    """Run an episode, see :func:`_run`; a seed without room for an object is the outcome ``placement-crowded``."""
+    try:
+        return _run(task, ways)
+    except PlacementError:
+        metrics = {metric.key: math.nan for metric in (*METRICS, *EPISODE_METRICS)}
+        return {**_NOTHING, "outcome": CROWDED, "metrics": metrics}
+
+
+def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     """Run an episode until every robot has arrived or stopped, or the horizon is reached, and measure it.
 
     Args:
@@ -94,16 +133,20 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
 
     Returns:
         ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (number of robots without a
-        path to their goal), ``failures`` (outcome of robots without success, by name), and ``metrics`` of the episode
-        by key (NaN where undefined).
+        path to their goal), ``failures`` (outcome of robots without success, by name), ``human_contacts`` (number of
+        contacts between people), ``left`` and ``jumped`` (objects that left the world or jumped over their goal), and
+        ``metrics`` of the episode by key (NaN where undefined).
     """
     job = task.job
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
     horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     simulation = env.simulation
-    trace = record(simulation, horizon)
-    steps = int(simulation.count[0])
-    measured = episode_metrics(trace, simulation, env.events, ways=ways)
+    trace, events, records = record(simulation, horizon), env.events, env.scenario.objects
+    if job.until == "first_collision":
+        last = _first_collision(env)
+        trace, events = trace.until(last), [event for event in events if event.step <= last]
+    steps = int(trace.step[-1])
+    measured, incidents = episode_metrics(trace, simulation, events, ways=ways), find_incidents(records, events)
     measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)
     env.end(ending_time=0.0)
     robots = measured.robots
@@ -120,8 +163,20 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         "robots": len(robots),
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
         "failures": _failures(measured),
+        "human_contacts": len(incidents.human_contacts),
+        "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][
+            :_MAX_NAMES
+        ],
+        "jumped": list(incidents.jumps)[:_MAX_NAMES],
         "metrics": measured.episode,
     }
+
+
+def _first_collision(env: Env) -> int:
+    """Step of the first collision of a robot; that of the last step without one."""
+    robots = {robot.name for robot in env.robot_list}
+    steps = [event.step for name, event in first_collisions(env.simulation, env.events).items() if name in robots]
+    return min([*steps, int(env.simulation.count[0])])
 
 
 def _pedestrian_delay(task: Task, env: Env, horizon: int) -> float:

@@ -8,17 +8,19 @@ from __future__ import annotations
 import json
 import os
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from irsim.benchmarks.summary import notes_of, rows_of
+from irsim.benchmarks.incidents import incident_messages
+from irsim.benchmarks.summary import notes_of, perturbation_notes, rows_of
+from irsim.common.files import write_atomically
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
-from irsim.runs.files import refusal, unreadable
+from irsim.runs.files import RunError, refusal, unreadable
 
-__all__ = ["Log", "logged", "with_episodes"]
+__all__ = ["Log", "as_log", "logged", "with_episodes"]
 
-_FLAGS = os.O_CREAT | os.O_TRUNC | os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
+_FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
 class Log:
@@ -28,17 +30,39 @@ class Log:
         file: The file, which is replaced if it exists.
         head: The result without episodes.
 
+        known: Episodes that an earlier log of the same benchmark holds, by their places.
+
     Raises:
         RunError: The file cannot be written.
     """
 
-    def __init__(self, file: str | Path, head: BenchmarkResult) -> None:
+    def __init__(self, file: str | Path, head: BenchmarkResult, known: Mapping[int, EpisodeRow] | None = None) -> None:
         self._lock, self._open = threading.Lock(), True
+        self.complete = True
+        lines = [head.model_dump_json(), *(_line(number, row) for number, row in sorted((known or {}).items()))]
         try:
-            self._descriptor = os.open(file, _FLAGS, 0o600)
+            write_atomically(Path(file), "".join(f"{line}\n" for line in lines))
+            self._descriptor = os.open(file, _FLAGS)
         except OSError as error:
             raise refusal(file, error) from None
-        self._add(head.model_dump_json())
+
+    @staticmethod
+    def known(file: str | Path, head: BenchmarkResult) -> dict[int, EpisodeRow]:
+        """The episodes of an earlier log of the same benchmark, by their places; none without a log.
+
+        Raises:
+            RunError: The log cannot be read, or belongs to another benchmark.
+        """
+        if not Path(file).exists():
+            return {}
+        old, episodes = _read(file)
+        if old != head:
+            raise RunError(
+                "other-benchmark",
+                f"{str(file)!r} is the log of another benchmark or of another version",
+                "start again in another folder, or with the arguments and files of the first start",
+            )
+        return episodes
 
     def add(self, number: int, episode: EpisodeRow) -> None:
         """Write an episode; may be called from any thread.
@@ -47,7 +71,7 @@ class Log:
             number: Place of the episode in the order.
             episode: The episode.
         """
-        self._add(f'{{"number": {number}, "episode": {episode.model_dump_json()}}}')
+        self._add(_line(number, episode))
 
     def __enter__(self) -> Log:
         """Return the log."""
@@ -67,6 +91,7 @@ class Log:
                 self._open = self._open and os.write(self._descriptor, line) == len(line)
             except OSError:
                 self._open = False
+            self.complete = self.complete and self._open
 
 
 def logged(file: str | Path) -> BenchmarkResult:
@@ -75,20 +100,37 @@ def logged(file: str | Path) -> BenchmarkResult:
     Raises:
         RunError: The file cannot be read, or is not a log of a benchmark.
     """
+    head, episodes = _read(file)
+    return with_episodes(head, [episodes[number] for number in sorted(episodes)])
+
+
+def as_log(result: BenchmarkResult) -> str:
+    """The log of a finished benchmark, with its episodes in order."""
+    head = result.model_copy(update={"episodes": [], "rows": [], "notes": []})
+    lines = [head.model_dump_json(), *(_line(number, row) for number, row in enumerate(result.episodes))]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:
+    """The result without episodes, and the episodes by their places."""
     try:
         lines = Path(file).read_bytes().split(b"\n")[:-1]  # a killed process may have left half a line
         head = BenchmarkResult.model_validate_json(lines[0])
         found = [json.loads(line) for line in lines[1:]]
-        episodes = {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in found}
+        return head, {int(item["number"]): EpisodeRow.model_validate(item["episode"]) for item in found}
     except OSError as error:
         raise refusal(file, error) from None
     except (ValueError, LookupError, TypeError):
         raise unreadable(f"{str(file)!r} is not a log of a benchmark") from None
-    return with_episodes(head, [episodes[number] for number in sorted(episodes)])
+
+
+def _line(number: int, episode: EpisodeRow) -> str:
+    return f'{{"number": {number}, "episode": {episode.model_dump_json()}}}'
 
 
 def with_episodes(head: BenchmarkResult, episodes: Sequence[EpisodeRow]) -> BenchmarkResult:
     """A copy of a result with its episodes and with the rows and notes that follow from them."""
     rows = rows_of(episodes, head.scenarios, head.behaviors, head.random)
-    notes = notes_of(episodes, head.random, head.seeds)
-    return head.model_copy(update={"episodes": list(episodes), "rows": rows, "notes": notes})
+    notes = perturbation_notes(head.perturbed) + notes_of(episodes, head.random, head.seeds)
+    found = {"episodes": list(episodes), "rows": rows, "notes": notes, "incidents": incident_messages(episodes)}
+    return head.model_copy(update=found)

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from irsim.benchmarks.incidents import incident_counts, placed
 from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
@@ -80,10 +81,22 @@ def rows_of(
         certain = name != ALL and not random[name]
         for behavior in behaviors:
             mine = [episode for episode in chosen if episode.behavior == behavior]
-            if not mine:  # no episode is done yet
+            if not placed(mine):  # no episode is done yet, or no seed has room
                 continue
             rows.append(_row(name, behavior, mine, first if behavior != behaviors[0] else {}, certain))
     return rows
+
+
+def perturbation_notes(changes: Mapping[str, Sequence[str]]) -> list[str]:
+    """Notes about what each seed changes in each scenario; one note if it is the same in all.
+
+    Args:
+        changes: What each seed changes in each scenario, in words.
+    """
+    notes = {name: f"perturbed, drawn uniformly for each seed: {'; '.join(parts)}" for name, parts in changes.items()}
+    if len(set(notes.values())) == 1:
+        return list(notes.values())[:1]
+    return [f"{name}: {note}" for name, note in notes.items()]
 
 
 def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]], seeds: Sequence[int]) -> list[str]:
@@ -99,7 +112,7 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
     if fixed and len(seeds) > 1:
         notes.append(
             f"{listed(fixed, _MAX_NAMED)}: nothing is random, so every seed gives the same run and only one was "
-            "simulated; random placement or motion noise would make seeds differ"
+            "simulated; random placement, motion noise or perturb would make seeds differ"
         )
     lost = sorted({episode.scenario for episode in episodes if episode.unreachable})
     if lost:
@@ -113,8 +126,9 @@ def notes_of(episodes: Sequence[EpisodeRow], random: Mapping[str, Sequence[str]]
 
 
 def _row(
-    name: str, behavior: str, episodes: list[EpisodeRow], first: dict[Any, EpisodeRow], certain: bool
+    name: str, behavior: str, every: list[EpisodeRow], first: dict[Any, EpisodeRow], certain: bool
 ) -> BenchmarkRow:
+    episodes = placed(every)
     outcomes = [episode.outcome for episode in episodes]
     shares: dict[str, Any] = {
         outcome: proportion(outcomes.count(outcome), len(outcomes), certain=certain)
@@ -142,6 +156,7 @@ def _row(
             if outcome in outcomes and name != ALL
         },
         failures={} if name == ALL else _frequent_failures(episodes),
+        incidents=incident_counts(every),
         **shares,
     )
 

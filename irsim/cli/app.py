@@ -19,6 +19,7 @@ from irsim.cli import (
     replay,
     run,
     schema,
+    suites,
     templates,
     validate,
 )
@@ -68,6 +69,7 @@ for _command in (
     replay.replay,
     export.export,
     benchmark.benchmark,
+    suites.suites,
     render.render,
     describe.describe,
     schema.schema,

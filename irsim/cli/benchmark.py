@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import re
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from irsim.cli.options import Imports, Json, MaxObjects, Steps, Strict
+from irsim.cli.options import Imports, Json, MaxObjects, Perturb, Steps, Strict
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -41,18 +42,28 @@ _MEDIUM_WIDTH = 96
 
 
 def benchmark(
-    files: Annotated[list[str], typer.Argument(help="Scenario files (YAML).", show_default=False)],
+    files: Annotated[
+        list[str] | None,
+        typer.Argument(help="Scenario files (YAML), or one suite: a name or a suite file.", show_default=False),
+    ] = None,
     behaviors: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="A,B,…",
             help="Behaviors of all robots to compare, such as rvo,orca or '{name: orca, timeHorizon: 5}'. The first is "
-            "the reference for differences.",
+            "the reference for differences. Of a suite: names of its policies, or other behaviors.",
+            show_default="as-written, or all of a suite",
         ),
-    ] = "as-written",
+    ] = None,
     seeds: Annotated[
-        str, typer.Option(metavar="N|LIST", help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7.")
-    ] = "10",
+        str,
+        typer.Option(
+            metavar="N|LIST",
+            help="Number of seeds from 0, or a list of seeds: 20, 5-9, 1,4,7. Of a suite: the number of its seeds.",
+            show_default="10, or those of a suite",
+        ),
+    ] = "",
+    perturb: Perturb = None,
     steps: Steps = None,
     json_output: Json = False,
     csv_output: Annotated[
@@ -67,33 +78,60 @@ def benchmark(
         ),
     ] = None,
     max_objects: MaxObjects = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            show_default=False,
+            help="Folder for the episodes and the result. A suite has .irsim/benchmarks/NAME-HASH by default.",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="Go on with the interrupted benchmark in -o, else with the last one here."),
+    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="Run all seeds of a suite.")] = False,
+    protocols: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--protocol",
+            metavar="NAME",
+            show_default=False,
+            help="Only this protocol of a suite: freeze, yield or as-written. Repeatable.",
+        ),
+    ] = None,
+    scenarios: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--scenario",
+            metavar="NAME",
+            show_default=False,
+            help="Only these scenarios of a suite, by their names or the name of their family. Repeatable.",
+        ),
+    ] = None,
 ) -> None:
     """Compare behaviors: run every scenario with every behavior and the same seeds, on all cores.
 
     The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
-    --json and --csv contain all metrics.
+    --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
+    as it is done; after an interruption, --resume goes on there, and the results are those of an undisturbed run.
     """
     from irsim.benchmarks import BenchmarkError
-    from irsim.benchmarks import benchmark as compare
-    from irsim.cli.findings import import_user_modules, limits_for
-    from irsim.cli.output import console, print_json, progress
-    from irsim.scenario.behavior_override import split_behaviors
+    from irsim.cli.benchmark_run import Wanted, run_benchmark
+    from irsim.cli.findings import import_user_modules
+    from irsim.cli.output import console, print_json
 
     if json_output and csv_output:
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
-    with progress("simulating") as report:
-        result = compare(
-            files,
-            split_behaviors(behaviors),
-            seeds,
-            steps=steps,
-            strict=strict,
-            imports=imports or (),
-            workers=workers,
-            limits=limits_for(max_objects),
-            progress=report,
-        )
+    wanted = Wanted(
+        files=files or [], behaviors=behaviors, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
+        imports=imports or [], workers=workers, max_objects=max_objects, folder=output, resume=resume, full=full,
+        protocols=protocols or [], scenarios=scenarios or [],
+    )  # fmt: skip
+    result = run_benchmark(wanted)
     if json_output:
         print_json(result)
     elif csv_output:
@@ -127,7 +165,9 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     table.add_column("behavior", no_wrap=True, overflow="ellipsis")
     for heading in ("n", "success", "collision", "timeout", "time s", *(heading for _, heading, _ in columns)):
         table.add_column(heading, justify="right", no_wrap=True)
-    labels, behaviors = _labels(result.scenarios), labels_of(result.behaviors)
+    labels, behaviors = _labels(result.scenarios), _policies(result) or labels_of(result.behaviors)
+    if result.incidents:
+        out.print(f"{clean('; '.join(result.incidents), 400)}")
     last = None
     for row in result.rows:
         if last not in (None, row.scenario):
@@ -169,6 +209,11 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     periods = sorted(set(result.step_time.values()))
     out.print(f"metrics are sampled in every step ({', '.join(f'{period:g} s' for period in periods)})")
     out.print(Text.assemble("reproduce: ", (result.reproduce, "cyan")), soft_wrap=True)
+
+
+def _policies(result: BenchmarkResult) -> dict[str, str]:
+    """Behavior → name that a suite gives it; empty without a suite."""
+    return {text: name for name, text in getattr(result, "policies", {}).items()}
 
 
 def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["File", "Imports", "Json", "MaxObjects", "Seed", "Steps", "Strict"]
+__all__ = ["File", "Imports", "Json", "MaxObjects", "Perturb", "Seed", "Steps", "Strict"]
 
 File = Annotated[str, typer.Argument(help="Scenario file (YAML).", show_default=False)]
 Seed = Annotated[
@@ -27,6 +27,16 @@ Imports = Annotated[
     list[str] | None,
     typer.Option(
         "--import", metavar="MODULE", help="First import a Python module that registers behaviors. Repeatable."
+    ),
+]
+Perturb = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--perturb",
+        metavar="KEY=SPREAD,…",
+        help="Let the seed change starts uniformly within spreads: position=0.1 (m, ± in x and y), heading=10deg (±), "
+        "speed=10% (±), delay=2 (0 to 2 s). With objects=NAME,TAG,… only those objects. Repeatable.",
+        show_default=False,
     ),
 ]
 MaxObjects = Annotated[

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from irsim.cli.guard import FAILED
-from irsim.cli.options import File, Imports, Json, MaxObjects, Seed, Steps, Strict
+from irsim.cli.options import File, Imports, Json, MaxObjects, Perturb, Seed, Steps, Strict
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -41,6 +41,7 @@ def run(
             show_default=False,
         ),
     ] = None,
+    perturb: Perturb = None,
     imports: Imports = None,
     require_success: Annotated[
         bool, typer.Option("--require-success", help="Exit with code 1 unless every robot reaches its goal.")
@@ -81,6 +82,7 @@ def run(
             steps=steps,
             strict=strict,
             behavior=behavior,
+            perturb=perturb,
             imports=imports or (),
             save=save_gif,
             show=show,

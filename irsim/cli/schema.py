@@ -1,9 +1,9 @@
-"""``irsim schema``: write the JSON Schema of scenario files, for editors."""
+"""``irsim schema``: write the JSON Schemas of scenario and suite files, for editors."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -25,32 +25,42 @@ def schema(
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit with code 1 if the file is out of date.")
     ] = False,
+    kind: Annotated[
+        Literal["scenario", "suite"] | None,
+        typer.Option("--of", help="Files that the schema describes. Default: both, and scenarios with -o."),
+    ] = None,
     scenario: Annotated[
         Path | None,
         typer.Option("--for", metavar="FILE", help="Add a first line to FILE with which editors find the schema."),
     ] = None,
 ) -> None:
-    """Write the JSON Schema of scenario files, or connect a file to it."""
+    """Write the JSON Schemas of scenario files and of suite files, or connect a scenario file to its schema."""
     if scenario is not None:
         _connect(scenario)
         return
+    from irsim.benchmarks.suite_schema import suite_schema_text
     from irsim.common import data_files as resources
     from irsim.common.files import write_atomically
     from irsim.scenario.model.json_schema import schema_text
 
-    text = schema_text()
+    makers = {"scenario": schema_text, "suite": suite_schema_text}
     if str(out) == "-" or (out is None and not check and resources.checkout() is None):
-        typer.echo(text, nl=False)
+        typer.echo(makers[kind or "scenario"](), nl=False)
         return
-    target = out or resources.schema_file()
-    if not check:
-        write_atomically(target, text)
-        typer.echo(f"wrote {target}")
-    elif not target.is_file() or target.read_text(encoding="utf-8") != text:
-        typer.echo(f"{target} is out of date: run irsim schema to update it", err=True)
+    kinds = [kind] if kind is not None else ["scenario"] if out is not None else list(makers)
+    stale = False
+    for one in kinds:
+        target, text = out or resources.schema_file(one), makers[one]()
+        if not check:
+            write_atomically(target, text)
+            typer.echo(f"wrote {target}")
+        elif not target.is_file() or target.read_text(encoding="utf-8") != text:
+            typer.echo(f"{target} is out of date: run irsim schema to update it", err=True)
+            stale = True
+        else:
+            typer.echo(f"{target} is up to date")
+    if stale:
         raise typer.Exit(FAILED)
-    else:
-        typer.echo(f"{target} is up to date")
 
 
 def _connect(scenario: Path) -> None:

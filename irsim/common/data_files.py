@@ -25,9 +25,9 @@ def templates_directory() -> Path:
     return (checkout() or _PACKAGE / "_bundled") / "templates"
 
 
-def schema_file() -> Path:
-    """The JSON Schema of scenario files."""
-    return (checkout() or _PACKAGE / "_bundled") / "schema" / "scenario.schema.json"
+def schema_file(of: str = "scenario") -> Path:
+    """The JSON Schema of scenario files, or of files of another kind."""
+    return (checkout() or _PACKAGE / "_bundled") / "schema" / f"{of}.schema.json"
 
 
 def skills_directory() -> Path:

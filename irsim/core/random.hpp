@@ -14,9 +14,20 @@
 
 namespace irsim {
 
-enum class Stream : std::uint64_t { placement, shape, goal, motion, sensor, behavior, planner, map, user };
-constexpr std::array<const char*, 9> kStreamNames = {"placement", "shape",   "goal", "motion", "sensor",
-                                                     "behavior",  "planner", "map",  "user"};
+enum class Stream : std::uint64_t {
+  placement,
+  shape,
+  goal,
+  motion,
+  sensor,
+  behavior,
+  planner,
+  map,
+  user,
+  perturbation
+};
+constexpr std::array<const char*, 10> kStreamNames = {"placement", "shape",   "goal", "motion", "sensor",
+                                                      "behavior",  "planner", "map",  "user",   "perturbation"};
 
 /// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {

@@ -40,6 +40,7 @@ __all__ = [
     "default_time_limit",
     "horizon_of",
     "import_modules",
+    "read_document",
     "read_scenario",
     "seed_of",
     "source_of",
@@ -129,14 +130,28 @@ def seed_of(scenario: ResolvedScenario, seed: int | None) -> int | None:
 
 
 def default_time_limit(scenario: ResolvedScenario, env: Env) -> float:
-    """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s."""
+    """Time limit [s] of a scenario without one: 4 times the longest straight route at top speed, at least 30 s.
+
+    The longest delay of a start, of robots that are perturbed, is added.
+    """
     longest = 0.0
     for view in env.robot_list:
         points = [view.position[:, 0], *(goal[:2, 0] for goal in view.goals)]
         way = sum(math.dist(a, b) for a, b in itertools.pairwise(points))
         if view.max_speed > 0:
             longest = max(longest, way / view.max_speed)
-    return max(MIN_HORIZON, HORIZON_FACTOR * longest)
+    delays = [record.spreads.delay for record in scenario.robots() if record.spreads is not None]
+    return max(MIN_HORIZON, HORIZON_FACTOR * longest) + max(delays, default=0.0)
+
+
+def read_document(document: Document, *, strict: bool) -> tuple[ResolvedScenario, list[Finding]]:
+    """Read a scenario from a document; see :func:`read_scenario`.
+
+    Raises:
+        ScenarioError: The scenario has errors.
+    """
+    scenario, diagnostics = or_raise(read(document, strict=strict, limits=document.limits))
+    return scenario, [as_finding(diagnostic) for diagnostic in diagnostics]
 
 
 def source_of(path: str | Path | None, text: str | None, limits: Limits | None) -> str | Document:

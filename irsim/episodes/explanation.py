@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from irsim.common.text import listed, quoted, seconds
+from irsim.episodes.incidents import Incidents, contacts_message, jumps_message
 from irsim.episodes.out_of_bounds import exits_message
 from irsim.episodes.stuck import (
     find_circling,
@@ -51,6 +52,7 @@ def summary_message(
     held: dict[str, Event],
     events: Sequence[Event],
     left: Sequence[Left],
+    incidents: Incidents,
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
@@ -58,10 +60,15 @@ def summary_message(
         parts.append(hit)
     if out := exits_message(env.scenario, left):
         parts.append(out)
+    if jumps := jumps_message(incidents.jumps):
+        parts.append(jumps)
     if gone := _departures_message(env, robots):
         parts.append(gone)
     if others := others_arrived_message(env.scenario, events):
         parts.append(others)
+    said = bool(held) or incidents.human_contacts[:1] == list(hits[:1])
+    if touched := contacts_message(incidents.human_contacts, brief=said):
+        parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
@@ -177,6 +184,9 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"
     if any(event.kind == "no_path" and event.object == robot.name for event in last) and speed < standing:
         return f"stands still {place}: there is no path to it"
+    if env.simulation.waits(view.row):
+        start = float(env.simulation.start_step[view.row]) * env.step_time
+        return f"still waits {place} (its start is delayed to {seconds(start)})"
     if speed >= standing:
         if circle := _circling_message(env, view, events):
             return f"circles its goal: {circle}"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from irsim.common.version import version
 from irsim.episodes.explanation import has_one_end, reason_message, summary_message
+from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.reproduce import reproduce_command
 from irsim.episodes.stuck import find_jammed
@@ -46,6 +47,7 @@ def run_result(
     imports: Sequence[str] = (),
     strict: bool = False,
     behavior: str | None = None,
+    perturb: Sequence[str] = (),
 ) -> RunResult:
     """Make the result of an episode.
 
@@ -59,6 +61,7 @@ def run_result(
         imports: Modules that were imported for the scenario.
         strict: Whether the scenario was read strictly.
         behavior: Behavior that every robot had instead of its own.
+        perturb: Perturbations of the scenario, as on the command line.
     """
     events = env.events
     hits, counts = _collisions(env, events)
@@ -66,22 +69,25 @@ def run_result(
     held = find_jammed(env.simulation, events)
     parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
     robots = _robots(env, events, counts, parked)
-    left = _exits(env)
+    left, incidents = _exits(env), find_incidents(env.scenario.objects, events)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
         outcome = "success"
     elif "collision" in ends:
         outcome = "collision"
-    extra = () if behavior is None else ("--behavior", behavior)
+    extra = [] if behavior is None else ["--behavior", behavior]
+    for perturbation in perturb:
+        extra += ["--perturb", perturbation]
     given = horizon if source in ("argument", "limits") else None
     return RunResult(
         scenario="(text)" if path is None else str(path),
         seed=env.seed,
         random=random_parts(env.scenario),
         behavior=behavior,
+        perturb=list(perturb),
         outcome=outcome,
-        summary=summary_message(env, robots, hits, behavior, parked, held, events, left),
+        summary=summary_message(env, robots, hits, behavior, parked, held, events, left, incidents),
         reason=None if outcome == "success" else reason_message(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -91,6 +97,8 @@ def run_result(
         parked=parked,
         jammed=list(held),
         left=left[:MAX_LISTED_EXITS],
+        jumped=list(incidents.jumps)[:MAX_LISTED_EXITS],
+        human_contacts=len(incidents.human_contacts),
         events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in listed[:_MAX_EVENTS]],
         event_count=len(listed),
         warnings=warnings,

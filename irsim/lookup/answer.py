@@ -12,7 +12,7 @@ from irsim.diagnostics.errors import CodedError
 
 __all__ = ["Answer", "Key", "Kind", "TopicError"]
 
-Kind = Literal["index", "key", "component", "template", "code", "guide", "metric", "search"]
+Kind = Literal["index", "key", "component", "template", "code", "guide", "metric", "search", "suite"]
 
 
 class _Data(BaseModel):

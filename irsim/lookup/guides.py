@@ -37,9 +37,27 @@ GUIDES: dict[str, Guide] = {
         "what is random, and how to repeat it",
         "These are random: distribution random, shapes with random_shape, wander goals, maps without their own seed, "
         "noise. The same file, seed and version give the same run, bit by bit. The argument seed overrides world.seed; "
-        "without either, a seed is drawn and reported. A scenario without any of these runs the same with every seed.",
+        "without either, a seed is drawn and reported. A scenario without any of these runs the same with every seed; "
+        "perturb lets the seed change its starts.",
         None,
         ("random", "randomness", "reproducible", "reproduce"),
+    ),
+    "perturb": Guide(
+        "starts that differ a little with each seed",
+        "Does it still work when things start slightly differently? An option of `irsim run` and `irsim benchmark` "
+        "(--perturb), an argument of run_episode, benchmark, irsim.run and irsim.benchmark; no key of a scenario. "
+        "position=0.1: the start is up to 0.1 m off, in x and in y, either way. heading=10deg (or 0.17, in rad): "
+        "either way. speed=10%: the limits of forward and sideways speed, and the speeds in the options of behaviors, "
+        "either way. delay=2: the object stands still at its start for 0 to 2 s; the clock runs. Each is drawn "
+        "uniformly by the seed, for each object on its own. objects=NAME,TAG,ROLE (robot, obstacle) chooses objects; "
+        "without it, all that can move. Static objects take part only by name or tag; random starts stay random "
+        "starts. A start that overlaps something, leaves the world or lies behind something static is drawn again. "
+        "Several, separated by ';': the later one counts where both name an object.",
+        "irsim benchmark hall.yaml --seeds 30 --perturb 'position=0.1,heading=10deg; delay=2,objects=pedestrian'",
+        (
+            *("perturbation", "perturbations", "robust", "robustness", "disturb", "disturbance", "jitter", "vary"),
+            *("variation", "slightly different", "sensitivity"),
+        ),
     ),
     "units": Guide(
         "metres, seconds, radians; x to the right, y up",
@@ -83,9 +101,9 @@ GUIDES: dict[str, Guide] = {
         "under it. (unobstructed on shelves lets it through, but then nothing is tested; on the drone it does not "
         "help.) A side view with y as height is a drawing, not a flight: label it as such. All objects exist and move "
         "from t = 0: no start times, delays, spawning, vanishing, or events at a time. To stagger arrivals, start "
-        "farther away, by speed x delay (template crossing-pedestrians). Doors and walls "
-        "that open at a time or on a signal do not exist; an object that slides back and forth is an obstacle with "
-        "kinematics omni and behavior {name: dash, loop: true}. No weather, slippery floors, speed zones, traffic "
+        "farther away, by speed x delay (template crossing-pedestrians); perturb delays starts by chance. Doors and "
+        "walls that open at a time or on a signal do not exist; an object that slides back and forth is an obstacle "
+        "with kinematics omni and behavior {name: dash, loop: true}. No weather, slippery floors, speed zones, traffic "
         "lights, right of way, priorities, batteries, radio, cameras or arms; sensors are planar lidars. gravity, "
         "friction and mass only affect pushing (collision_mode contact). Say what is not possible, and offer the "
         "closest alternative, labelled as such. (Speed limits are vel_min, vel_max and acce.)",
@@ -119,7 +137,10 @@ GUIDES: dict[str, Guide] = {
         "steps given, else world.time_limit, else the longest time that a robot needs for the straight lines between "
         "its goals at top speed, times 4, and at least 30 s. success: every robot arrived without a collision; "
         "collision: a robot was stopped by a collision, or arrived after one; timeout: any other end (where "
-        "collision_mode lets robots drive on, contacts are only counted). Contacts are reported when they begin. "
+        "collision_mode lets robots drive on, contacts are only counted). Contacts are reported when they begin. The "
+        "summary also counts contacts between people, objects that left the world, and those that jumped over their "
+        "goal: passed it within goal_threshold between two steps (event overshoot) and never arrived. In a benchmark, "
+        "a seed without room for an object is placement-crowded and counts in no rate. "
         "Object names are numbered through, robots first: obstacle_3 in a file with one robot is the third obstacle; "
         "pictures shorten it to o3.",
         None,

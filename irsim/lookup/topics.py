@@ -33,6 +33,7 @@ from irsim.lookup.schema_walk import (
     step,
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
+from irsim.lookup.suites import suite_answer, suite_names, suites_answer
 from irsim.lookup.synonyms import named
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
@@ -71,6 +72,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         "guides": guides_answer,
         "metric": all_metrics,
         "metrics": all_metrics,
+        "suites": suites_answer,
         "templates": templates_answer,
     }
     if name in lists:
@@ -83,6 +85,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return code_answer(topic.strip())
     if name in templates.names():
         return template_answer(templates.load(name))
+    if topic.strip() in suite_names():
+        return suite_answer(topic.strip())
     if topic.strip() in DIFFERENCES:
         return difference_answer(topic.strip())
     schema = json_schema() if schema is None else schema

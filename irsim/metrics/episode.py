@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from irsim.common.arrays import Floats
 from irsim.metrics.clearances import Clearance, clearance
 from irsim.metrics.definitions import METRICS
 from irsim.metrics.geodesic import Geodesics, inscribed_radius
@@ -89,7 +90,7 @@ def episode_metrics(
         distances,
         simulation,
         np.asarray(simulation.radius[: simulation.objects], dtype=np.float64),
-        [_top_speed(records[robot].vel_max, records[robot].kinematics) for robot in robots],
+        [_top_speed(simulation.limits(robot)[1], records[robot].kinematics) for robot in robots],
     )
     geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
@@ -144,7 +145,7 @@ def _without_rounding_error(value: float) -> float:
     return 0.0 if abs(value) < _TINY else value
 
 
-def _top_speed(vel_max: Sequence[float], kinematics: object) -> float:
+def _top_speed(vel_max: Floats, kinematics: object) -> float:
     if kinematics is None:
         return 0.0
     # not the norm of both: most behaviors never use both at once

@@ -190,7 +190,7 @@ def tracks(
                 arrival=arrival,
                 collisions=tuple(hits),
                 control=trace.control[rows, robot, : record.vel_dim][1:],
-                limits=np.maximum(np.abs(record.vel_min), np.abs(record.vel_max)),
+                limits=np.maximum(*np.abs(simulation.limits(robot))),
                 outside=(x < x0) | (x > x1) | (y < y0) | (y > y1),
                 others=trace.pose[rows][:, them],
                 others_static=beside[rows][:, humans != robot],

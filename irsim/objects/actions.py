@@ -55,11 +55,10 @@ def _control(view: SimObject, action: Any) -> list[float]:
 
 def beyond_limits(view: SimObject, control: Sequence[float]) -> bool:
     """Return whether the limits of speed or acceleration cut a control."""
-    record = view.record
-    limits = zip(control, record.vel_min, record.vel_max, strict=True)
+    limits = zip(control, view.vel_min[:, 0], view.vel_max[:, 0], strict=True)
     if any(not low - TOLERANCE <= value <= high + TOLERANCE for value, low, high in limits):
         return True
-    if all(rate == math.inf for rate in record.acce):
+    if all(rate == math.inf for rate in view.record.acce):
         return False
     lowest, highest = view.get_vel_range()
     return bool(

@@ -46,7 +46,7 @@ class ObjectAvoidance(ObjectBody):
         distance = math.hypot(dx, dy)
         if distance <= goal_threshold:
             return column([0.0, 0.0])
-        top = self.record.vel_max
+        top = self._simulation.limits(self.row)[1].tolist()
         first, second = (
             top[0],
             top[1] if getattr(self.record.kinematics, "speeds", 2) == 2 and len(top) > 1 else top[0],

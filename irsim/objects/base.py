@@ -184,7 +184,7 @@ class SimObject:
     @property
     def max_speed(self) -> float:
         """Largest speed that the limits allow [m/s]; 0 for objects without a drive."""
-        top = self.record.vel_max
+        top = self._simulation.limits(self.row)[1].tolist()
         if self.kinematics is None:
             return 0.0
         if (handler := self._handler) is not None:
@@ -331,12 +331,12 @@ class SimObject:
     @property
     def vel_min(self) -> Floats:
         """Lower limits of the control, (vel_dim, 1)."""
-        return column(self.record.vel_min)
+        return column(self._simulation.limits(self.row)[0])
 
     @property
     def vel_max(self) -> Floats:
         """Upper limits of the control, (vel_dim, 1)."""
-        return column(self.record.vel_max)
+        return column(self._simulation.limits(self.row)[1])
 
     @property
     def acce(self) -> Floats:

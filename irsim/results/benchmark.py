@@ -52,7 +52,7 @@ class BenchmarkRow(Result):
     behavior: str
     """The robots' behavior, or ``as-written``."""
     episodes: int
-    """Number of episodes."""
+    """Number of episodes, without those that are ``placement-crowded``."""
     success: Proportion
     """Every robot reached its goal without a collision before."""
     collision: Proportion
@@ -70,6 +70,10 @@ class BenchmarkRow(Result):
     failures: dict[str, int] = Field(default_factory=dict)
     """Number of episodes by failing robot and kind of failure, the ten most frequent: ``'car': timeout``; empty for
     ``(all)``."""
+    incidents: dict[str, int] = Field(default_factory=dict)
+    """Number of episodes with what outcomes do not say: ``human_contacts`` (people touched each other), ``left`` (an
+    object left the world), ``jumped`` (one jumped over its goal); and ``placement-crowded``, the number of seeds
+    without room, which are not among ``episodes``. Only those above 0."""
 
 
 class EpisodeRow(Result):
@@ -81,8 +85,8 @@ class EpisodeRow(Result):
     """The robots' behavior, or ``as-written``."""
     seed: int
     """Its seed."""
-    outcome: Literal["success", "collision", "timeout"]
-    """As in :class:`RunResult`."""
+    outcome: Literal["success", "collision", "timeout", "placement-crowded"]
+    """As in :class:`RunResult`; ``placement-crowded``: the seed leaves no room for an object, so nothing was run."""
     steps: int
     """Number of executed steps."""
     sim_time: float
@@ -93,6 +97,12 @@ class EpisodeRow(Result):
     """Number of robots for which no path to their goal was found."""
     failures: dict[str, str]
     """How the first ten unsuccessful robots failed, by name: ``timeout``, or ``collision with 'crate'``."""
+    human_contacts: int = 0
+    """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
+    left: list[str] = Field(default_factory=list)
+    """The first ten moving objects whose position left the world."""
+    jumped: list[str] = Field(default_factory=list)
+    """The first ten objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
     metrics: dict[str, float | None]
     """Metrics of the episode by key; None where undefined."""
 
@@ -108,12 +118,19 @@ class BenchmarkResult(Result):
     """The seeds, the same for all."""
     step_time: dict[str, float]
     """Period of each scenario [s]: metrics are sampled at every step."""
+    perturb: list[str] = Field(default_factory=list)
+    """Perturbations of starts, speeds and delays, as on the command line."""
+    perturbed: dict[str, list[str]] = Field(default_factory=dict)
+    """What they change in each scenario, in words; empty without a perturbation."""
     random: dict[str, list[str]]
     """What the seed decides in each scenario; a scenario in which it decides nothing runs with the first seed only."""
     rows: list[BenchmarkRow]
     """By scenario, then behavior; then all scenarios together, if there are several with equal numbers of episodes."""
     episodes: list[EpisodeRow]
     """Every episode."""
+    incidents: list[str] = Field(default_factory=list)
+    """What happened besides outcomes, in words: contacts between people, objects that left the world or jumped over
+    their goal, seeds without room."""
     notes: list[str]
     """Remarks that matter for reading the numbers."""
     warnings: dict[str, list[Finding]]

@@ -1,4 +1,4 @@
-"""Short labels for behaviors with many options, and short lists of failed seeds."""
+"""Labels in tables: short ones for behaviors with many options, lists of failed seeds, seeds without room."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 from irsim.common.text import listed
 
-__all__ = ["labels_of", "seeds_of"]
+__all__ = ["CROWDED", "labels_of", "seeds_of"]
+
+CROWDED = "placement-crowded"
+"""Outcome of an episode of a benchmark whose seed leaves no room for an object."""
 
 MAX_LABEL = 24
 """Characters of a behavior that is its own label; a longer one is numbered."""

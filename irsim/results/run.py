@@ -18,8 +18,9 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 class EventRecord(Result):
     """Something that happened in an episode."""
 
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
-    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path."""
+    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
+    """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
+    object passes its goal within ``goal_threshold`` between two steps without arriving."""
     time: float
     """Simulated time [s]."""
     step: int
@@ -82,6 +83,8 @@ class RunResult(Result):
     """What the seed decides; empty if every seed gives the same run."""
     behavior: str | None = None
     """Behavior of every robot instead of its own; None: the scenario as written."""
+    perturb: list[str] = Field(default_factory=list)
+    """Perturbations of starts, speeds and delays, as on the command line."""
     outcome: Literal["success", "collision", "timeout"]
     """``success`` when every robot succeeded, ``collision`` when any collided, otherwise ``timeout``."""
     summary: str
@@ -104,6 +107,10 @@ class RunResult(Result):
     """Moving obstacles that a collision with another obstacle has stopped."""
     left: list[Left] = Field(default_factory=list)
     """The first moving objects whose position left the world; ``world.boundary: walls`` keeps objects in."""
+    jumped: list[str] = Field(default_factory=list)
+    """The first objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
+    human_contacts: int = 0
+    """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
     events: list[EventRecord]
     """The first events, in order; repeated arrivals of an object at the same goal count once."""
     event_count: int

@@ -57,7 +57,7 @@ class Run:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Other options of the run: ``strict``, ``imports``, ``behavior``."""
+        """Other options of the run: ``strict``, ``imports``, ``behavior``, ``perturb``."""
         options = self.meta.get("options")
         return options if isinstance(options, dict) else {}
 

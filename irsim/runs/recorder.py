@@ -309,7 +309,8 @@ def recording(
         path: Scenario file, None for a text.
         record: Whether to record, or the folder to record to.
         horizon: Greatest number of steps.
-        options: Other options of the run: ``strict``, ``imports``, and ``behavior`` if that of the robots was replaced.
+        options: Other options of the run: ``strict``, ``imports``, ``behavior`` if that of the robots was replaced, and
+            ``perturb`` if starts were perturbed.
     """
     if record is False:
         yield None

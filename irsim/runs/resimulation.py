@@ -14,6 +14,7 @@ from irsim.runs.reading import Run
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.open import or_raise
 from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.read import read
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
@@ -45,8 +46,10 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     if isinstance(behavior, str):
         from irsim.scenario.behavior_override import parse_behavior, with_behavior
 
-        return with_behavior(document, parse_behavior(behavior), strict=strict)
-    return or_raise(read(document, strict=strict, limits=limits))[0]
+        scenario = with_behavior(document, parse_behavior(behavior), strict=strict)
+    else:
+        scenario = or_raise(read(document, strict=strict, limits=limits))[0]
+    return perturbed(scenario, read_perturbations(options.get("perturb")))
 
 
 def resimulate(

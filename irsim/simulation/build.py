@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.components.behaviors.follow import Follow
+from irsim.components.kinematics._handler import handler_class
 from irsim.components.maps._grid import MapCells, Walls
 from irsim.options.registry import (
     BEHAVIORS,
@@ -28,12 +30,15 @@ if TYPE_CHECKING:
 
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded"]
+__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded", "speed_controls"]
 
+AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
 """Name of a collision mode -> its number in the core."""
 PLACEMENT_ATTEMPTS = 1000
 """Number of positions that are tried for a randomly placed object before the placement fails."""
+_CORE_CONTROLS = 3
+"""Number of controls of an object that the core keeps."""
 _ROLES = {"robot": 0, "obstacle": 1}
 _TARGETS = {"all": 0, "robot": 1, "obstacle": 2}
 _ARRIVE = {"position": 0, "state": 1}
@@ -43,6 +48,15 @@ def padded(values: Sequence[float], fill: float = 0.0) -> list[float]:
     """Return three numbers: ``values``, cut off or padded with ``fill``."""
     row = [float(v) for v in values[:3]]
     return row + [fill] * (3 - len(row))
+
+
+def speed_controls(record: ObjectRecord) -> tuple[int, ...]:
+    """Return the indices of the controls of an object that are speeds [m/s]; empty without a drive."""
+    known = getattr(record.kinematics, "speeds", 0)
+    if known or record.kinematics is None:
+        return tuple(range(known))
+    drive = handler_class(str(getattr(record.kinematics, "name", "")))  # a drive written in Python
+    return () if drive is None else tuple(drive.translation_rows)
 
 
 def feature_of(registry: Registry, options: BaseModel) -> Feature:
@@ -215,7 +229,18 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         ],
         copies=copies,
         fog=build_fog(scenario),
+        perturbations=[
+            core.Perturbation(
+                object=index,
+                **asdict(record.spreads),
+                speeds=[control for control in speed_controls(record) if control < _CORE_CONTROLS],
+                attempts=PLACEMENT_ATTEMPTS,
+            )
+            for index, record in enumerate(scenario.objects)
+            if record.spreads is not None
+        ],
     )
+    world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
     return world

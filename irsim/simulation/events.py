@@ -23,8 +23,9 @@ class Event(NamedTuple):
 
     Attributes:
         kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
-            ``collision`` (a contact of two objects begins; reported once per contact, not per step) or ``no_path``
-            (``follow`` has found no path).
+            ``collision`` (a contact of two objects begins; reported once per contact, not per step), ``no_path``
+            (``follow`` has found no path) or ``overshoot`` (the object passed its goal within the threshold between two
+            steps without arriving; reported once per goal).
         time: Simulated time [s].
         step: Number of executed steps at the event; 0 is the initial state.
         object: Name of the object; for a collision, of the first of the two objects.
@@ -32,7 +33,7 @@ class Event(NamedTuple):
         x, y: Position of the object, or a point of the contact [m, world frame].
     """
 
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
     time: float
     step: int
     object: str

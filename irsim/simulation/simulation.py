@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import irsim._core as core
 from irsim.common.log import Logger
-from irsim.diagnostics.diagnostic import Diagnostic
 from irsim.diagnostics.errors import PlacementError
-from irsim.simulation.build import COLLISION_MODES, Built, build_world
+from irsim.simulation.build import COLLISION_MODES, Built, build_world, speed_controls
+from irsim.simulation.no_room import no_room
 from irsim.simulation.protocols import ExternalDrives, StepHooks
 from irsim.simulation.random_streams import generator
 
@@ -57,6 +57,8 @@ class Simulation:
         command, given: (R, 3), (R,) control wanted for the next step, and whether the caller has imposed it on the row.
         arrived, collided, stopped: (R,) flags, uint8.
         goal: (R, 3) present goals; NaN without a goal.
+        pace: (R,) factor on the speeds of an object; 1 unless the scenario is perturbed.
+        start_step: (R,) number of steps for which an object stands still at its start; 0 likewise.
         scans: (owner, first beam, number of beams) of each native sensor of a world.
         velocity_slices: (first row, number of rows) of each native sensor in the measured velocities.
         infeasible: (R,) number of steps in which the behavior found no collision-free velocity (`orca`).
@@ -120,6 +122,7 @@ class Simulation:
         self.command, self.given = state.command, state.given
         self.arrived, self.collided, self.stopped = state.arrived, state.collided, state.stopped
         self.goal, self.radius = state.goal, state.radius
+        self.pace, self.start_step = state.pace, state.start_step
         self.infeasible = state.infeasible
         self.ranges, self.hits, self.valid = state.ranges, state.hits, state.valid
         self.count = state.count
@@ -262,6 +265,24 @@ class Simulation:
         """Return a context for resolving contacts, in which drives written in Python follow the changed velocities."""
         return nullcontext() if self.drives is None else self.drives.feeling()
 
+    def waits(self, row: int) -> bool:
+        """Return whether a row stands still because its start is delayed."""
+        return bool(self.count[row // self.objects] < self.start_step[row])
+
+    def stands(self, row: int) -> bool:
+        """Return whether a row cannot move now: a collision has stopped it, or its start is delayed."""
+        return bool(self.stopped[row]) or self.waits(row)
+
+    def limits(self, row: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the lower and upper limits of the controls of a row in the present scene, (vel_dim,) each."""
+        record = self.scenario.objects[row % self.objects]
+        low, high = np.array(record.vel_min, dtype=np.float64), np.array(record.vel_max, dtype=np.float64)
+        if self.pace[row] != 1.0:
+            speeds = list(speed_controls(record))
+            low[speeds] *= self.pace[row]
+            high[speeds] *= self.pace[row]
+        return low, high
+
     def row_state(self, row: int, size: int) -> NDArray[np.float64]:
         """Return a copy of the (size,) pose and extra state of a row."""
         return np.concatenate([self.pose[row], self.extra[row, : size - 3]])
@@ -373,22 +394,4 @@ class Simulation:
         if not failed.size:
             return
         index = int(self.state.failed_placement[failed[0]])
-        raise PlacementError([self._crowded(index, int(self.state.seed[failed[0]]))], self.scenario.text)
-
-    def _crowded(self, index: int, seed: int) -> Diagnostic:
-        record = self.scenario.objects[index]
-        placement: Any = next(p for p in self.scenario.placements if record.id in p.objects)
-        low, high = placement.range_low, placement.range_high
-        area = abs((high[0] - low[0]) * (high[1] - low[1]))
-        return Diagnostic(
-            code="placement-crowded",
-            severity="error",
-            path=(*record.path, "distribution"),
-            message=(
-                f"no room for {record.name!r} with seed {seed}: {len(placement.objects)} objects of this entry "
-                f"share {area:.3g} m2"
-            ),
-            given=len(placement.objects),
-            fix="lower `number` or `min_distance`, make the shapes smaller, or widen range_low/range_high",
-            file=self.scenario.source,
-        )
+        raise PlacementError([no_room(self.scenario, index, int(self.state.seed[failed[0]]))], self.scenario.text)

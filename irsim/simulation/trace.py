@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -88,6 +88,15 @@ class Trace:
 
     def __len__(self) -> int:
         return len(self.step)
+
+    def until(self, step: int) -> Trace:
+        """The rows up to a step."""
+        rows = int(np.searchsorted(self.step, step, side="right"))
+        if rows == len(self):
+            return self
+        kept = {name: getattr(self, name)[:rows] for name in _BY_ROW}
+        ranges = {key: values[:rows] for key, values in self.ranges.items()}
+        return replace(self, **kept, ranges=ranges)
 
 
 def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans: bool = False) -> Trace:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from irsim.common.text import clean
+from irsim.results.labels import CROWDED
 from irsim_mcp.errors import failure
 
 __all__ = ["call_to_repeat", "check_finished", "episodes_table"]
@@ -48,14 +49,16 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
     start = _start(cursor, len(episodes))
     labels = labels_of(result["behaviors"])
     rows = [_row(episode, labels) for episode in episodes[start : start + limit]]
-    lost = [episode for episode in episodes if episode["outcome"] != "success"]
+    lost = [episode for episode in episodes if episode["outcome"] not in ("success", CROWDED)]
+    crowded = sum(episode["outcome"] == CROWDED for episode in episodes)
+    without = f", and {crowded} without room ({CROWDED})" if crowded else ""
     shown = start + len(rows)
     return {
         "run_id": state["id"],
         "status": state["status"],
         "outcome": None,
         "view": "episodes",
-        "summary": f"{len(episodes)} episodes, of which {len(lost)} without success (listed first)",
+        "summary": f"{len(episodes)} episodes, of which {len(lost)} without success (listed first){without}",
         "columns": list(_COLUMNS),
         "rows": rows,
         "total": len(episodes),
@@ -77,6 +80,7 @@ def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str
         given = "scenario_yaml=<the same text>" if text[1] is None else f"scenario_yaml=<text {text[1]} of scenarios>"
     words = ["run_episode", given, f"seed={episode['seed']}"]
     words += [f"behavior={clean(behavior, 500)!r}"] if behavior != "as-written" else []
+    words += [f"perturb={'; '.join(result['perturb'])!r}"] if result["perturb"] else []
     words += [f"max_steps={steps[1]}"] if steps else []
     return " ".join(words)
 

@@ -17,14 +17,14 @@ from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
 
-ScenarioPath = Annotated[str | None, Field(description="Scenario file: path relative to the workspace.")]
-ScenarioYaml = Annotated[str | None, Field(description="Or the scenario as YAML text (at most 256 KiB).")]
+ScenarioPath = Annotated[str | None, Field(description="Path of a scenario in the workspace.")]
+ScenarioYaml = Annotated[str | None, Field(description="Or its YAML text (at most 256 KiB).")]
 Seed = Annotated[
     int | None,
     Field(
         ge=0,
         le=MAX_SEED,
-        description="Seed of every random draw. Default: the scenario's own, else drawn and reported.",
+        description="Of all draws. Default: the scenario's, else drawn and reported.",
     ),
 ]
 

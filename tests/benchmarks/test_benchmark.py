@@ -16,7 +16,7 @@ from irsim.benchmarks import AS_WRITTEN, BenchmarkError
 from irsim.benchmarks import pool as pool_module
 from irsim.benchmarks.episode import Job, Task, scenario_of
 from irsim.cli.app import app
-from irsim.diagnostics.errors import OverLimitError, PlacementError, ScenarioNotFoundError
+from irsim.diagnostics.errors import BehaviorError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson
 from irsim.results.labels import labels_of, seeds_of
 from irsim.scenario.behavior_override import parse_behavior
@@ -289,12 +289,15 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
         assert error.value.where == "behaviors[1]"
 
 
-def test_an_episode_that_fails_is_raised_as_it_is(tmp_path, monkeypatch) -> None:
+def test_an_episode_that_fails_is_raised_as_it_is(files, monkeypatch) -> None:
     monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
-    path = tmp_path / "full.yaml"
-    path.write_text(CROWD.replace("number: 3", "number: 30").replace("radius: 0.2", "radius: 0.7"))
-    with pytest.raises(PlacementError, match="seed 0"):
-        irsim.benchmark(str(path), seeds=4, workers=2)
+
+    @irsim.register_behavior("diff", "breaks_here")
+    def breaks(ego_object, external_objects, **kwargs):
+        return None
+
+    with pytest.raises(BehaviorError, match="'breaks_here' of 'robot_0' returned None"):
+        irsim.benchmark(files[0], "breaks_here", 4, workers=2)
 
 
 def test_a_behavior_that_only_this_program_knows(files, monkeypatch) -> None:

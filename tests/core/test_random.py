@@ -27,5 +27,6 @@ def test_blocks_are_those_of_numpy(seed: int, scene: int, noise: int, stream: in
 def test_streams_have_names() -> None:
     assert sorted(core.STREAMS.values()) == list(range(len(core.STREAMS)))
     assert set(core.STREAMS) == {
-        "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user"
+        "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user",
+        "perturbation",
     }  # fmt: skip

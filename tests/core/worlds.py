@@ -122,6 +122,8 @@ def scene(
     placements: Sequence[core.RandomPlacement] = (),
     history: bool = False,
     fog: core.Fog | None = None,
+    perturbations: Sequence[core.Perturbation] = (),
+    extent: Sequence[float] = (0.0, 0.0, 10.0, 10.0),
 ) -> tuple[core.World, core.State]:
     """World and state of these objects; one copy per seed."""
     world = core.World(
@@ -132,7 +134,10 @@ def scene(
         placements=placements,
         copies=len(seeds),
         fog=fog,
+        perturbations=perturbations,
     )
+    if perturbations:
+        world.extent = tuple(extent)
     return world, core.State(world, np.array(seeds, dtype=np.uint64), history)
 
 

@@ -46,7 +46,7 @@ def main(file: str, old: str, new: str, *cases: str) -> None:
     from irsim_evals.proof.trials import trials_of
 
     for trial in (trial for case in cases for trial in trials_of(case, Counter())):
-        result = tried(trial, True)
+        result = tried(trial, False)
         if result is None:
             continue
         kind, verdict, second = result

@@ -102,13 +102,13 @@ async def test_a_job_whose_process_is_killed_keeps_every_episode_and_says_so(wor
 
 
 async def test_a_job_that_fails_half_way_says_why_and_keeps_the_episodes_before(workspace: Path) -> None:
-    crowd = RANDOM.replace("number: 3", "number: 9").replace("radius: 0.2", "radius: 0.37")
-    crowd = crowd.replace("[1, 1, -3]", "[0.5, 0.5, -3]").replace("[7, 7, 3]", "[3.5, 3.5, 3]")
-    async with connected(workspace) as client:
-        ended = data_of(await client.call_tool("benchmark", {"scenarios": [crowd], "seeds": 60}))
+    larger = RANDOM.replace("number: 3", "number: 6")
+    async with connected(workspace, work=200) as client:
+        asked = {"scenarios": [RANDOM, larger], "seeds": 4, "max_steps": 60}
+        ended = data_of(await client.call_tool("benchmark", asked))
     assert ended["status"] == "interrupted"
-    assert 0 < ended["done"] == ended["rows"][0]["episodes"] < 60
-    assert ended["next"].startswith("no room for 'robot_8' with seed ")
+    assert ended["done"] == ended["rows"][0]["episodes"] == 4
+    assert ended["next"].startswith("60 steps are too many: at most 200 steps x objects are run at once")
     assert "fewer seeds" not in ended["next"]
 
 

@@ -77,7 +77,8 @@ def grade(
     verdicts = {work.folder: grader.grade(work) for work in works}
     show_verdicts(list(verdicts.values()), json_output)
     if output is not None:
-        _write(output, arm or folder.resolve().name, works, verdicts)
+        place = folder.resolve()
+        _write(output, arm or (place.parent if works[0].folder == folder else place).name, works, verdicts)
     if watch:
         _watch(folder, case, grader, verdicts, changes, json_output)
     if not all(verdict.strict for verdict in verdicts.values()):
@@ -117,7 +118,10 @@ def _works(folder: Path, case: str | None) -> list[_Work]:
     works = (_work(path, path.resolve().name, known) for path in (folder, *sorted(folder.iterdir())) if path.is_dir())
     found = [work for work in works if work is not None]
     if not found:
-        raise ArgumentError(f"{folder} holds no exported case", "write some with irsim-evals export DIR")
+        raise ArgumentError(
+            f"{folder} holds no exported case",
+            "write some with irsim-evals export DIR; for a folder with another name give --case ID",
+        )
     return found
 
 

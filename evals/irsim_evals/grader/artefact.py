@@ -21,8 +21,10 @@ _TEXT = (
     ".bat", ".ps1", ".patch",
 )  # fmt: skip
 _SCENARIO = (".yaml", ".yml", ".json")
+_PLAIN = ("Makefile", "makefile", "justfile")
+"""Names of further files that are read."""
 _REPLY = re.compile(r"reply(?:-(\d{1,3}))?\.md")
-_FENCE = re.compile(r"```(?:ya?ml)?[^\n`]*\n(.*?)```", re.DOTALL)
+_FENCE = re.compile(r"(?:```|~~~)(?:ya?ml)?[^\n`]*\n(.*?)(?:```|~~~)", re.DOTALL)
 _SECTIONS = re.compile(r"^[ \t]*[{\"']?(?:world|robot|obstacle)[\"']?[ \t]*:", re.MULTILINE)
 _WORLD = re.compile(r"^[ \t]*[{\"']?world[\"']?[ \t]*:", re.MULTILINE)
 _IGNORED = re.compile(r"prompt(?:-\d+)?\.md|log\.jsonl|calls\.jsonl")
@@ -55,7 +57,8 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
         if path.is_symlink() or not path.resolve().is_relative_to(root):
             raise ArtefactError(f"{relative} is a link, and links are not followed")
         ending = path.suffix.lower()
-        if not path.is_file() or ending not in (*_TEXT, *BINARY) or _IGNORED.fullmatch(relative.name):
+        known = ending in (*_TEXT, *BINARY) or relative.name in _PLAIN
+        if not path.is_file() or not known or _IGNORED.fullmatch(relative.name):
             continue
         seen += 1
         if seen > _MAX_FILES:
@@ -66,7 +69,8 @@ def from_folder(folder: Path, name: str = "", turns: int = 1) -> Answer:
         if ending in BINARY:
             blobs[relative.as_posix()] = path.read_bytes()
             continue
-        text = path.read_bytes().decode("utf-8", errors="replace")
+        # Of a scenario that is not UTF-8, the simulator must not be spared what makes it refuse the file.
+        text = path.read_bytes().decode("utf-8", errors="surrogateescape" if ending in _SCENARIO else "replace")
         number = _turn_of(relative.as_posix(), turns)
         if number is None:
             texts[relative.as_posix()] = text

@@ -1,4 +1,8 @@
-"""Which episodes a program starts: written down while it runs, in its own process, and read afterwards."""
+"""Which episodes a program starts: written down while it is rehearsed, in its own process, and read afterwards.
+
+In a rehearsal nothing moves: a step only counts. So every episode goes on to the horizon that the program has for it,
+and hundreds of episodes take seconds. A benchmark runs one episode, whose result stands for all.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Started", "read_log", "watch"]
+__all__ = ["Started", "read_log", "rehearse"]
 
 _WATCHED = 8
 """Number of simulations whose steps are followed at the same time; a program steps the newest ones."""
@@ -25,15 +29,14 @@ class Started:
         file: Path of the scenario, relative to the folder of the answer; empty for a text.
         behaviors: Names of the behaviors of its robots.
         seed: Its seed.
-        horizon: Number of steps after which it is ended; None where the program counts the steps itself.
-        steps: Number of steps that the program was seen to take.
+        steps: Number of steps of the episode if nobody arrives; None where only the scenario ends it, and it does not
+            say when.
     """
 
     file: str
     behaviors: tuple[str, ...]
     seed: int
-    horizon: int | None = None
-    steps: int = 0
+    steps: int | None
 
 
 def read_log(path: Path) -> list[Started]:
@@ -51,9 +54,9 @@ def read_log(path: Path) -> list[Started]:
     return list(found.values())
 
 
-def watch(path: Path) -> None:
-    """Write down from now on what episodes this process starts: those of benchmarks when they are planned, others when
-    the next one begins and at the end of the process."""
+def rehearse(path: Path) -> None:
+    """Simulate nothing from now on, and write down what episodes this process starts: those of benchmarks when they are
+    planned, others when the next one begins and at the end of the process."""
     from irsim.benchmarks import comparison
     from irsim.simulation.simulation import Simulation
 
@@ -61,12 +64,16 @@ def watch(path: Path) -> None:
     planner: Any = comparison
     plain_tasks, plain_init, plain_reset = planner.run_tasks, Simulation.__init__, Simulation.reset
 
-    def run_tasks(tasks: Sequence[Any], **options: Any) -> Any:
+    def run_tasks(tasks: Sequence[Any], *, workers: int, progress: Any = None, kept: Any = None) -> Any:
         log.plan(tasks)
         try:
-            return plain_tasks(tasks, **options)
+            [one] = plain_tasks(tasks[:1], workers=1)
         finally:
             log.planned = False
+        for number in range(len(tasks)):
+            if kept is not None:
+                kept(number, one)
+        return [one] * len(tasks)
 
     def init(self: Any, *arguments: Any, **options: Any) -> None:
         log.write()
@@ -77,7 +84,17 @@ def watch(path: Path) -> None:
         log.write()
         plain_reset(self, *arguments, **options)
 
+    def step(self: Any) -> None:
+        self.count += 1
+
+    def advance(self: Any, steps: int, *, until_done: bool = False) -> int:
+        self.count += steps
+        return steps
+
     planner.run_tasks = run_tasks
+    Simulation.step = step  # type: ignore[method-assign]
+    Simulation.advance = advance  # type: ignore[method-assign]
+    Simulation.in_python = property(lambda _: True)  # type: ignore[method-assign, assignment]
     Simulation.__init__ = init  # type: ignore[method-assign]
     Simulation.reset = reset  # type: ignore[method-assign]
     atexit.register(log.write)
@@ -100,7 +117,7 @@ class _Log:
         self.planned = True
         for task in tasks:
             scenario = scenario_of(task.job)
-            self._add("", task.job.path, scenario, task.seed, task.job.steps or _limit(scenario), 0)
+            self._add("", task.job.path, scenario, task.seed, task.job.steps or _limit(scenario))
         self.file.flush()
 
     def follow(self, simulation: Any) -> None:
@@ -117,16 +134,14 @@ class _Log:
                 name = f"{number}/{world}/{key}"
                 if steps and self.written.get(name) != steps:
                     self.written[name] = steps
-                    self._add(name, simulation.scenario.source, simulation.scenario, key[0], None, steps)
+                    self._add(name, simulation.scenario.source, simulation.scenario, key[0], steps)
         self.file.flush()
 
-    def _add(self, key: str, path: str | None, scenario: Any, seed: int, horizon: int | None, steps: int) -> None:
+    def _add(self, key: str, path: str | None, scenario: Any, seed: int, steps: int | None) -> None:
         robots = [record for record in scenario.objects if record.role == "robot"]
         used = {str(model.name) for one in robots if (model := one.behavior or one.group_behavior) is not None}
-        data = {
-            "key": key, "file": os.path.relpath(path) if path else "", "behaviors": sorted(used), "seed": seed,
-            "horizon": horizon, "steps": steps,
-        }  # fmt: skip
+        file = os.path.relpath(path) if path else ""
+        data = {"key": key, "file": file, "behaviors": sorted(used), "seed": seed, "steps": steps}
         self.file.write(json.dumps(data) + "\n")
 
 

@@ -20,7 +20,7 @@ from irsim.scenario.read import Reading, read
 from irsim.scenario.yaml.document import Document, load_text
 from irsim_evals.cases.instance import Instance
 from irsim_evals.cases.store import Answer
-from irsim_evals.grader.artefact import find_scenario, rivals
+from irsim_evals.grader.artefact import find_scenario, rivals, scenarios_in
 from irsim_evals.grader.episode import Episode, run_episode
 from irsim_evals.grader.material import Material
 from irsim_evals.grader.outcome import NOT_REACHED, STAGES, Outcome, Stage, Verdict
@@ -111,7 +111,7 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         said = bool(answer.reply.strip())
         _add(
             outcomes, "answered", "parse", may and said, "a scenario" + (" or a reply" if may else ""),
-            "a reply and no scenario" if said else "neither a scenario nor a reply",
+            ("a reply and no scenario" if said else "neither a scenario nor a reply") + _unread(answer),
         )  # fmt: skip
         if not (may and said):
             raise _Stop
@@ -149,6 +149,14 @@ def _open(instance: Instance, answer: Answer, outcomes: list[Outcome], workplace
         _add(outcomes, "loads", "load", False, "a world that can be stepped", str(error).splitlines()[0])
         raise _Stop from None
     return material, True
+
+
+def _unread(answer: Answer) -> str:
+    """Names of files that are called like scenarios but do not look like one."""
+    names = [
+        name for name in answer.files if name.endswith((".yaml", ".yml")) and name not in scenarios_in(answer.files)
+    ]
+    return f"; no world, robot or obstacle can be read in {', '.join(names[:3])}" if names else ""
 
 
 def _has_several(case: Any) -> bool:

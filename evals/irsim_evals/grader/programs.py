@@ -15,7 +15,7 @@ from pathlib import Path
 from irsim_evals.grader.episode_log import Started, read_log
 from irsim_evals.grader.program_rules import problems_of
 
-__all__ = ["SECONDS", "Printed", "is_program", "problems_in", "run_program"]
+__all__ = ["SECONDS", "Printed", "is_program", "problems_in", "rehearse_program", "run_program"]
 
 SECONDS = 40.0
 """Time that one program gets."""
@@ -33,7 +33,7 @@ class Printed:
         text: What it printed.
         why: Why it did not pass.
         ended: Whether it ended by itself.
-        episodes: The episodes that it started.
+        episodes: The episodes that it started in a rehearsal.
     """
 
     passed: bool
@@ -76,12 +76,17 @@ def run_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
         name: Path of the program in it.
         seconds: Time after which it is ended.
     """
+    return _run(folder, name, seconds, None)
+
+
+def rehearse_program(folder: Path, name: str, seconds: float = SECONDS) -> Printed:
+    """Run a program as :func:`run_program` does, but simulate nothing, and find out which episodes it starts."""
     with tempfile.TemporaryDirectory(prefix="irsim-evals-") as outside:  # where the program may not write
         return _run(folder, name, seconds, Path(outside, "episodes.jsonl"))
 
 
-def _run(folder: Path, name: str, seconds: float, log: Path) -> Printed:
-    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name, str(log)]
+def _run(folder: Path, name: str, seconds: float, log: Path | None) -> Printed:
+    command = [sys.executable, "-I", "-m", "irsim_evals.grader.run_program", name, *([str(log)] if log else [])]
     environment = {"PATH": os.defpath, "MPLBACKEND": "Agg", "HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     with (folder / ".printed").open("wb") as output:
         process = subprocess.Popen(
@@ -96,7 +101,7 @@ def _run(folder: Path, name: str, seconds: float, log: Path) -> Printed:
             _end(process)
     with (folder / ".printed").open("rb") as printed:
         text = printed.read(_MAX_PRINTED).decode("utf-8", errors="replace")
-    episodes = read_log(log)
+    episodes = read_log(log) if log else []
     if code is None:
         return Printed(False, text, f"{name} did not end within {seconds:g} s", ended=False, episodes=episodes)
     if code != 0:

@@ -1,7 +1,7 @@
 """Start one program of an answer in its folder, with what it needs to run scenarios and nothing else.
 
-Run as ``python -I -m irsim_evals.grader.run_program PROGRAM LOG``, in the folder; the episodes that the program starts
-are written to the file LOG. The rules of
+Run as ``python -I -m irsim_evals.grader.run_program PROGRAM [LOG]``, in the folder. With LOG the program is rehearsed:
+it simulates nothing, and the episodes that it starts are written to that file. The rules of
 :mod:`irsim_evals.grader.program_rules` have been checked before; the hook here refuses what they cannot see.
 """
 
@@ -21,16 +21,17 @@ _WRITE = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 def main() -> None:
     """Run the program that the first argument names."""
-    program, log = sys.argv[1:3]
+    program, *log = sys.argv[1:]
     folder = os.path.realpath(os.getcwd())
     import numpy  # noqa: F401  (libraries load their own parts before the hook watches)
 
     import irsim
     import irsim.benchmarks
     import irsim.env  # noqa: F401
-    from irsim_evals.grader.episode_log import watch as watch_episodes
+    from irsim_evals.grader.episode_log import rehearse
 
-    watch_episodes(Path(log).absolute())
+    if log:
+        rehearse(Path(log[0]).absolute())
 
     def watch(event: str, arguments: tuple[Any, ...]) -> None:
         if event in _REFUSED:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import fnmatch
 import re
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,16 +15,24 @@ from irsim.benchmarks.seeds import seeds_from
 from irsim.diagnostics.errors import IrsimError
 from irsim.scenario.behavior_override import parse_behavior, split_behaviors
 from irsim_evals.grader.episode_log import Started
-from irsim_evals.grader.programs import run_program
+from irsim_evals.grader.program_rules import problems_of
+from irsim_evals.grader.programs import rehearse_program
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from irsim_evals.grader.material import Material
 
 __all__ = ["Runs", "runs_of"]
 
-_COMMAND = re.compile(r"\birsim\s+benchmark\s[^\n`]*")
-_FLAGS = ("--json", "--csv", "--strict")
+_COMMAND = re.compile(r"^(?P<before>.*?)\birsim\s+benchmark\s(?P<words>[^\n`]*)", re.MULTILINE)
+_NEGATED = re.compile(r"\b(not|never|don.t|instead of|avoid|without|nor)\b|^\s*#(?!\s*\$)", re.IGNORECASE)
+"""What stands before a command that is not meant to be run."""
+_HIDDEN = re.compile(r"<!--.*?-->", re.DOTALL)
+_PYTHON = re.compile(r"```python[^\n`]*\n(.*?)```", re.DOTALL)
+_FLAGS = ("--json", "--csv", "--strict", "--full", "--resume")
 """Options without a value."""
+_MAX_RESULT_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -32,40 +41,58 @@ class Runs:
 
     Attributes:
         by: What runs it, for people: the name of a program, or ``the command``.
-        started: The episodes.
-        whole: Whether these are all of them. A program that is ended early has started only some.
-        words: The code without its comments and what it printed, or the commands; the reply and all other texts where
-            nothing runs anything.
+        started: The episodes; none where the answer only tells of them.
+        words: What a program prints and the files that it writes, and its code without comments unless it prints and
+            writes nothing; or else the commands and the reply.
     """
 
     by: str
     started: Sequence[Started]
-    whole: bool
     words: str
 
 
 def runs_of(material: Material, behaviors: set[str], seconds: float) -> Runs | str:
     """What an answer runs, or what is wrong with it.
 
-    A program decides if it starts episodes, else commands do that are written anywhere.
+    A program decides if it starts episodes, else commands do that are written in other files or the reply.
 
     Args:
         material: The answer.
         behaviors: Behaviors that count.
-        seconds: Time that each program gets [s].
+        seconds: Time that the rehearsal of each program gets [s].
     """
-    for name in sorted(name for name in material.texts if name.endswith(".py") and name not in material.given):
-        done = run_program(material.folder(), name, seconds)
-        if done.ended and not done.passed:
+    programs = _programs(material)
+    idle = ""
+    for name in sorted(programs):
+        before = _contents(material.folder())
+        done = rehearse_program(material.folder(), name, seconds)
+        if not done.passed:
             return done.why
-        counted = [one for one in done.episodes if behaviors.intersection(one.behaviors)]
-        if counted:
-            whole = done.ended or any(one.horizon is not None for one in counted)  # a benchmark tells all in advance
-            return Runs(name, counted, whole, f"{_code(material.texts[name])}\n{done.text}")
-    texts = [text for name, text in material.texts.items() if name not in material.given]
-    words = "\n".join([*texts, material.reply])
+        if any(behaviors.intersection(one.behaviors) for one in done.episodes):
+            after = _contents(material.folder())
+            written = [text for path, text in after.items() if before.get(path) != text]
+            counted = [one for one in done.episodes if behaviors.intersection(one.behaviors)]
+            said = "\n".join([done.text, *written])
+            return Runs(name, counted, f"{said}\n{_code(programs[name])}" if said.strip() else "")
+        idle = idle or f"{name} runs no episode under {' or '.join(sorted(behaviors))}"
+    others = {name: text for name, text in material.texts.items() if name not in (*material.given, *programs)}
+    words = _HIDDEN.sub("", "\n".join([*others.values(), material.reply]))
     started = list(_commanded(material, words))
-    return Runs("the command", started, True, words)
+    if idle and not started:
+        return idle
+    return Runs("the command", started, words)
+
+
+def _programs(material: Material) -> dict[str, str]:
+    """The programs by name; those in the reply are written into the folder where there are no others."""
+    found = {n: t for n, t in material.texts.items() if n.endswith(".py") and n not in material.given}
+    if found:
+        return found
+    for number, text in enumerate(_PYTHON.findall(material.reply)):
+        if "irsim" in text and not problems_of(text):
+            found[f"reply_{number}.py"] = text
+            (material.folder() / f"reply_{number}.py").write_text(text, encoding="utf-8", errors="replace")
+    return found
 
 
 def _code(text: str) -> str:
@@ -85,11 +112,23 @@ def _is_text(node: ast.AST) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
+def _contents(folder: Path) -> Mapping[str, str]:
+    """The small texts in a folder."""
+    return {
+        path.name: path.read_text(encoding="utf-8", errors="replace")
+        for path in sorted(folder.iterdir())
+        if path.is_file() and not path.is_symlink() and path.name != ".printed"
+        and path.suffix != ".py" and path.stat().st_size < _MAX_RESULT_BYTES
+    }  # fmt: skip
+
+
 def _commanded(material: Material, text: str) -> Iterator[Started]:
-    """The episodes of commands ``irsim benchmark``; none of a command that cannot be read."""
+    """The episodes of commands ``irsim benchmark``; none of a command that cannot be read, or that is warned of."""
     for found in _COMMAND.finditer(text.replace("\\\n", " ")):
+        if _NEGATED.search(found["before"]):
+            continue
         try:
-            words = shlex.split(found[0], comments=True)[2:]
+            words = shlex.split(found["words"], comments=True)
         except ValueError:
             continue
         files, options = _parsed(words)
@@ -99,10 +138,19 @@ def _commanded(material: Material, text: str) -> Iterator[Started]:
             steps = int(options["--steps"]) if "--steps" in options else None
         except (IrsimError, ValueError):
             continue
-        for file in files:
+        for file in _expanded(files, material.texts):
             for name in names:
                 used = (name,) if name else _written(material, file)
-                yield from (Started(file.removeprefix("./"), used, seed, steps) for seed in seeds)
+                yield from (Started(file, used, seed, steps) for seed in seeds)
+
+
+def _expanded(files: list[str], texts: Mapping[str, str]) -> list[str]:
+    """The files that a shell makes of patterns."""
+    found: list[str] = []
+    for file in files:
+        plain = file.removeprefix("./")
+        found += sorted(fnmatch.filter(texts, plain)) if re.search(r"[*?\[]", plain) else [plain]
+    return found
 
 
 def _parsed(words: list[str]) -> tuple[list[str], dict[str, str]]:
@@ -112,7 +160,7 @@ def _parsed(words: list[str]) -> tuple[list[str], dict[str, str]]:
     for word in left:
         name, equals, value = word.partition("=")
         if not word.startswith("-"):
-            if word.endswith((".yaml", ".yml")):
+            if word.endswith((".yaml", ".yml", "*")):
                 files.append(word)
         elif equals:
             options[name] = value

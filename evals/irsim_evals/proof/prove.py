@@ -83,7 +83,7 @@ class Proof:
 
 
 def _in_limited_processes(work: Callable[..., Any], jobs: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-    return run_all(work, jobs, None, SECONDS, "grading")
+    return run_all(work, jobs, None, 2 * SECONDS, "grading")  # a trial is also compared, and graded twice
 
 
 def prove(

@@ -20,12 +20,12 @@ constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car 
 constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
-double top_speed(const OrcaOptions& options, const World& world, int object) {
-  const Vec3& top = world.vel_max[object];
+double top_speed(const OrcaOptions& options, const World& world, const State& state, int row, int object) {
+  const Vec3& top = state.vel_max[row];
   const Drive& drive = world.drive[object];
   const bool sideways = std::holds_alternative<OmniOptions>(drive) || std::holds_alternative<OmniAngularOptions>(drive);
   const double own = sideways ? std::min(top[0], top[1]) : top[0];
-  return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed, own) : own);
+  return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed * state.pace[row], own) : own);
 }
 
 /// Full speed toward the goal; zero without a goal or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
@@ -36,7 +36,7 @@ Vec2 preferred_velocity(const World& world, const State& state, int row, int obj
   Vec2 way = goal.position() - state.pose[row].position();
   const double distance = norm(way);
   if (!(distance > 0.0 && distance >= world.goal_threshold[object])) return {};
-  const Vec3& top = world.vel_max[object];
+  const Vec3& top = state.vel_max[row];
   if (top[0] == top[1] || !std::holds_alternative<OmniOptions>(world.drive[object])) return way * (speed / distance);
   way = {way.x * top[0], way.y * top[1]};
   const double length = norm(way);
@@ -46,10 +46,10 @@ Vec2 preferred_velocity(const World& world, const State& state, int row, int obj
 /// How a drive that cannot move sideways turns. As in IR-SIM, small changes of direction and slow velocities are
 /// ignored. They count for an object that avoids another one, because the next step would ask for the same change
 /// again.
-Turning turning_for(const World& world, int object, bool avoiding) {
+Turning turning_for(const World& world, const State& state, int row, bool avoiding) {
   Turning turning;
   turning.guarantee_time = world.step_time;
-  turning.max_rate = world.vel_max[object][1];
+  turning.max_rate = state.vel_max[row][1];
   if (avoiding) turning.min_speed = kMinSpeed, turning.tolerance = 0.0;
   return turning;
 }
@@ -170,7 +170,8 @@ void avoid_movers(const OrcaOptions& options, const World& world, int self, Orca
   const int count = all.nearest.find(agent.position, options.neighborDist, most, seen, all.neighbors.data());
   for (int k = 0; k < count; ++k) {
     const int m = all.neighbors[k].index;
-    // An object with a given command, a stopped one, or one that does not see this object does not give way.
+    // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
+    // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
     all.planes.push_back(
         avoid_agent(agent, all.movers[m], mutual ? 0.5 : 1.0, options.timeHorizon, world.step_time, self < m));
@@ -188,7 +189,7 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
   for (int k = 0; k < decision.count; ++k) {
     const int i = decision.objects[k], row = decision.row(k), self = scene.shapes->placed[i].object;
     const OrcaAgent& agent = all.movers[self];
-    const double speed = top_speed(options, world, i);
+    const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
     Vec2 preferred = preferred_velocity(world, state, row, i, speed);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
@@ -204,13 +205,13 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     Vec2 velocity;
     const bool free = choose_velocity(all.planes.data(), static_cast<int>(all.planes.size()), hard, speed, preferred,
                                       all.scratch, velocity);
-    Turning turning = turning_for(world, i, squared(velocity - preferred) > 0.0);
+    Turning turning = turning_for(world, state, row, squared(velocity - preferred) > 0.0);
     // The heading may lead into a wall even if the wanted velocity does not.
     if (hard > 0) turning.max_forward = fastest_along(state.heading(row), all.planes.data(), hard);
     if (car != nullptr) {
       Vec3 control;
       const double ahead = std::min(norm(velocity), turning.max_forward);
-      const bool stuck = ahead < kStuckShare * norm(preferred) && world.vel_min[i][0] < 0.0;
+      const bool stuck = ahead < kStuckShare * norm(preferred) && state.vel_min[row][0] < 0.0;
       if (!stuck || !back_off(*car, world, state, row, speed, hard, ahead, preferred, all, control)) {
         control = car_control(*car, world, state, row, velocity, turning.max_forward);
       }

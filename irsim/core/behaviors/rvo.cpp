@@ -68,7 +68,7 @@ void look_around(const RvoOptions& options, const Decision& decision, const Ego&
       bar(disc.centre, disc.centre, room + disc.radius);
     }
   });
-  const double fastest = norm({options.vxmax, options.vymax});
+  const double fastest = norm({options.vxmax, options.vymax}) * ego.pace;
   const double reach = std::min(options.neighbor_threshold, room + fastest * kWallHorizon);
   if (ego.route == nullptr) {
     for_static_lines(decision, ego, kInfinity, [&](const Wall& line) { add_line(ego, line.a, line.b, obstacles); });
@@ -126,7 +126,8 @@ void rvo(const RvoOptions& options, const Decision& decision, Intent* intents) {
     const Ego ego = ego_of(decision, k);
     look_around(options, decision, ego, obstacles);
     const Vec2 v = ego.velocity;
-    const Axis x = window(v.x, options.acce, options.vxmax), y = window(v.y, options.acce, options.vymax);
+    const Axis x = window(v.x, options.acce, options.vxmax * ego.pace);
+    const Axis y = window(v.y, options.acce, options.vymax * ego.pace);
     const Vec2 velocity = best_sample(obstacles, x, y, ego.desired, options.factor);
     const bool sideways =
         std::visit([](const auto& drive) { return moves_sideways(drive); }, decision.world.drive[ego.id]);

@@ -57,7 +57,7 @@ Vec2 on_route(const SfmOptions& o, const Ego& ego, Vec2 force) {
   const double speed = norm(ego.desired);
   if (!(speed > 0.0)) return {};
   const Vec2 ahead = ego.desired * (1.0 / speed), side{-ahead.y, ahead.x};
-  const double most = kSideways * o.vmax * o.force_factor_desired / o.relaxation_time;
+  const double most = kSideways * o.vmax * ego.pace * o.force_factor_desired / o.relaxation_time;
   return side * clip(dot(force, side) * o.force_factor_obstacle, -most, most) * (1.0 / o.force_factor_obstacle);
 }
 
@@ -147,7 +147,8 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
   for (int k = 0; k < decision.count; ++k) {
     const Ego ego = ego_of(decision, k);
     const double speed = norm(ego.desired);
-    const Vec2 desired = speed > 0.0 ? ego.desired * (options.vmax / speed) : Vec2{};
+    const double most = options.vmax * ego.pace;
+    const Vec2 desired = speed > 0.0 ? ego.desired * (most / speed) : Vec2{};
     Vec2 social;
     for_discs(decision, ego, options.neighbor_threshold, [&](const Disc& other) {
       if (ego.route == nullptr || !world.is_static[other.object]) social = social + social_force(options, ego, other);
@@ -162,12 +163,12 @@ void sfm(const SfmOptions& options, const Decision& decision, Intent* intents) {
       velocity = ego.velocity + force * options.relaxation_time;
     }
     const double fast = norm(velocity);
-    if (fast > options.vmax) velocity = velocity * (options.vmax / fast);
+    if (fast > most) velocity = velocity * (most / fast);
     Turning turning;
     turning.tolerance = kTolerance;
     turning.guarantee_time = dt;
     turning.max_rate =
-        std::min(world.vel_max[ego.id][1], decision.state.control[ego.row][1] + world.acce[ego.id][1] * dt);
+        std::min(decision.state.vel_max[ego.row][1], decision.state.control[ego.row][1] + world.acce[ego.id][1] * dt);
     intents[k] = Intent::of_velocity(velocity, turning);
   }
 }

@@ -8,8 +8,9 @@ namespace irsim {
 double ContactSolver::reach_per_step() const {
   double fastest = 0.0;
   for (const int i : world_.moving) {
-    double top = world_.dynamics[i].driven ? world_.vel_max[i][0] : 0.0;
-    with(world_.drive[i], [&](const auto& drive) { top = travel_speed(drive, world_.vel_max[i]); });
+    const Vec3& limits = state_.vel_max[first_ + i];
+    double top = world_.dynamics[i].driven ? limits[0] : 0.0;
+    with(world_.drive[i], [&](const auto& drive) { top = travel_speed(drive, limits); });
     if (std::isfinite(top)) fastest = std::max(fastest, top);
     fastest = std::max(fastest, norm(buffers_.bodies[i].start_velocity));
   }

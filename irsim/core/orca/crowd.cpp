@@ -34,7 +34,7 @@ OrcaCrowd& crowd(const World& world, const State& state, Workspace& work, int w)
       const int m = shapes.placed[i].object, row = w * world.objects + i;
       all.member_of[m] = static_cast<int>(g);
       all.movers[m].radius += options->safe_radius;
-      if (!state.stopped[row] && !state.given[row]) all.group[m] = static_cast<int>(g);
+      if (!state.stopped[row] && !state.given[row] && !state.waits(row)) all.group[m] = static_cast<int>(g);
     }
   }
   return all;

@@ -1,4 +1,5 @@
 // Arrival at goals and waypoints.
+#include "geometry/predicates.hpp"
 #include "phases.hpp"
 
 namespace irsim {
@@ -11,18 +12,43 @@ bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal)
   return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
 }
 
+/// Whether an object has arrived for good: a robot with nowhere else to go, where the world says so.
+bool is_settled(const World& world, const State& state, int row, int object) {
+  return world.after_arrival != kUnlatched && state.arrived[row] && world.is_robot[object] && !world.wander[object] &&
+         !world.loop[object];
+}
+
+/// Whether an object that came from `from`, and is not at its goal, passed it in this step and was not at it before.
+bool overshoots(const World& world, const State& state, int row, int object, Vec2 from) {
+  const Vec2 to = state.pose[row].position(), at = state.goal[row].position();
+  if (dot(at - to, to - from) >= 0.0) return false;  // it is still ahead
+  if (world.is_static[object] || world.state_arrival[object] || state.overshot[row]) return false;
+  const double threshold = world.goal_threshold[object];
+  return norm(from - at) >= threshold && norm(nearest_on_segment(from, to, at) - at) < threshold;
+}
+
 }  // namespace
 
 void arrive(const World& world, State& state, int w) {
   const int first = w * world.objects;
   for (int i = 0; i < world.objects; ++i) {
     const int row = first + i;
+    const Vec2 from = state.before[row];
+    state.before[row] = state.pose[row].position();
     if (std::isnan(state.goal[row].x)) {
       state.arrived[row] = 0;
       continue;
     }
     const Pose& pose = state.pose[row];
+    if (is_settled(world, state, row, i)) {
+      if (world.after_arrival == kFreeze) state.stopped[row] = 1;
+      continue;
+    }
     if (!at_goal(world, i, pose, state.goal[row])) {
+      if (!state.arrived[row] && overshoots(world, state, row, i, from)) {
+        state.log(world, w, EventKind::overshoot, i, -1, pose.position());
+        state.overshot[row] = 1;
+      }
       state.arrived[row] = 0;
       continue;
     }
@@ -35,6 +61,7 @@ void arrive(const World& world, State& state, int w) {
     } else {
       if (!state.arrived[row]) state.log(world, w, EventKind::arrival, i, -1, pose.position());
       state.arrived[row] = 1;
+      if (world.after_arrival == kFreeze && is_settled(world, state, row, i)) state.stopped[row] = 1;
     }
   }
 }

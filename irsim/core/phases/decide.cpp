@@ -11,7 +11,7 @@ namespace {
 constexpr double kRestingTurn = 1e-9;  // an object that turns by less in a step counts as resting [rad]
 
 bool is_idle(const World& world, const State& state, int first, int object) {
-  return world.is_static[object] || state.stopped[first + object];
+  return world.is_static[object] || state.stopped[first + object] || state.waits(first + object);
 }
 
 /// With `arrive_mode: state` an object at its goal must also reach the heading of the goal. Where the behavior of an

@@ -11,6 +11,10 @@ void limit(const World& world, State& state, int w, int object) {
     u = {};
     return;
   }
+  if (state.waits(row)) {
+    u = world.collision_mode == kContact ? respond(world, state, row, {}) : Vec3{};
+    return;
+  }
   if (!world.behaves[object] && !state.given[row]) {
     u = without_command(world, state, row);
     return;
@@ -19,8 +23,8 @@ void limit(const World& world, State& state, int w, int object) {
   Vec3 next;
   for (int c = 0; c < 3; ++c) {
     const double change = world.acce[object][c] * world.step_time;
-    next[c] = clip(wanted[c], std::max(world.vel_min[object][c], u[c] - change),
-                   std::min(world.vel_max[object][c], u[c] + change));
+    next[c] =
+        clip(wanted[c], std::max(state.vel_min[row][c], u[c] - change), std::min(state.vel_max[row][c], u[c] + change));
   }
   u = next;
   with(world.drive[object], [&](const auto& drive) { u = constrain(drive, u); });
@@ -38,9 +42,14 @@ void integrate(const World& world, State& state, int w, int object) {
     return;
   }
   if (!world.dynamics[object].driven) return coast(world, state, row);
+  const bool waits = state.waits(row);
+  if (waits && world.collision_mode != kContact) {  // nothing can push it
+    state.twist[row] = {};
+    return;
+  }
   with(world.drive[object], [&](const auto& drive) {
     Vec3 u = state.control[row];
-    if (drive.noise) {
+    if (drive.noise && !waits) {
       const Vec3 sigma = deviation(drive, u);
       const Draws draws(state.key(w), Stream::motion, world.number[object]);
       const auto normals = draws.normals(static_cast<std::uint64_t>(state.count[w]));
@@ -54,6 +63,8 @@ void integrate(const World& world, State& state, int w, int object) {
 }
 
 void integrate(const World& world, State& state, int w) {
+  const int first = w * world.objects;
+  for (int row = first; row < first + world.objects; ++row) state.before[row] = state.pose[row].position();
   for (int i = 0; i < world.objects; ++i) integrate(world, state, w, i);
 }
 

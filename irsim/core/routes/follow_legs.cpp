@@ -12,7 +12,7 @@ constexpr int kMaxBlockedSteps = 30;  // a leg that is blocked for more steps th
 
 double Follower::max_steering(const AckerOptions& car) const {
   const double psi = std::min(car.psi_max, 1.4);
-  return car.mode == Steering::steer ? std::min(psi, world_.vel_max[object_][1]) : psi;
+  return car.mode == Steering::steer ? std::min(psi, state_.vel_max[row_][1]) : psi;
 }
 
 void Follower::follow_legs(Vec3& u) {
@@ -54,7 +54,7 @@ double Follower::stopping_speed(double left, int control, double most) const {
 }
 
 double Follower::top_speed(int way) const {
-  return way > 0 ? world_.vel_max[object_][0] : std::fabs(world_.vel_min[object_][0]);
+  return way > 0 ? state_.vel_max[row_][0] : std::fabs(state_.vel_min[row_][0]);
 }
 
 void Follower::follow_legs_in_place(Vec3& u) {
@@ -66,14 +66,14 @@ void Follower::follow_legs_in_place(Vec3& u) {
     if (leg.way == 0) {
       const double error = wrap(leg.pose.theta - pose.theta);
       if (std::fabs(error) < kLegEnd) continue;
-      const double rate = stopping_speed(std::fabs(error), 1, std::fabs(world_.vel_max[object_][1]));
+      const double rate = stopping_speed(std::fabs(error), 1, std::fabs(state_.vel_max[row_][1]));
       u[1] = error > 0.0 ? rate : -rate;
       return;
     }
     const Vec2 along = unit(leg.pose.theta), gap = leg.pose.position() - pose.position();
     const double left = leg.way * dot(gap, along);
     if (left < kLegEnd) continue;
-    const double most = std::fabs(world_.vel_max[object_][1]);
+    const double most = std::fabs(state_.vel_max[row_][1]);
     u[0] = leg.way * stopping_speed(left, 0, top_speed(leg.way));
     u[1] = clip(-kLegGain * (wrap(pose.theta - leg.pose.theta) + leg.way * cross(gap, along)), -most, most);
     return;

@@ -131,7 +131,7 @@ bool Follower::find_legs(double reach) {
   if (car == nullptr && !std::holds_alternative<DiffOptions>(drive)) return false;
   const double radius = car == nullptr ? 0.0 : car->wheelbase / std::tan(kSteeringShare * max_steering(*car));
   const double room = inner_radius(shapes_, object_);
-  const bool backs = world_.vel_min[object_][0] < 0.0;
+  const bool backs = state_.vel_min[row_][0] < 0.0;
   const PoseProblem problem{
       blockers_, shapes_, object_, bounds(), state_.pose[row_], route_.goal, world_.goal_threshold[object_],
       backs,     radius,  reach,   room};

@@ -11,7 +11,7 @@ constexpr double kMinTimeBetweenPlans = 1.0;  // after a plan, before another is
 
 bool follows_route(const World& world, const State& state, int w, int object) {
   const int row = w * world.objects + object;
-  return !world.is_static[object] && !state.stopped[row] && !state.given[row];
+  return !world.is_static[object] && !state.stopped[row] && !state.given[row] && !state.waits(row);
 }
 
 }  // namespace

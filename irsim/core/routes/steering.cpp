@@ -19,7 +19,7 @@ void Follower::steer_to_corner(Vec3& u) {
   const Vec2 way = target.position() - pose.position();
   if (last && norm(way) < world_.goal_threshold[object_]) return;
   const double error = wrap(std::atan2(way.y, way.x) - pose.theta);
-  const Vec3 &top = world_.vel_max[object_], &acce = world_.acce[object_];
+  const Vec3 &top = state_.vel_max[row_], &acce = world_.acce[object_];
   const double left = norm(route_.path[route_.next] - pose.position());
   double most = kInfinity;
   if (!last) {
@@ -76,7 +76,7 @@ void Follower::keep_clear(Vec3& u) {
   };
   const auto back = [&] {
     Vec3 v;
-    v[0] = 0.4 * world_.vel_min[object_][0];
+    v[0] = 0.4 * state_.vel_min[row_][0];
     if (car) v[1] = -u[1];
     return v;
   };
@@ -117,7 +117,7 @@ void Follower::keep_clear(Vec3& u) {
     u = scaled(0.0, 1.0);
     return;
   }
-  if (moving == 1 && stands && world_.vel_min[object_][0] < 0.0 && clear_after(back())) {
+  if (moving == 1 && stands && state_.vel_min[row_][0] < 0.0 && clear_after(back())) {
     route_.backing_steps = kBackingSteps;
     u = back();
     return;
@@ -146,8 +146,8 @@ bool Follower::clear_after(const Vec3& command) {
     bool moves = false;
     for (int c = 0; c < 3; ++c) {
       const double change = world_.acce[object_][c] * world_.step_time;
-      control[c] = clip(wanted[c], std::max(world_.vel_min[object_][c], control[c] - change),
-                        std::min(world_.vel_max[object_][c], control[c] + change));
+      control[c] = clip(wanted[c], std::max(state_.vel_min[row_][c], control[c] - change),
+                        std::min(state_.vel_max[row_][c], control[c] + change));
       moves = moves || control[c] != 0.0;
     }
     if (k > 0 && !moves) return true;

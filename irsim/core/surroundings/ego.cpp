@@ -22,11 +22,19 @@ Ego ego_of(const Decision& decision, int k) {
   const Scene& scene = decision.state.scenes[decision.w()];
   const Disc& disc = near.discs[scene.shapes->placed[i].object];
   const Vec2 position = decision.state.pose[row].position();
-  Ego ego{i, row, position, disc.velocity, {}, disc.radius + kPadding, decision.state.route_of(row)};
+  Ego ego{i,
+          row,
+          position,
+          disc.velocity,
+          {},
+          disc.radius + kPadding,
+          decision.state.route_of(row),
+          decision.state.pace[row]};
   const Vec2 way = decision.state.destination(row).position() - position;
   const double distance = norm(way);
   if (!(distance > kAtGoal)) return ego;
-  const Vec2 top = std::visit([&](const auto& drive) { return top_speeds(drive, world.vel_max[i]); }, world.drive[i]);
+  const Vec3& limits = decision.state.vel_max[row];
+  const Vec2 top = std::visit([&](const auto& drive) { return top_speeds(drive, limits); }, world.drive[i]);
   ego.desired = {top.x * way.x / distance, top.y * way.y / distance};
   return ego;
 }

@@ -14,6 +14,7 @@ struct Ego {
   Vec2 desired;             // toward the goal at full speed [m/s]; zero without a goal or within 0.1 m of it
   double radius;            // padded [m]
   const Route* route;       // route that the object follows, or null
+  double pace;              // factor on the speeds that the options of a behavior give
 };
 Ego ego_of(const Decision& decision, int k);
 

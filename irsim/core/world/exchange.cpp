@@ -23,6 +23,9 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   to.stopped[row] = from.stopped[old_row];
   to.goals[row] = from.goals[old_row];
   to.infeasible[row] = from.infeasible[old_row];
+  to.pace[row] = from.pace[old_row];
+  to.start_step[row] = from.start_step[old_row];
+  to.before[row] = from.before[old_row];
   to.goal_draws[row] = from.goal_draws[old_row];
   to.initial_pose[row] = from.initial_pose[old_row];
   to.initial_control[row] = from.initial_control[old_row];
@@ -32,6 +35,7 @@ void copy_row(State& to, int row, const State& from, int old_row) {
   std::copy_n(&from.extra[old_e], both, &to.extra[e]);
   std::copy_n(&from.initial_extra[old_e], both, &to.initial_extra[e]);
   to.sync_goal(row);
+  to.overshot[row] = from.overshot[old_row];
 }
 
 /// The recorded history of a row, with the given number of extra rows.
@@ -90,6 +94,7 @@ void continue_from(const World& world, State& state, const World& world_before, 
     const Origin& origin = origins[i];
     if (origin.state == &before) new_row[origin.object] = i;
     copy_row(state, i, *origin.state, origin.object);
+    set_limits(world, state, i);
     if (state.keep_history) state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);
     shapes->copy(*origin.state->scenes[0].shapes, origin.object, world.is_static[i] != 0);
   }

@@ -1,5 +1,5 @@
 // Random placement. Footprints must not overlap those placed before: fixed objects first, then entries in file order.
-#include "collision/touch.hpp"
+#include "world/placed_footprints.hpp"
 #include "world/spec.hpp"
 #include "world/state.hpp"
 
@@ -8,38 +8,6 @@ namespace {
 
 constexpr std::uint64_t kGoalDraws = std::uint64_t{1}
                                      << 40;  // first block of draws for goals; draws for states start at 0
-
-/// A grid that answers queries while boxes are added.
-class GrowingGrid {
- public:
-  explicit GrowingGrid(double cell) {
-    grid_.clear(cell);
-    grid_.build();
-  }
-  void add(int id, const Box& box) {
-    grid_.add(id, box);
-    recent_.push_back({id, box});
-    if (recent_.size() < 16 + built_ / 2) return;
-    grid_.build();
-    built_ += recent_.size();
-    recent_.clear();
-  }
-  /// Whether `test` holds for one of the boxes that meet `box`.
-  template <class Test>
-  bool any(const Box& box, Test&& test) const {
-    for (const auto& [id, other] : recent_) {
-      if (other.meets(box) && test(id)) return true;
-    }
-    bool found = false;
-    grid_.query(box, [&](int id) { found = found || test(id); });
-    return found;
-  }
-
- private:
-  Grid grid_;
-  std::vector<std::pair<int, Box>> recent_;  // boxes that are not sorted into the grid yet
-  std::size_t built_ = 0;
-};
 
 /// Points of one entry that keep a minimum distance from each other.
 class Spread {
@@ -60,46 +28,14 @@ class Spread {
   std::vector<Vec2> points_;
 };
 
-/// Footprints that must not overlap.
-class Crowd {
- public:
-  Crowd(const World& world, const Shapes& shapes)
-      : world_(world), shapes_(shapes), grid_(world.cell(shapes, world.visible)) {
-    outlines_[0].resize(shapes.size[0]);
-    outlines_[1].resize(shapes.size[1]);
-  }
-  /// Whether the object fits at a pose, where its outline then stays.
-  bool fits(int object, const Pose& pose) {
-    if (world_.unobstructed[object]) return true;
-    place(object, pose);
-    const Footprint body = footprint(object);
-    return !grid_.any(body.box, [&](int other) { return touch(body, footprint(other)); });
-  }
-  void add(int object, const Pose& pose) {
-    if (world_.unobstructed[object]) return;
-    place(object, pose);
-    grid_.add(object, footprint(object).box);
-  }
-
- private:
-  Outlines& outlines(int object) { return outlines_[world_.is_static[object]]; }
-  Footprint footprint(int object) { return outlines(object).footprint(shapes_, object); }
-  void place(int object, const Pose& pose) { outlines(object).place(shapes_, object, pose, unit(pose.theta)); }
-
-  const World& world_;
-  const Shapes& shapes_;
-  Outlines outlines_[2];  // moving, static
-  GrowingGrid grid_;
-};
-
 /// Draw poses until one fits. Returns false if none does; `pose` is then the last draw.
 bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first, int object,
-               const Spread& spread, Crowd& crowd, Pose& pose) {
+               const Spread& spread, PlacedFootprints& placed, Pose& pose) {
   const auto &low = entry.range_low, &high = entry.range_high;
   for (int attempt = 0; attempt < std::max(1, attempts); ++attempt) {
     const auto u = draws.uniforms(first + static_cast<std::uint64_t>(attempt));
     pose = {low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1], low[2] + (high[2] - low[2]) * u[2]};
-    if (spread.fits(pose.position()) && crowd.fits(object, pose)) return true;
+    if (spread.fits(pose.position()) && placed.fits(object, pose)) return true;
   }
   return false;
 }
@@ -122,7 +58,7 @@ void place_randomly(const World& world, State& state, int w) {
   for (const RandomPlacement& entry : world.placements) {
     for (const int i : entry.objects) random[i] = 1;
   }
-  Crowd states(world, shapes);
+  PlacedFootprints states(world, shapes);
   for (int i = 0; i < world.objects; ++i) {
     if (!random[i]) states.add(i, state.initial_pose[first + i]);
   }
@@ -138,11 +74,11 @@ void place_randomly(const World& world, State& state, int w) {
     }
   }
 
-  Crowd still(world, shapes);
+  PlacedFootprints still(world, shapes);
   for (const int i : world.fixed_objects) still.add(i, state.initial_pose[first + i]);
   for (const RandomPlacement& entry : world.placements) {
     Spread spread(entry.min_distance);
-    Crowd goals = still;  // objects of different entries may have the same goal
+    PlacedFootprints goals = still;  // objects of different entries may have the same goal
     for (const int i : entry.objects) {
       if (world.wander[i]) continue;  // their goals are drawn at every reset
       Goal goal;

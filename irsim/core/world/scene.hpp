@@ -30,8 +30,8 @@ struct Fixed {
   Obstacles obstacles;        // all of these in the form that `orca` needs
 };
 
-enum class EventKind { arrival, waypoint, collision, no_path };
-constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision", "no_path"};
+enum class EventKind { arrival, waypoint, collision, no_path, overshoot };
+constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision", "no_path", "overshoot"};
 
 struct Event {
   EventKind kind;

@@ -74,4 +74,22 @@ struct RandomPlacement {
   }
 };
 
+/// How far the start, the top speed and the time of departure of an object may differ between scenes.
+struct Perturbation {
+  int object;
+  double position;          // largest change of x and of y [m]
+  double heading;           // largest change of the heading [rad]
+  double speed;             // largest change of the speeds, as a share of them, below 1
+  double delay;             // longest time for which the object stands still at its start [s]
+  std::vector<int> speeds;  // controls that are speeds
+  int attempts;             // maximum number of draws of a start
+  static constexpr auto fields() {
+    using P = Perturbation;
+    return std::make_tuple(field("object", &P::object), field("position", &P::position), field("heading", &P::heading),
+                           field("speed", &P::speed), field("delay", &P::delay), field("speeds", &P::speeds),
+                           field("attempts", &P::attempts));
+  }
+  bool moves() const { return position > 0.0 || heading > 0.0; }
+};
+
 }  // namespace irsim

@@ -23,6 +23,8 @@ void set_initial_values(const World& world, State& state, int w) {
     const ObjectSpec& spec = world.specs[i];
     const int row = w * world.objects + i;
     const auto at = [](const std::vector<double>& v, std::size_t k) { return k < v.size() ? v[k] : 0.0; };
+    state.pace[row] = 1.0;
+    state.start_step[row] = 0;
     state.initial_pose[row] = {at(spec.pose, 0), at(spec.pose, 1), at(spec.pose, 2)};
     state.initial_control[row] = {{at(spec.control, 0), at(spec.control, 1), at(spec.control, 2)}};
     for (int e = 0; e < state.extra_rows; ++e) {
@@ -57,6 +59,10 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       stopped(rows),
       touching(rows),
       radius(rows),
+      vel_min(rows),
+      vel_max(rows),
+      pace(rows, 1.0),
+      start_step(rows),
       infeasible(rows),
       goal(rows, {kNone, kNone, kNone}),
       ranges(static_cast<std::size_t>(worlds) * world.beams_per_world),
@@ -74,6 +80,8 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       direction_of(rows, kNone),
       goals(rows),
       goal_draws(rows),
+      before(rows),
+      overshot(rows),
       initial_pose(rows),
       initial_extra(static_cast<std::size_t>(rows) * extra_rows),
       initial_control(rows),
@@ -111,12 +119,24 @@ void place_fixed(const World& world, State& state, int w) {
   }
 }
 
+void set_limits(const World& world, State& state, int row) {
+  const int object = row % world.objects;
+  state.vel_min[row] = world.vel_min[object];
+  state.vel_max[row] = world.vel_max[object];
+  for (int c = 0; c < 3; ++c) {
+    if (!world.paced[object][c]) continue;
+    state.vel_min[row][c] *= state.pace[row];
+    state.vel_max[row][c] *= state.pace[row];
+  }
+}
+
 void restart_row(const World& world, State& state, int row) {
   const int w = row / world.objects, i = row % world.objects;
   const std::size_t e = static_cast<std::size_t>(row) * state.extra_rows;
   state.pose[row] = state.initial_pose[row];
   std::copy_n(&state.initial_extra[e], state.extra_rows, &state.extra[e]);
-  state.control[row] = state.initial_control[row];
+  state.before[row] = state.pose[row].position();
+  state.control[row] = state.start_step[row] > 0 ? Vec3{} : state.initial_control[row];
   state.twist[row] = state.command[row] = {};
   state.drive[row] = world.dynamics[i].driven ? state.control[row] : Vec3{};
   state.contact_time[row] = state.air_time[row] = 0.0;
@@ -158,6 +178,8 @@ void draw_scene(const World& world, State& state, int w) {
   scene.bodies = nullptr;
   state.failed_placement[w] = -1;
   if (!world.placements.empty()) place_randomly(world, state, w);
+  if (!world.perturbations.empty() && state.failed_placement[w] < 0) perturb(world, state, w);
+  for (int i = 0; i < world.objects; ++i) set_limits(world, state, w * world.objects + i);
   restart(world, state, w);
 }
 

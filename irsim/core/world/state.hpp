@@ -44,6 +44,9 @@ struct State {
   Array<std::uint8_t> given, arrived, collided, stopped;
   Array<std::uint8_t> touching;  // bit 0: in contact in the last step, bit 1: in the one before
   Array<double> radius;
+  Array<Vec3> vel_min, vel_max;    // limits of the controls in this scene
+  Array<double> pace;              // factor on the speeds of the object in this scene
+  Array<std::int64_t> start_step;  // steps that the object stands still at its start
   Array<std::int32_t> infeasible;  // steps of this episode in which no velocity avoided every collision
   Array<Goal> goal;                // head of the queue; x is NaN without a goal
   // (W * beams_per_world,)
@@ -64,6 +67,8 @@ struct State {
   std::vector<Route> routes;              // (R,), empty if no object has a route
   std::vector<Goal> target;               // (R,), empty likewise: points that behaviors head for
   std::vector<std::uint32_t> goal_draws;  // (R,) wander goals drawn in this episode
+  std::vector<Vec2> before;               // (R,) positions at the beginning of the step
+  std::vector<std::uint8_t> overshot;     // (R,) whether an overshoot of the present goal was reported
   std::vector<Pose> initial_pose;         // (R,)
   std::vector<double> initial_extra;
   std::vector<Vec3> initial_control;
@@ -76,6 +81,8 @@ struct State {
 
   /// Key of the random draws of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
+  /// Whether a row stands still because its start is delayed.
+  bool waits(int row) const { return start_step[row] > 0 && count[row / objects] < start_step[row]; }
   /// Point that the behavior of a row heads for: its goal, or a point of its route.
   const Goal& destination(int row) const { return target.empty() ? goal[row] : target[row]; }
   /// The route that a row follows; null without one. Routes avoid static objects; behaviors only keep
@@ -101,6 +108,7 @@ struct State {
   void sync_goal(int row) {
     const GoalQueue& q = goals[row];
     goal[row] = q.empty() ? Goal{kNone, kNone, kNone} : q.goals[q.head];
+    overshot[row] = 0;
   }
 };
 
@@ -114,6 +122,11 @@ void draw_scene(const World& world, State& state, int w);
 /// Draw poses and goals of the random placements of world w. `failed_placement` becomes the first object that did not
 /// fit.
 void place_randomly(const World& world, State& state, int w);
+/// Draw starts, speeds and delays of world w within the spreads of `world.perturbations`. `failed_placement` becomes
+/// the first object for which there is no room.
+void perturb(const World& world, State& state, int w);
+/// Set the limits of a row from those of its object and its pace.
+void set_limits(const World& world, State& state, int row);
 /// Return one object to its initial values; collisions, arrival and sensors are not evaluated.
 void restart_row(const World& world, State& state, int row);
 /// Return world w to its initial values, then evaluate collisions, arrival and sensors.

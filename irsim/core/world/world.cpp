@@ -1,5 +1,6 @@
 #include "world/world.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "collision/touch.hpp"
@@ -122,7 +123,8 @@ void check(const ObjectSpec& spec) {
 }  // namespace
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
-             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_)
+             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_,
+             std::vector<Perturbation> perturbations_)
     : step_time(step_time_),
       collision_mode(collision_mode_),
       gravity(gravity_),
@@ -131,7 +133,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       extra_rows(1),
       specs(std::move(specs_)),
       fog(std::move(fog_)),
-      placements(std::move(placements_)) {
+      placements(std::move(placements_)),
+      perturbations(std::move(perturbations_)) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
@@ -140,6 +143,18 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       random_statics = random_statics || specs[i].is_static;
     }
   }
+  paced.resize(specs.size());
+  for (const Perturbation& each : perturbations) {
+    if (each.object < 0 || each.object >= objects)
+      throw std::invalid_argument("a perturbation names an object that does not exist");
+    for (const int c : each.speeds) {
+      if (c < 0 || c > 2) throw std::invalid_argument("a perturbation names a control that does not exist");
+      paced[each.object][c] = true;
+    }
+    random_statics = random_statics || (specs[each.object].is_static && each.moves());
+  }
+  std::stable_partition(perturbations.begin(), perturbations.end(),
+                        [&](const Perturbation& each) { return specs[each.object].is_static; });
   for (int i = 0; i < objects; ++i) {
     const ObjectSpec& s = specs[i];
     check(s);

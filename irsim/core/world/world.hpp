@@ -17,6 +17,7 @@ namespace irsim {
 
 struct ObjectSpec;
 struct RandomPlacement;
+struct Perturbation;
 struct BehaviorGroup;
 struct Scan;
 
@@ -34,6 +35,8 @@ struct Mount {
 };
 
 enum CollisionMode { kStop = 0, kUnobstructed = 1, kUnobstructedObstacles = 2, kContact = 3 };
+/// What a robot does at its last goal: it counts as arrived only while it is there, it stands still, it arrives for good.
+enum AfterArrival { kUnlatched = 0, kFreeze = 1, kYield = 2 };
 
 /// What contacts need to know about an object besides its shape.
 struct BodyDynamics {
@@ -48,13 +51,15 @@ struct BodyDynamics {
 
 struct World {
   World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
-        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog);
+        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog,
+        std::vector<Perturbation> perturbations);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
   double step_time;                // [s]
   int collision_mode;              // CollisionMode
+  int after_arrival = 0;           // AfterArrival
   double gravity;                  // [m/s^2]
   std::array<double, 4> extent{};  // x0, y0, x1, y1 [m]: paths are planned within this box
   int copies;
@@ -70,7 +75,8 @@ struct World {
   std::vector<Vec3> vel_min, vel_max, acce;
   std::vector<double> angle_low, angle_high, goal_threshold;
   std::vector<Pose> range_low, range_high;
-  std::vector<ObjectSpec> specs;  // as given: initial values, shapes, sensors
+  std::vector<std::array<bool, 3>> paced;  // whether a control is a speed that a perturbation changes
+  std::vector<ObjectSpec> specs;           // as given: initial values, shapes, sensors
 
   // object ids
   std::vector<int> moving, fixed_objects, robots, visible;  // `visible`: those that are not unobstructed
@@ -81,6 +87,7 @@ struct World {
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<RandomPlacement> placements;
+  std::vector<Perturbation> perturbations;  // of different objects, static ones first
 
   std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
   std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed

@@ -82,9 +82,10 @@ MAPS_AND_LIMITS: dict[str, Code] = {
         "any mode. Wheels turned by more than 1.5708 drive backwards; 30 degrees are 0.5236.",
     ),
     "placement-crowded": Code(
-        "random placement found no free place",
+        "random placement or a perturbation found no free place",
         "No free pose was found within the attempts. Use fewer or smaller objects, a larger range, or a smaller "
-        "min_distance.",
+        "min_distance; with perturb, a smaller spread. In a benchmark it is the outcome of that seed: it counts in no "
+        "rate and no mean, and the first line says which seeds these are.",
     ),
     "too-many-problems": Code(
         "more problems than are shown",

@@ -70,6 +70,23 @@ TOOLS: dict[str, Code] = {
         "run cannot be read",
         "A file of the recorded run was changed, removed or truncated; record the run again.",
     ),
+    "bad-suite": Code(
+        "suite cannot be used",
+        "The suite file has keys or values that are not allowed, or its scenarios cannot be made; the message lists all.",
+    ),
+    "unknown-suite": Code(
+        "unknown suite", "There is no suite of that name, and no such file; irsim suites lists them."
+    ),
+    "results-exist": Code(
+        "folder holds episodes",
+        "A benchmark was started in this folder; --resume goes on with it, -o names another folder.",
+    ),
+    "other-benchmark": Code(
+        "folder of another benchmark",
+        "The folder holds a benchmark of other scenarios, policies, seeds or version; results do not mix.",
+    ),
+    "no-benchmark": Code("nothing to resume", "The folder holds no benchmark; start one, or name its folder with -o."),
+    "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
     "step-out-of-range": Code(
         "step outside the run",
         "The recorded run has no such step; the message has the range of its steps.",

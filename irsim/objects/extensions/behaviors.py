@@ -109,7 +109,7 @@ class PythonBehaviors:
                 self._decide_group(world, [objects[index] for index in group])
             for index in self.objects:
                 view = objects[index]
-                if simulation.given[view.row] or view.static or simulation.stopped[view.row]:
+                if simulation.given[view.row] or view.static or simulation.stands(view.row):
                     continue
                 name = _name(view.record.behavior)
                 _impose(simulation, view, name, self.control(view))
@@ -142,7 +142,7 @@ class PythonBehaviors:
             return
         controls = act(members, **_keys_as_given(options))
         for view, control in zip(members, () if controls is None else controls, strict=False):
-            if control is None or simulation.given[view.row] or view.static or simulation.stopped[view.row]:
+            if control is None or simulation.given[view.row] or view.static or simulation.stands(view.row):
                 continue
             _impose(simulation, view, name, control)
 

@@ -49,13 +49,12 @@ class Wide:
         self.command[:] = 0.0
         self.control[:] = self.drive[:] = self.record.velocity
 
-    def limit(self, dt: float, *, moves: bool) -> None:
+    def limit(self, limits: tuple[Floats, Floats], dt: float, *, moves: bool) -> None:
         """Limit the command and make it the executed control; 0 for an object that does not move."""
-        record = self.record
         if moves:
-            change = np.asarray(record.acce) * dt
-            low = np.maximum(record.vel_min, self.control - change)
-            high = np.minimum(record.vel_max, self.control + change)
+            change = np.asarray(self.record.acce) * dt
+            low = np.maximum(limits[0], self.control - change)
+            high = np.minimum(limits[1], self.control + change)
             self.control[:] = np.minimum(np.maximum(self.command, low), high)
         else:
             self.control[:] = 0.0
@@ -127,7 +126,7 @@ class PythonDrives:
         simulation = self._simulation
         for row in self._rows():
             record, _ = self._of(row)
-            stands = record.static or simulation.stopped[row]
+            stands = record.static or simulation.stands(row)
             if row % simulation.objects in self._led and not simulation.given[row] and not stands:
                 simulation.impose(row, self.control_alone(row, simulation.command[row].copy()))
 
@@ -181,10 +180,10 @@ class PythonDrives:
         record, handler = self._of(row)
         simulation = self._simulation
         dt = simulation.scenario.world.step_time
-        stands = record.static or bool(simulation.stopped[row])
+        stands = record.static or simulation.stands(row)
         wide = self.wide(row)
         if wide is not None:
-            wide.limit(dt, moves=not stands and bool(simulation.given[row]))
+            wide.limit(simulation.limits(row), dt, moves=not stands and bool(simulation.given[row]))
             simulation.control[row] = wide.control[:_CORE_CONTROLS]
         if stands:
             return

@@ -94,9 +94,9 @@ class ObjectHooks(SimObject):
             wanted = hooks.decided[row]
         else:
             wanted = simulation.decide_alone(self)
-        record, now = self.record, simulation.control_of(row, self.vel_dim)
-        change = np.asarray(record.acce) * simulation.scenario.world.step_time
-        low, high = np.maximum(record.vel_min, now - change), np.minimum(record.vel_max, now + change)
+        now, (least, most) = simulation.control_of(row, self.vel_dim), simulation.limits(row)
+        change = np.asarray(self.record.acce) * simulation.scenario.world.step_time
+        low, high = np.maximum(least, now - change), np.minimum(most, now + change)
         control: Floats = np.minimum(np.maximum(wanted, low), high)[:, None]
         return control
 
@@ -137,7 +137,7 @@ class ObjectHooks(SimObject):
         """
         simulation, row = self._simulation, self.row
         within = simulation.hooks is not None and row in simulation.hooks.stepping
-        if self.static or simulation.stopped[row]:
+        if self.static or simulation.stands(row):
             simulation.control[row] = 0.0
             return simulation.row_state(row, self.state_dim)[:, None]
         if not within:
@@ -192,7 +192,7 @@ class Hooks:
         renewed = []
         for view in self._present():
             row = view.row
-            if "pre_process" in view.overridden() and not (view.static or simulation.stopped[row]):
+            if "pre_process" in view.overridden() and not (view.static or simulation.stands(row)):
                 view.pre_process()
                 renewed.append((row, int(simulation.arrived[row])))
             if not self._views_own_step(view):
@@ -215,7 +215,7 @@ class Hooks:
         self._before.clear()
         for view in self._present():
             row, own = view.row, view.overridden()
-            if view.static or simulation.stopped[row]:
+            if view.static or simulation.stands(row):
                 continue
             if own & {"step", "gen_behavior_vel"}:
                 self.decided[row] = simulation.command_of(row, view.vel_dim).copy()
@@ -230,6 +230,8 @@ class Hooks:
         simulation = self._simulation
         for view in self._present():
             row, own = view.row, view.overridden()
+            if simulation.waits(row):
+                continue
             if "step" in own:
                 if row in self._before:
                     state, control, drive = self._before[row]

@@ -29,7 +29,7 @@ _MAX_POSES = 2_000_000
 """Number of rows times moving objects; of longer runs the page shows every Nth step."""
 _MAX_EVENTS = 4000
 """Number of events that the page shows."""
-_RANKS = {"collision": 0, "no_path": 1, "arrival": 2, "waypoint": 3}
+_RANKS = {"collision": 0, "no_path": 1, "overshoot": 2, "arrival": 3, "waypoint": 4}
 """Importance of the kinds of events, the most important first."""
 _MAX_RANGES = 2_000_000
 """Number of recorded ranges up to which the page shows them; of longer scans it computes the ranges."""

@@ -144,6 +144,10 @@ class WorldModel(Options):
     collision_mode: Literal["stop", "unobstructed", "unobstructed_obstacles", "reactive", "contact"] = "stop"
     """What a collision does: it stops both objects (`stop`), has no effect (`unobstructed`, `reactive`), stops robots
     only (`unobstructed_obstacles`), or lets bodies push and slide (`contact`)."""
+    after_arrival: Literal["freeze", "yield"] | None = None
+    """What a robot does that has reached its last goal: it stands still for good (`freeze`), or it stays controlled, so
+    that it can make room, and counts as arrived for good (`yield`); null is as `yield`, but the robot counts as arrived
+    only while it is at its goal."""
     boundary: Literal["none", "walls"] = "none"
     """What is at the edge of the world: nothing, or four walls that objects collide with, see and avoid."""
     obstacle_map: Annotated[Any, _MapSelect(MAPS, null=True, short=("image", "path"))] = None

@@ -41,4 +41,12 @@ def _of_object(record: ObjectRecord) -> list[str]:
         "planners": any(getattr(planner, "name", planner) in _SAMPLING_PLANNERS for planner in planners),
         "user code": any(isinstance(behavior, CustomOptions) for behavior in behaviors),
     }
-    return [name for name, chance in chances.items() if chance]
+    return [name for name, chance in chances.items() if chance] + _perturbed_parts(record)
+
+
+def _perturbed_parts(record: ObjectRecord) -> list[str]:
+    spreads = record.spreads
+    if spreads is None:
+        return []
+    names = {"position": "start positions", "heading": "start headings", "speed": "speeds", "delay": "start delays"}
+    return [text for key, text in names.items() if getattr(spreads, key)]

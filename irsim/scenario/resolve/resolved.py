@@ -13,7 +13,24 @@ if TYPE_CHECKING:
     from irsim.diagnostics.diagnostic import Path
     from irsim.scenario.model.scenario import Gui, ObjectPlot, WorldModel
 
-__all__ = ["ObjectRecord", "Placement", "ResolvedScenario"]
+__all__ = ["ObjectRecord", "Placement", "ResolvedScenario", "Spreads"]
+
+
+@dataclass(frozen=True, slots=True)
+class Spreads:
+    """How far an object may differ from the scenario: each seed draws uniformly within these spreads.
+
+    Attributes:
+        position: Largest change of the start in x and in y, either way [m].
+        heading: Largest change of the initial heading, either way [rad].
+        speed: Largest change of its speeds, either way, as a share of them.
+        delay: Longest time for which it stands still at its start [s].
+    """
+
+    position: float = 0.0
+    heading: float = 0.0
+    speed: float = 0.0
+    delay: float = 0.0
 
 
 @dataclass(slots=True)
@@ -69,6 +86,7 @@ class ObjectRecord:
     drive_tau: float  # effective: kinematics first, then world
     tags: tuple[str, ...] = ()
     joined: bool = True  # whether it follows the behavior of its group
+    spreads: Spreads | None = None  # None: it starts as written
 
 
 @dataclass(slots=True)

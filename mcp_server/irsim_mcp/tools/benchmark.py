@@ -11,7 +11,7 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim.results.labels import labels_of, seeds_of
+from irsim.results.labels import CROWDED, labels_of, seeds_of
 from irsim.runs.store import RESULT
 from irsim_mcp.episodes import call_to_repeat
 from irsim_mcp.errors import failure
@@ -46,6 +46,8 @@ _DIFFERENCES = (*_SHARES, "time_to_goal")
 _MAX_ROWS = 50
 _MAX_NOTES = 10
 _DECIMALS = 3
+_NO_ROOM = "No seed has room: use fewer or smaller objects, or smaller spreads."
+"""What to do if no episode took place."""
 _MAX_FAILED_SEEDS = 10
 """Number of seeds that a row lists of each kind of failure."""
 _MAX_FAILURES = 3
@@ -86,6 +88,14 @@ def tool(services: Services) -> StrictTool:
         ] = None,
         seeds: Annotated[int, Field(description=f"How many, 1-{MAX_SEEDS}.")] = 10,
         first_seed: Annotated[int, Field(ge=0, description="Tune on others than you report.")] = 0,
+        perturb: Annotated[
+            str | None,
+            Field(
+                max_length=500,
+                description="Starts differ by seed: position=0.1,heading=10deg,speed=10% (each ±),delay=2 (0-2 s); "
+                "objects=NAME,TAG: only these.",
+            ),
+        ] = None,
         max_steps: Annotated[int | None, Field(ge=1, le=MAX_STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
@@ -98,6 +108,7 @@ def tool(services: Services) -> StrictTool:
                 "files": files,
                 "behaviors": chosen,
                 "seeds": list(range(first_seed, first_seed + seeds)),
+                "perturb": perturb,
                 "steps": max_steps,
             },
             len(scenarios) * len(chosen) * seeds,
@@ -177,9 +188,10 @@ def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
     found.notes = [clean(note, 300) for note in notes[:_MAX_NOTES]]
     found.artifact = f".irsim/jobs/{found.job_id}/{file}"
     found.reproduce = clean(result["reproduce"], 1000)
-    lost = [e for e in result["episodes"] if e["outcome"] != "success"]
+    lost = [e for e in result["episodes"] if e["outcome"] not in ("success", CROWDED)]
     if not lost:
-        found.next = "Every episode succeeded; compare times and paths."
+        done = any(e["outcome"] == "success" for e in result["episodes"])
+        found.next = "Every episode succeeded; compare times and paths." if done else _NO_ROOM
         return
     found.next = f"To see why: {call_to_repeat(result, lost[0])} ({lost[0]['outcome']})."
 
@@ -188,10 +200,12 @@ def _summary(result: dict[str, Any], labels: dict[str, str]) -> str:
     """Number of successes of each behavior over all scenarios, in words."""
     shares = []
     for behavior in result["behaviors"]:
-        ends = [episode["outcome"] for episode in result["episodes"] if episode["behavior"] == behavior]
+        mine = [episode["outcome"] for episode in result["episodes"] if episode["behavior"] == behavior]
+        ends = [outcome for outcome in mine if outcome != CROWDED]
         shares.append(f"{clean(labels[behavior])} {ends.count('success')}/{len(ends)}")
     periods = ", ".join(f"{period:g}" for period in sorted(set(result["step_time"].values())))
-    return f"{len(result['episodes'])} episodes, step_time {periods} s; success: {', '.join(shares)}"
+    counts = f"{len(result['episodes'])} episodes, step_time {periods} s; success: {', '.join(shares)}"
+    return "; ".join([counts, *(clean(text, 200) for text in result["incidents"])])
 
 
 def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) -> dict[str, Any]:
@@ -213,7 +227,7 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
             f"{clean(what)} {n} of {row['episodes']}" for what, n in list(row["failures"].items())[:_MAX_FAILURES]
         ]
         shown["failed"] = f"{failed} ({', '.join(robots)})"
-    return shown
+    return shown | ({"incidents": row["incidents"]} if row["incidents"] else {})
 
 
 def _defined(found: dict[str, Any], keys: Sequence[str], episodes: int) -> dict[str, Any]:
@@ -240,6 +254,8 @@ def _text(found: Benchmark) -> str:
     for row in found.rows:
         values = _lines(row) + [f"difference of {line}" for line in _lines(row.get("diff", {}))]
         values += [f"failed: {row['failed']}"] if "failed" in row else []
+        if incidents := row.get("incidents"):
+            values.append(f"episodes with {', '.join(f'{name}: {count}' for name, count in incidents.items())}")
         lines.append(f"- {row['scenario']}, {row['behavior']}, {row['episodes']} episodes: {'; '.join(values)}")
     lines += [f"Note: {note}" for note in found.notes]
     if found.artifact:

@@ -20,13 +20,12 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Episode", "tool"]
 
 _DESCRIPTION = """
-    Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is
-    success (every robot reached its goal, no collision before), collision, or timeout; none of them is an error. The
-    reason says what hit what, where and when, and how far robots were from their goals. Also returns robots
-    (unsuccessful first), first events, the command that repeats it, and a run_id, kept for 24 hours after its last
-    use. The same scenario and seed give the same result. Next: after a failure inspect_run and draw that moment
-    with render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other seeds
-    if anything is random.
+    Simulate one episode, until every robot has arrived or stopped, or time is up. Outcome is success (every robot
+    reached its goal, no collision before), collision, or timeout; none is an error. The reason says what hit what,
+    where and when, and how far robots were from their goals. Also returns robots (unsuccessful first), first events,
+    the command that repeats it, and a run_id, kept for 24 hours. Next: after a failure inspect_run and draw that
+    moment with render_snapshot (run_id, step), change the scenario, validate and run again; after a success try other
+    seeds if anything is random.
 """
 _UNDRIVEN = "has no behavior"
 """Part of the reason of a run with a robot that nothing drives."""
@@ -63,7 +62,7 @@ class Event(BaseModel):
 
     time: float
     step: int
-    kind: Literal["arrival", "waypoint", "collision", "no_path"]
+    kind: str
     object: str
     partner: str | None = None
     x: float
@@ -82,6 +81,7 @@ class Episode(BaseModel):
     seed: int
     random: list[str]
     behavior: str | None = None
+    incidents: dict[str, Any] | None = None
     steps: int
     sim_time: float
     time_limit: float
@@ -104,9 +104,8 @@ def tool(services: Services) -> StrictTool:
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
         seed: Seed = None,
-        behavior: Annotated[
-            str | None, Field(max_length=500, description="Of all robots instead of their own, as in benchmark.")
-        ] = None,
+        behavior: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
+        perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
             int | None,
             Field(ge=1, le=MAX_STEPS, description=f"Default: the scenario's time limit, at most {MAX_STEPS:,}."),
@@ -131,6 +130,7 @@ def tool(services: Services) -> StrictTool:
             seed=seed,
             steps=max_steps,
             behavior=behavior,
+            perturb=perturb,
         )
         episode = _episode(found, response_format == "detailed")
         text = TextContent(type="text", text=_text(episode))
@@ -170,6 +170,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         seed=found["seed"],
         random=found["random"],
         behavior=None if found["behavior"] is None else clean(found["behavior"], 200),
+        incidents=_incidents(found) or None,
         steps=found["steps"],
         sim_time=_rounded(found["sim_time"]),
         time_limit=_rounded(found["time_limit"]),
@@ -183,6 +184,16 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         reproduce=clean(found["reproduce"], 300),
         next=_advice(found),
     )
+
+
+def _incidents(found: dict[str, Any]) -> dict[str, Any]:
+    """What happened besides outcomes: contacts between people, objects that left the world or jumped over goals."""
+    incidents: dict[str, Any] = {
+        "human_contacts": found["human_contacts"],
+        "left": [clean(item["name"]) for item in found["left"]],
+        "jumped": [clean(name) for name in found["jumped"]],
+    }
+    return {key: value for key, value in incidents.items() if value}
 
 
 def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:

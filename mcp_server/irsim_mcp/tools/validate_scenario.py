@@ -41,7 +41,7 @@ _MAX_ALLOWED_LENGTH = 800
 class Issue(BaseModel):
     """One problem of a scenario."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
 
     code: str
     severity: Literal["error", "warning", "hint"]

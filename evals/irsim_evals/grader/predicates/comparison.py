@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 from irsim_evals.grader.matching import Quantity
 from irsim_evals.grader.predicates._base import AnswerPredicate, Observation, register
 from irsim_evals.grader.predicates.every_scenario import opened, scenario_names
-from irsim_evals.grader.programs import run_program
 from irsim_evals.grader.runs_of_answers import Runs, runs_of
 
 if TYPE_CHECKING:
     from irsim_evals.grader.material import Material
 
+_ROUNDING = 1
+"""Steps by which a horizon that a program counts in seconds may be off."""
 _SEEDS = (0, 1)
 """Seeds of the worlds that are compared."""
 
@@ -36,8 +37,8 @@ class Comparison(AnswerPredicate):
     """Horizon in steps."""
     metrics: dict[str, list[str]]
     """Name → regular expressions, one of which occurs in what runs the scenarios or in what it prints."""
-    seconds: Quantity = 3.0
-    """How long each program is tried [s]: it may take longer, but it must not end with an error."""
+    seconds: Quantity = 20.0
+    """How long the rehearsal of each program may take [s]."""
 
     def observe(self, material: Material) -> Observation:
         """Compare the files, and look at the episodes that are run."""
@@ -76,48 +77,33 @@ class Comparison(AnswerPredicate):
         found = runs_of(material, set(self.behaviors), self.seconds)
         if isinstance(found, str):
             return found
-        missing = self._unreported(found.words)
-        if missing and found.by.endswith(".py"):  # perhaps it prints them at its end
-            missing = self._unreported(f"{found.words}\n{run_program(material.folder(), found.by).text}")
-        if missing:
-            return f"nothing reports the rate of {missing}"
-        if not found.started:
-            return self._told(found.words, groups)
-        seeds: dict[tuple[int, str], list[int]] = {}
+        problem = self._started(found, groups) if found.started else self._told(found.words, groups)
+        if problem:
+            return problem
+        missing = next((name for name, ways in self.metrics.items() if not _occurs(ways, found.words)), "")
+        return f"nothing reports the rate of {missing}" if missing else ""
+
+    def _started(self, found: Runs, groups: dict[int, dict[str, Material]]) -> str:
+        """What is wrong with the episodes; empty if nothing is."""
         numbers = {name: number for number, files in groups.items() for name in files}
+        seeds: dict[tuple[int, str], list[int]] = {}
         for one in found.started:
-            for behavior in one.behaviors:
-                seeds.setdefault((numbers.get(one.file, 0), behavior), []).append(one.seed)
             if one.file not in numbers:
                 return f"{found.by} runs {one.file or 'a text'}, which is no scenario of the answer"
-            horizon = one.horizon or _limit(groups[numbers[one.file]][one.file])
-            if (one.horizon is not None and horizon != self.steps) or one.steps > self.steps:
-                return f"{found.by} runs {max(one.steps, one.horizon or 0)} steps of {one.file}"
-        if any(one.horizon is None for one in found.started) and not _names(self.steps, found.words):
-            limits = {_limit(one) for files in groups.values() for one in files.values()}
-            if limits != {self.steps}:
-                return f"no horizon of {self.steps} steps; by the scenarios {', '.join(map(str, limits))}"
-        return self._seeds(found, seeds)
-
-    def _unreported(self, words: str) -> str:
-        """The first metric that words do not name; empty if they name all."""
-        return next(
-            (name for name, ways in self.metrics.items() if not any(re.search(way, words, re.I) for way in ways)), ""
-        )
-
-    def _seeds(self, found: Runs, seeds: dict[tuple[int, str], list[int]]) -> str:
-        """What is wrong with the seeds of the episodes, by number of robots and behavior."""
-        common: set[int] = max(map(set, seeds.values()), key=len, default=set())
+            steps = one.steps if one.steps is not None else _limit(groups[numbers[one.file]][one.file])
+            if steps is None or abs(steps - self.steps) > _ROUNDING:
+                return f"{found.by} gives {one.file} {'no horizon' if steps is None else f'{steps} steps'}"
+            for behavior in one.behaviors:
+                seeds.setdefault((numbers[one.file], behavior), []).append(one.seed)
+        common = max(map(set, seeds.values()), key=len)
         for number, behavior in itertools.product(self.robots, self.behaviors):
             own = seeds.get((number, behavior), [])
-            if not own and found.whole:
+            if not own:
                 return f"nothing runs {behavior} with {number} robots"
-            if len(set(own)) < len(own) or not set(own) <= common:
-                return f"{found.by} gives {behavior} with {number} robots other seeds"
-            if len(own) != self.episodes and (found.whole or len(own) > self.episodes):
+            if len(own) != self.episodes:
                 return f"{found.by} runs {behavior} with {number} robots in {len(own)} episodes"
-        if not found.whole and not _names(self.episodes, found.words):
-            return f"nothing says that there are {self.episodes} episodes"
+            if set(own) != common or len(common) < len(own):
+                return f"{found.by} gives {behavior} with {number} robots other seeds, or seeds twice"
         return ""
 
     def _told(self, words: str, groups: dict[int, dict[str, Material]]) -> str:
@@ -134,8 +120,8 @@ class Comparison(AnswerPredicate):
         return "" if re.search(many, words, re.IGNORECASE) else f"nothing says that there are {self.episodes} episodes"
 
 
-def _names(number: int, words: str) -> bool:
-    return re.search(rf"(?<![\d.]){number}(?![\d.])", words) is not None
+def _occurs(ways: list[str], words: str) -> bool:
+    return any(re.search(way, words, re.IGNORECASE) for way in ways)
 
 
 def _limit(one: Material) -> int | None:

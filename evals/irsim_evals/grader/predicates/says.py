@@ -26,6 +26,8 @@ class Says(AnswerPredicate):
     """At least one of these occurs."""
     none_of: list[str] = []
     """None of these occurs."""
+    about: str = ""
+    """What it says, in words, for the evidence."""
     turn: int | None = None
     """Number of the turn whose reply is meant, from 1 on; default: the last one."""
 
@@ -49,10 +51,13 @@ class Says(AnswerPredicate):
         missing = [pattern for pattern in self.all_of if not occurs(pattern)]
         unwanted = [pattern for pattern in self.none_of if occurs(pattern)]
         lacking = bool(self.any_of) and not any(map(occurs, self.any_of))
-        words = [f"says /{pattern}/" for pattern in self.all_of]
-        words += ["says " + " or ".join(f"/{pattern}/" for pattern in self.any_of)] if self.any_of else []
-        words += [f"does not say /{pattern}/" for pattern in self.none_of]
+        expected = (
+            f"says {self.about or 'so'}, in words that the case knows ({len(self.any_of) + len(self.all_of)} ways)"
+        )
+        if unwanted:
+            found = re.search(unwanted[0], text, re.IGNORECASE)
+            expected += f"; it must not say {found[0]!r}" if found else ""
         quoted = text if len(text) <= _MAX_QUOTED else text[:_MAX_QUOTED] + " …"
         return Observation(
-            bool(text) and not (missing or unwanted or lacking), "the reply " + ", ".join(words), quoted or "no reply"
+            bool(text) and not (missing or unwanted or lacking), f"the reply {expected}", quoted or "no reply"
         )

@@ -2,8 +2,10 @@
 
 import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
 
-const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way" };
-const MANY_OF = { collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way" };
+const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
+  overshoot: "jumps over its goal" };
+const MANY_OF = { collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
+  overshoot: "jumps over goals" };
 
 export const manyWords = (kind) => MANY_OF[kind] ?? kind;
 

@@ -1,0 +1,88 @@
+"""Writes the report of a benchmark beside its result: Markdown, one HTML page, replays of episodes that failed."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from irsim.benchmarks.episode import Job, scenario_of
+from irsim.benchmarks.plan import Plan, PlannedScenario
+from irsim.benchmarks.report.markdown import markdown
+from irsim.benchmarks.report.names import policy_labels
+from irsim.benchmarks.report.page import Shown, page
+from irsim.benchmarks.report.worst import worst_episodes
+from irsim.benchmarks.stored import PLAN
+from irsim.common.files import write_atomically
+from irsim.runs.files import RunError
+from irsim.scenario.limits import DEFAULT_LIMITS
+
+if TYPE_CHECKING:
+    from irsim.results.benchmark import BenchmarkResult, EpisodeRow
+
+__all__ = ["MARKDOWN", "PAGE", "REPLAYS", "write_report"]
+
+MARKDOWN, PAGE, REPLAYS = "results.md", "results.html", "replays"
+"""Names of the files, and of the folder of the replays."""
+_MOMENTS, _WIDTH_PX = 4, 1400
+
+
+def write_report(result: BenchmarkResult, folder: Path) -> Path:
+    """Write the report of a benchmark into its folder.
+
+    Args:
+        result: The result.
+        folder: Folder in which :func:`irsim.benchmarks.stored.run_plan` has run it.
+
+    Returns:
+        The page.
+
+    Raises:
+        RunError: The folder cannot be written.
+    """
+    plan = Plan.model_validate_json((folder / PLAN).read_bytes())
+    scenarios = {scenario.name: scenario for scenario in plan.scenarios}
+    try:
+        shown = [_shown(plan, scenarios[one.scenario], one, result, folder) for one in worst_episodes(result)]
+        write_atomically(folder / MARKDOWN, markdown(result))
+        write_atomically(folder / PAGE, page(result, shown))
+    except OSError as error:
+        raise RunError("not-writable", f"{folder}: {error.strerror}", "make room, then give --resume") from None
+    return folder / PAGE
+
+
+def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: BenchmarkResult, folder: Path) -> Shown:
+    """An episode as a picture, and its replay."""
+    from irsim.api.film_strip import draw_strip, moments_of
+    from irsim.env import Env
+
+    document = scenario.document()
+    job = Job(
+        text=scenario.text, path=document.path, behavior=one.behavior, steps=plan.steps, strict=plan.strict,
+        imports=tuple(plan.imports), limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb),
+    )  # fmt: skip
+    env = Env(scenario_of(job), seed=one.seed, display=False, headless=True, log_level="ERROR")
+    png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX)
+    env.end(ending_time=0.0)
+    label = policy_labels(result)[one.behavior]
+    name = f"{one.scenario.replace('/', '-')}-{label.replace(' ', '-')}-{one.seed}.html"
+    failed = ", ".join(f"{robot}: {how}" for robot, how in list(one.failures.items())[:3])
+    caption = f"{one.scenario}, {label}, seed {one.seed}: {one.outcome} after {one.sim_time:.1f} s ({failed})"
+    replayed = document.path is None and _replay(scenario.text, one, plan, folder / REPLAYS / name)
+    return Shown(caption, png, f"{REPLAYS}/{name}" if replayed else "")
+
+
+def _replay(text: str, one: EpisodeRow, plan: Plan, target: Path) -> bool:
+    """Run an episode again, and write its replay."""
+    from irsim.api.run_scenario import run
+    from irsim.runs.replay.export import replay
+
+    target.parent.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as place:
+        record = Path(place) / "run"
+        run(
+            text=text, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports, record=record,
+            behavior=None if one.behavior == "as-written" else one.behavior, perturb=plan.perturb or None,
+        )  # fmt: skip
+        replay(record, target)
+    return True

@@ -1,0 +1,104 @@
+"""Everything that the numbers of a benchmark depend on, as plain data: what a folder needs to go on after a stop."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from irsim.benchmarks.episode import Until
+from irsim.benchmarks.suite import Protocol, Suite
+from irsim.common.version import version as this_version
+from irsim.scenario.limits import DEFAULT_LIMITS
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import Document, load_text
+
+__all__ = ["Plan", "PlannedScenario", "map_hashes"]
+
+_HASH_LENGTH = 12
+
+
+class PlannedScenario(BaseModel):
+    """One scenario of a benchmark.
+
+    Attributes:
+        name: Name in the results.
+        family, protocol, values: What a suite says about it.
+        folder: Folder relative to which it names map files; None where it names none.
+        text: The scenario as YAML.
+        maps: Name of each map file → SHA-256 of its content.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: str
+    family: str
+    protocol: Protocol = "as-written"
+    values: dict[str, Any] = {}
+    folder: str | None = None
+    text: str
+    maps: dict[str, str] = {}
+
+    def document(self) -> Document:
+        """The scenario, ready to read."""
+        path = None if self.folder is None else str(Path(self.folder) / "scenario.yaml")
+        return load_text(self.text, name=self.name, path=path, limits=DEFAULT_LIMITS)
+
+
+class Plan(BaseModel):
+    """A benchmark before it is run.
+
+    Attributes:
+        name: Name of the suite, or ``benchmark``.
+        version: Version of irsim that runs it.
+        suite: The suite; None for a benchmark of files.
+        scenarios: The scenarios in order.
+        policies: Name in the results → behavior as text.
+        seeds: The seeds.
+        steps: Horizon in steps; None where each scenario has its own.
+        perturb: Perturbations of the scenarios, as on the command line.
+        until: When episodes end, see :class:`irsim.benchmarks.suite.Suite`.
+        strict: Whether what IR-SIM 2.12 ignores is an error.
+        imports: Modules that register behaviors.
+        reproduce: Command that runs it.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    name: str
+    version: str = this_version()
+    suite: Suite | None = None
+    scenarios: list[PlannedScenario]
+    policies: dict[str, str]
+    seeds: list[int]
+    steps: int | None = None
+    perturb: list[str] = []
+    until: Until = "done"
+    strict: bool = False
+    imports: list[str] = []
+    reproduce: str = ""
+
+    @property
+    def hash(self) -> str:
+        """Hash of everything that decides the numbers; folders and the command do not."""
+        where = {"reproduce": True, "scenarios": {"__all__": {"folder"}}}
+        text = self.model_dump_json(exclude=where)  # type: ignore[arg-type]
+        return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
+
+
+def map_hashes(documents: Sequence[Document]) -> list[dict[str, str]]:
+    """Name → SHA-256 of the map files of each scenario; none of a scenario that cannot be read."""
+    return [_hashes(document) for document in documents]
+
+
+def _hashes(document: Document) -> dict[str, str]:
+    scenario = read(document, limits=document.limits).scenario
+    if scenario is None:
+        return {}
+    found = {name: Path(path) for name, path in scenario.map_files.items()}
+    return {
+        name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in sorted(found.items()) if path.is_file()
+    }

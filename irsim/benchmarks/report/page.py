@@ -1,0 +1,91 @@
+"""The report as one HTML page that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+from irsim.benchmarks.report.charts import charts
+from irsim.benchmarks.report.markdown import COLUMNS, cells_of, facts_of, title_of
+from irsim.benchmarks.report.names import policy_labels
+from irsim.results.benchmark import BenchmarkResult
+
+__all__ = ["Shown", "page"]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """An episode that is shown.
+
+    Attributes:
+        caption: What it is.
+        png: Picture of some moments.
+        replay: Path of its replay, relative to the page; empty without one.
+    """
+
+    caption: str
+    png: bytes
+    replay: str = ""
+
+
+def page(result: BenchmarkResult, shown: Sequence[Shown] = ()) -> str:
+    """The page: facts, table, charts, worst episodes, and how to run it again."""
+    labels = policy_labels(result)
+    title = escape(title_of(result))
+    headings = "".join(f"<th>{escape(text)}</th>" for text in ("scenario", "policy", "n", *(h for _, h in COLUMNS)))
+    rows, last = [], None
+    for row in result.rows:
+        cells = [row.scenario if row.scenario != last else "", labels[row.behavior], str(row.episodes), *cells_of(row)]
+        mark = ' class="first"' if row.scenario != last else ""
+        rows.append(f"<tr{mark}>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+        last = row.scenario
+    figures = [f"<figure>{svg}<figcaption>{escape(caption)}</figcaption></figure>" for caption, svg in charts(result)]
+    worst = [_episode(one) for one in shown]
+    parts = [
+        f"<h1>{title}</h1>", *(f"<p>{escape(line)}</p>" for line in facts_of(result)),
+        f'<div class="wide"><table><thead><tr>{headings}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>',
+        '<p class="small">Intervals are 95 %: Wilson\'s for shares, bootstrap for means.</p>',
+        "<h2>Policies</h2>", "<ul>",
+        *(f"<li>{escape(label)}: <code>{escape(text)}</code></li>" for text, label in labels.items()), "</ul>",
+        *(f'<p class="note">{escape(note)}</p>' for note in result.notes),
+        "<h2>Charts</h2>" if figures else "", f'<div class="charts">{"".join(figures)}</div>',
+        "<h2>Episodes that failed</h2>" if worst else "", *worst,
+        "<h2>Run it again</h2>", f"<pre>{escape(result.reproduce)}</pre><p>irsim {escape(result.version)}</p>",
+    ]  # fmt: skip
+    return _SHELL.format(title=title, body="\n".join(filter(None, parts)))
+
+
+def _episode(one: Shown) -> str:
+    picture = f'<img alt="{escape(one.caption)}" src="data:image/png;base64,{base64.b64encode(one.png).decode()}">'
+    link = f'<a href="{escape(one.replay)}">{picture}</a>' if one.replay else picture
+    more = f' <a href="{escape(one.replay)}">replay</a>' if one.replay else ""
+    return f'<figure class="episode">{link}<figcaption>{escape(one.caption)}{more}</figcaption></figure>'
+
+
+_SHELL = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+:root {{ color-scheme: light dark; --line: #ccc; --soft: #666; --back: #fff; --text: #111; }}
+@media (prefers-color-scheme: dark) {{ :root {{ --line: #444; --soft: #aaa; --back: #16181c; --text: #eee; }}
+  figure svg {{ background: #fff; border-radius: 6px; }} }}
+body {{ font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem;
+  background: var(--back); color: var(--text); }}
+.wide {{ overflow-x: auto; }}
+table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }}
+th, td {{ padding: .2rem .7rem .2rem 0; text-align: left; white-space: nowrap; }}
+th {{ border-bottom: 1px solid var(--text); }}
+tr.first td {{ border-top: 1px solid var(--line); }}
+.small, figcaption, .note {{ color: var(--soft); font-size: 13px; }}
+.charts {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(30rem, 100%), 1fr)); gap: 1rem; }}
+figure {{ margin: 0 0 1rem; }}
+figure svg, figure img {{ width: 100%; height: auto; }}
+.episode {{ max-width: 60rem; }}
+pre {{ overflow-x: auto; padding: .6rem; border: 1px solid var(--line); border-radius: 6px; }}
+code {{ font-size: 13px; overflow-wrap: anywhere; }}
+</style></head><body>
+{body}
+</body></html>
+"""

@@ -1,0 +1,165 @@
+"""Runs a benchmark in a folder, where it can go on after any interruption as if there had been none.
+
+Every episode is written as soon as it is done (``episodes.jsonl``). At the end the result is written, and the episodes
+again in their order: the files of a run that was interrupted and resumed equal those of one that was not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from irsim.benchmarks.comparison import benchmark
+from irsim.benchmarks.log import as_log
+from irsim.benchmarks.plan import Plan
+from irsim.common.files import write_atomically
+from irsim.common.version import version
+from irsim.episodes.episode import Progress
+from irsim.results.benchmark import BenchmarkResult
+from irsim.results.suite import SuiteResult, SuiteScenarioFacts
+from irsim.runs.files import RunError
+from irsim.scenario.limits import Limits
+
+__all__ = ["EPISODES", "PLAN", "RESULTS", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
+
+EPISODES, PLAN, RESULTS = "episodes.jsonl", "plan.json", "results.json"
+"""Files in the folder of a benchmark: its episodes, everything that decides its numbers, and its result."""
+_FOLDER = Path(".irsim") / "benchmarks"
+
+
+def default_folder(plan: Plan) -> Path:
+    """The folder of a plan below the current one; its name ends with the hash of the plan."""
+    return _FOLDER / f"{plan.name}-{plan.hash}"
+
+
+def last_folder() -> Path:
+    """The folder below the current one in which a benchmark was started last.
+
+    Raises:
+        RunError: No benchmark was started here.
+    """
+    plans = sorted(_FOLDER.glob(f"*/{PLAN}"), key=lambda path: path.stat().st_mtime_ns)
+    if not plans:
+        raise RunError("no-benchmark", f"{_FOLDER} holds no benchmark", "name its folder with -o")
+    return plans[-1].parent
+
+
+def run_plan(
+    plan: Plan,
+    folder: Path,
+    *,
+    resume: bool = False,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    limits: Limits | None = None,
+) -> BenchmarkResult:
+    """Run a plan, and write its episodes and its result into a folder.
+
+    Args:
+        plan: What is run.
+        folder: The folder, which is made.
+        resume: Go on with what an interrupted run of the same plan has left there.
+        workers: Greatest number of processes; the files do not depend on it.
+        progress: Callback ``(episodes_done, episodes_total)``.
+        limits: Limits of the loader and of each run.
+
+    Returns:
+        The result; a :class:`irsim.results.suite.SuiteResult` of a suite.
+
+    Raises:
+        RunError: The folder holds episodes already and ``resume`` is not given, or those of another plan; or it cannot
+            be written.
+        Others: as :func:`irsim.benchmark`.
+    """
+    _prepare(plan, folder, resume)
+    found = benchmark(
+        {scenario.name: scenario.document() for scenario in plan.scenarios},
+        list(plan.policies.values()),
+        plan.seeds,
+        perturb=plan.perturb,
+        steps=plan.steps,
+        strict=plan.strict,
+        imports=plan.imports,
+        workers=workers,
+        limits=limits,
+        progress=progress,
+        log=folder / EPISODES,
+        resume=resume,
+        until=plan.until,
+    )
+    result = _result(plan, found)
+    _write(folder / EPISODES, as_log(found))
+    _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
+    return result
+
+
+def resume_benchmark(
+    folder: Path, *, workers: int | None = None, progress: Progress | None = None, limits: Limits | None = None
+) -> BenchmarkResult:
+    """Go on with an interrupted benchmark, with nothing but what its folder holds; see :func:`run_plan`.
+
+    Raises:
+        RunError: The folder holds no plan, or one of another version.
+    """
+    try:
+        plan = Plan.model_validate_json((folder / PLAN).read_bytes())
+    except (OSError, ValidationError):
+        raise RunError("no-benchmark", f"{folder} holds no benchmark that can be resumed", "start it again") from None
+    if plan.version != version():
+        raise RunError(
+            "other-benchmark",
+            f"{folder} was started by irsim {plan.version}, and this is irsim {version()}",
+            "start it again in another folder: results of different versions do not mix",
+        )
+    return run_plan(plan, folder, resume=True, workers=workers, progress=progress, limits=limits)
+
+
+def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
+    """Make the folder and write the plan.
+
+    Raises:
+        RunError: See :func:`run_plan`.
+    """
+    text, known = plan.model_dump_json(indent=1) + "\n", folder / PLAN
+    if (folder / EPISODES).exists() and not resume:
+        raise RunError("results-exist", f"{folder} holds episodes already", "give --resume, or another folder with -o")
+    if known.exists() and known.read_text(encoding="utf-8") != text:
+        raise RunError("other-benchmark", f"{folder} holds another benchmark", "give another folder with -o")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunError("not-writable", f"{folder}: {error.strerror}", "give another folder with -o") from None
+    if not known.exists():
+        _write(known, text)
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        write_atomically(path, text)
+    except OSError as error:
+        raise RunError(
+            "not-writable", f"{path} cannot be written: {error.strerror}", "make room, then give --resume"
+        ) from None
+
+
+def _result(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
+    """The result of a plan, with what its suite says."""
+    fields: dict[str, Any] = {name: getattr(found, name) for name in BenchmarkResult.model_fields}
+    fields["reproduce"] = plan.reproduce or found.reproduce
+    if plan.suite is None:
+        return BenchmarkResult(**fields)
+    own: Mapping[str, Any] = {
+        "suite": plan.suite.suite,
+        "suite_version": plan.suite.version,
+        "title": plan.suite.title,
+        "hash": plan.hash,
+        "policies": plan.policies,
+        "facts": [
+            SuiteScenarioFacts(name=one.name, family=one.family, protocol=one.protocol, values=one.values)
+            for one in plan.scenarios
+        ],
+    }
+    return SuiteResult(**fields, **own)

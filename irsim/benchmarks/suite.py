@@ -1,0 +1,138 @@
+"""The content of a suite file: scenarios, seeds, horizon, protocols and policies of a benchmark that people can cite.
+
+::
+
+    suite: my_crossings
+    version: 1
+    title: Two robots at a crossing
+    scenarios:
+      - name: crossing
+        template: crossing              # or scenario: {world: …, robot: …}, or file: scene.yaml
+        vary: {speed: [0.5, 1.0]}       # parameters of the template, or paths such as robot[0].number
+    seeds: {first: 0, count: 100, full: 1000}
+    steps: 500
+    protocols: [freeze, yield]
+    policies:
+      orca: {name: orca, timeHorizon: 2}
+      dash: dash
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from irsim.scenario.perturbation import Perturbation
+
+__all__ = ["Protocol", "Seeds", "Suite", "SuiteScenario"]
+
+Protocol = Literal["as-written", "freeze", "yield"]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
+Value = bool | int | float | str
+MAX_SCENARIOS = 200
+"""Largest number of scenarios that a suite expands to, without its protocols."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+
+class SuiteScenario(_Part):
+    """One scenario, or a family of scenarios that differ in a few values."""
+
+    name: Name
+    """Name in the results; values that vary are appended to it, as in ``robots-25``."""
+    template: str | None = None
+    """Name of a bundled template; ``irsim templates`` lists them."""
+    parameters: dict[str, Value] = {}
+    """Values of parameters of the template."""
+    scenario: dict[str, Any] | None = None
+    """The scenario itself, as in a scenario file."""
+    file: str | None = None
+    """A scenario file, relative to the suite file."""
+    vary: dict[str, Annotated[list[Any], Field(min_length=1)]] = {}
+    """Parameter of the template, or path of a key such as ``robot[0].number`` → values. Each combination is a
+    scenario."""
+    steps: Annotated[int, Field(ge=1)] | None = None
+    """Horizon of these scenarios in steps; null is that of the suite."""
+
+    @model_validator(mode="after")
+    def _has_one_source(self) -> SuiteScenario:
+        given = [key for key in ("template", "scenario", "file") if getattr(self, key) is not None]
+        if len(given) != 1:
+            raise ValueError(f"give exactly one of template, scenario and file, not {' and '.join(given) or 'none'}")
+        if self.parameters and self.template is None:
+            raise ValueError("parameters belong to a template; write values of a scenario where they belong")
+        return self
+
+
+class Seeds(_Part):
+    """Seeds of the episodes: episode k has the seed ``first + k``."""
+
+    first: Annotated[int, Field(ge=0, lt=2**53)] = 0
+    """Seed of the first episode."""
+    count: Annotated[int, Field(ge=1, le=100_000)] = 100
+    """Number of episodes of each scenario and policy."""
+    full: Annotated[int, Field(ge=1, le=100_000)] | None = None
+    """Number of episodes with ``--full``; null is ``count``."""
+
+    @model_validator(mode="after")
+    def _full_is_more(self) -> Seeds:
+        if self.full is not None and self.full < self.count:
+            raise ValueError(f"full must be at least count ({self.count}), got {self.full}")
+        return self
+
+
+class Suite(_Part):
+    """A benchmark with a fixed protocol."""
+
+    suite: Name
+    """Name of the suite; a bundled one has the name of its file."""
+    version: Annotated[int, Field(ge=1)]
+    """Version of the suite: results of different versions are not comparable."""
+    title: Annotated[str, Field(min_length=1, max_length=100)]
+    """What it is about, in one line."""
+    about: str = ""
+    """What it measures, where it comes from, and how to read its results."""
+    sources: list[str] = []
+    """Papers and pages that the suite follows."""
+    scenarios: Annotated[list[SuiteScenario], Field(min_length=1)]
+    """The scenarios."""
+    seeds: Seeds = Seeds()
+    """Seeds of the episodes."""
+    steps: Annotated[int, Field(ge=1)]
+    """Horizon in steps."""
+    protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
+    """What robots do that have arrived: stand still (``freeze``), stay controlled so that they can make room
+    (``yield``), or what the scenario says (``as-written``). Each protocol is run on its own."""
+    until: Literal["done", "first_collision"] = "done"
+    """When an episode ends before its horizon: when every robot has arrived or stopped, or already when one collides,
+    which fails the episode in both cases."""
+    policies: Annotated[dict[Name, str | dict[str, Any]], Field(min_length=1)]
+    """Name in the results → policy that the suite compares, with its options: a behavior (``dash`` or ``{name: orca,
+    timeHorizon: 2}``) or ``as-written``. Differences are to the first one."""
+    perturb: list[Perturbation] = []
+    """How far starts, headings, speeds and departures may differ from the scenarios, drawn per seed, such as
+    ``[{position: 0.1}]``."""
+    density: str | None = None
+    """Key of ``vary`` that charts show from left to right, such as ``robot[0].number``."""
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Suite:
+        names = [scenario.name for scenario in self.scenarios]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f"two scenarios have the name {twice!r}")
+        if len(set(self.protocols)) < len(self.protocols):
+            raise ValueError("a protocol is listed twice")
+        if self.density is not None and not any(self.density in one.vary for one in self.scenarios):
+            raise ValueError(f"density is {self.density!r}, which no scenario varies")
+        return self
+
+
+def label_of(value: Any) -> str:
+    """A value as a part of the name of a scenario."""
+    text = f"{value:g}" if isinstance(value, float) else str(value)
+    return re.sub(r"[^A-Za-z0-9.]+", "-", text).strip("-")[:24]

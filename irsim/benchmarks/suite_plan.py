@@ -1,0 +1,110 @@
+"""The plan of a suite: its scenarios, the chosen policies, protocols and seeds."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+import yaml
+
+from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
+from irsim.benchmarks.suite import Protocol, Suite
+from irsim.benchmarks.suite_files import SuiteError, load_suite
+from irsim.benchmarks.suite_scenarios import Expanded, expand
+from irsim.diagnostics.diagnostic import suggestion
+from irsim.scenario.behavior_override import behavior_text
+from irsim.scenario.perturbation import perturbation_text, read_perturbations
+
+__all__ = ["suite_plan"]
+
+
+def suite_plan(
+    suite: str | Suite,
+    *,
+    policies: Sequence[str] | None = None,
+    protocols: Sequence[Protocol] | None = None,
+    seeds: int | None = None,
+    full: bool = False,
+    scenarios: Sequence[str] | None = None,
+    perturb: Sequence[str] = (),
+) -> Plan:
+    """Everything that a run of a suite depends on.
+
+    Args:
+        suite: Name of a bundled suite, path of a file, or a suite.
+        policies: Names of policies of the suite, or other behaviors, instead of all policies of the suite.
+        protocols: Some of its protocols; default: all.
+        seeds: Number of seeds, instead of that of the suite.
+        full: Run the number of seeds that the suite calls full.
+        scenarios: Names of scenarios, or of their families; default: all.
+        perturb: Perturbations instead of those of the suite, as on the command line.
+
+    Raises:
+        SuiteError: There is no such suite, or it is not valid; or a protocol or scenario is not in it.
+    """
+    found, file = (suite, Path("suite.yaml")) if isinstance(suite, Suite) else load_suite(suite)
+    kept = _chosen("protocol", protocols or found.protocols, found.protocols)
+    made = [one for one in expand(found, file) if one.protocol in kept]
+    words = ["irsim", "benchmark", suite if isinstance(suite, str) else found.suite]
+    if policies is not None:
+        words += ["--behaviors", ",".join(policies)]
+    if list(kept) != list(found.protocols):
+        words += [word for name in kept for word in ("--protocol", name)]
+    if scenarios is not None:
+        names = _chosen("scenario", scenarios, sorted({name for one in made for name in (one.name, one.family)}))
+        made = [one for one in made if one.name in names or one.family in names]
+        words += [word for name in names for word in ("--scenario", name)]
+    perturbations = read_perturbations(perturb) or tuple(found.perturb)
+    words += [word for item in perturb for word in ("--perturb", item)]
+    count = seeds or (found.seeds.full if full and found.seeds.full else found.seeds.count)
+    words += ["--seeds", str(count)] if count != found.seeds.count else []
+    return Plan(
+        name=found.suite,
+        suite=found,
+        scenarios=_planned(made),
+        policies=_policies(found, policies),
+        seeds=[found.seeds.first + k for k in range(count)],
+        until=found.until,
+        perturb=[perturbation_text(item) for item in perturbations],
+        reproduce=shlex.join(words),
+    )
+
+
+def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]:
+    for name in wanted:
+        if name not in known:
+            fix = suggestion(name, known, f"choose from {', '.join(known)}")
+            raise SuiteError(f"the suite has no {what} {name!r}", fix or "")
+    return list(wanted)
+
+
+def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
+    """Label → behavior as text. A name that the suite does not have is a behavior of its own."""
+    if wanted is not None and not wanted:
+        raise SuiteError("there must be at least one policy, got none", f"choose from {', '.join(suite.policies)}")
+    own = {name: behavior_text(policy) for name, policy in suite.policies.items()}
+    return own if wanted is None else {name: own.get(name, name) for name in wanted}
+
+
+def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:
+    drafts = [
+        PlannedScenario(
+            name=one.name, family=one.family, protocol=one.protocol, values=dict(one.values), folder=str(one.folder),
+            text=_with_limit(one),
+        )
+        for one in made
+    ]  # fmt: skip
+    maps = map_hashes([draft.document() for draft in drafts])
+    return [
+        draft.model_copy(update={"maps": hashes, "folder": draft.folder if hashes else None})
+        for draft, hashes in zip(drafts, maps, strict=True)
+    ]
+
+
+def _with_limit(one: Expanded) -> str:
+    """The text of a scenario with the horizon of the suite as its time limit."""
+    data = yaml.safe_load(one.text)
+    world = dict(data.get("world") or {})
+    world["time_limit"] = round(one.steps * float(world.get("step_time") or 0.1), 9)
+    return str(yaml.safe_dump({**data, "world": world}, sort_keys=False, allow_unicode=True))

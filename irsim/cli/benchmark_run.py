@@ -1,0 +1,124 @@
+"""What ``irsim benchmark`` runs: files, a suite, or what an interrupted benchmark has left in its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from irsim.diagnostics.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from irsim.benchmarks.plan import Plan
+    from irsim.results.benchmark import BenchmarkResult
+
+__all__ = ["Wanted", "run_benchmark"]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The arguments of the command; see there."""
+
+    files: Sequence[str]
+    behaviors: str | None
+    seeds: str
+    perturb: Sequence[str]
+    steps: int | None
+    strict: bool
+    imports: Sequence[str]
+    workers: int | None
+    max_objects: int | None
+    folder: Path | None
+    resume: bool
+    full: bool
+    protocols: Sequence[str]
+    scenarios: Sequence[str]
+
+
+def run_benchmark(wanted: Wanted) -> BenchmarkResult:
+    """Run a benchmark, and write its report where it has a folder.
+
+    Raises:
+        ArgumentError: The arguments do not fit together.
+    """
+    from irsim.api.benchmark_report import write_report
+    from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
+    from irsim.benchmarks.suite_files import is_suite
+    from irsim.cli.findings import limits_for
+    from irsim.cli.output import console, progress
+
+    suites = [word for word in wanted.files if is_suite(word)]
+    if suites and len(wanted.files) > 1:
+        raise ArgumentError(f"{suites[0]} is a suite, which is run alone", "give one suite, or scenario files")
+    of_suite = {"--full": wanted.full, "--protocol": wanted.protocols, "--scenario": wanted.scenarios}
+    odd = [name for name, value in of_suite.items() if value and not suites]
+    if odd:
+        raise ArgumentError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
+    limits = limits_for(wanted.max_objects)
+    with progress("simulating") as report:
+        if not wanted.files:
+            if not wanted.resume:
+                raise ArgumentError("there is nothing to run", "give scenario files, a suite, or --resume")
+            folder = wanted.folder or last_folder()
+            result = resume_benchmark(folder, workers=wanted.workers, progress=report, limits=limits)
+        elif suites or wanted.folder is not None or wanted.resume:
+            plan = _suite(suites[0], wanted) if suites else _plan(wanted)
+            folder = wanted.folder or default_folder(plan)
+            result = run_plan(
+                plan, folder, resume=wanted.resume, workers=wanted.workers, progress=report, limits=limits
+            )
+        else:
+            from irsim.benchmarks import DEFAULT_SEEDS, benchmark
+            from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
+
+            policies = [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors)
+            return benchmark(
+                list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
+                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
+                progress=report,
+            )  # fmt: skip
+    page = write_report(result, folder)
+    console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
+    return result
+
+
+def _suite(name: str, wanted: Wanted) -> Plan:
+    """The plan of a suite.
+
+    Raises:
+        ArgumentError: An argument belongs to scenario files.
+    """
+    from irsim.benchmarks.suite_plan import suite_plan
+    from irsim.scenario.behavior_override import split_behaviors
+
+    for option, value in (("--steps", wanted.steps), ("--import", wanted.imports)):
+        if value:
+            raise ArgumentError(f"{option} belongs to scenario files", "copy the suite into a file and change it there")
+    if wanted.seeds and not wanted.seeds.isdecimal():
+        raise ArgumentError(f"--seeds of a suite is their number, got {wanted.seeds}", "give a number such as 20")
+    return suite_plan(
+        name,
+        policies=None if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        protocols=wanted.protocols or None,  # type: ignore[arg-type]
+        seeds=int(wanted.seeds) if wanted.seeds else None,
+        full=wanted.full,
+        scenarios=wanted.scenarios or None,
+        perturb=wanted.perturb,
+    )
+
+
+def _plan(wanted: Wanted) -> Plan:
+    """The plan of scenario files."""
+    from irsim.benchmarks.file_plan import file_plan
+    from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
+
+    return file_plan(
+        wanted.files,
+        [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        wanted.seeds,
+        steps=wanted.steps,
+        strict=wanted.strict,
+        imports=wanted.imports,
+        perturb=wanted.perturb,
+    )

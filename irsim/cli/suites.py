@@ -1,0 +1,42 @@
+"""``irsim suites``: list the bundled benchmarks."""
+
+from __future__ import annotations
+
+import json
+
+import typer
+
+from irsim.cli.options import Json
+
+__all__ = ["suites"]
+
+
+def suites(json_output: Json = False) -> None:
+    """List the bundled suites: benchmarks with fixed scenarios, seeds, horizon, protocol and policies."""
+    from irsim.benchmarks.suite_files import load_suite, suite_names
+    from irsim.benchmarks.suite_plan import suite_plan
+    from irsim.cli.output import console
+
+    found = {name: (load_suite(name)[0], suite_plan(name)) for name in suite_names()}
+    if json_output:
+        listed = [
+            {
+                "suite": suite.suite, "version": suite.version, "title": suite.title, "about": suite.about,
+                "scenarios": [one.name for one in plan.scenarios], "policies": plan.policies,
+                "protocols": suite.protocols, "seeds": len(plan.seeds), "steps": suite.steps,
+            }
+            for suite, plan in found.values()
+        ]  # fmt: skip
+        typer.echo(json.dumps(listed, indent=2, ensure_ascii=False))
+        return
+    from rich.table import Table
+
+    out = console()
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column(style="bold cyan", no_wrap=True)
+    table.add_column()
+    for name, (suite, plan) in found.items():
+        size = f"{len(plan.scenarios)} scenarios x {len(plan.policies)} policies x {len(plan.seeds)} seeds"
+        table.add_row(name, f"{suite.title} ({size})")
+    out.print(table)
+    out.print("irsim benchmark NAME runs one; irsim describe NAME explains it")

@@ -1,0 +1,73 @@
+"""What happened in an episode besides the outcomes of robots: people who touched each other, goals jumped over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from irsim.common.text import quoted, seconds
+from irsim.metrics.roles import HUMAN, kinds_of
+from irsim.scenario.resolve.resolved import ObjectRecord
+from irsim.simulation.events import Event
+
+__all__ = ["Incidents", "contacts_message", "find_incidents", "jumps_message"]
+
+
+class Incidents(NamedTuple):
+    """What happened in an episode besides outcomes.
+
+    Attributes:
+        human_contacts: Events of the contacts that began between two humans (:func:`irsim.metrics.roles.kinds_of`).
+        jumps: Name of each object that jumped over a goal and has not reached one since -> its last event
+            ``overshoot``, in order of time.
+    """
+
+    human_contacts: list[Event]
+    jumps: dict[str, Event]
+
+
+def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> Incidents:
+    """Find what happened besides outcomes.
+
+    Args:
+        records: Objects of the scenario.
+        events: Events of the episode.
+    """
+    kinds = kinds_of(records)
+    humans = {record.name for record, kind in zip(records, kinds, strict=True) if kind == HUMAN}
+    found = Incidents([], {})
+    for event in events:
+        if event.kind == "collision":
+            if event.object in humans and event.partner in humans:
+                found.human_contacts.append(event)
+        elif event.kind != "no_path":
+            found.jumps.pop(event.object, None)
+            if event.kind == "overshoot":
+                found.jumps[event.object] = event
+    return found
+
+
+def contacts_message(contacts: Sequence[Event], *, brief: bool) -> str | None:
+    """How often people touched each other, and who did first; None if nobody did.
+
+    Args:
+        contacts: From :func:`find_human_contacts`.
+        brief: Leave out the first one, which another message has.
+    """
+    if not contacts:
+        return None
+    first, many = contacts[0], len(contacts) > 1
+    hit = f"{'first ' * many}{quoted(first.object)} hit {quoted(first.partner)} at {seconds(first.time)}"
+    return f"{len(contacts)} contact{'s' * many} between people" + ("" if brief else f" ({hit})")
+
+
+def jumps_message(jumps: dict[str, Event]) -> str | None:
+    """Which object jumped over its goal first, and what would let it arrive; None if none did."""
+    if not jumps:
+        return None
+    first, others = next(iter(jumps.values())), len(jumps) - 1
+    more = f" and {others} more after it" if others else ""
+    return (
+        f"{quoted(first.object)} jumped over its goal at {seconds(first.time)}{more} "
+        "(raise goal_threshold or lower step_time)"
+    )

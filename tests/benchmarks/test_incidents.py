@@ -1,0 +1,193 @@
+"""What happened besides outcomes is counted and said in the headline: contacts between people, exits, jumps, no
+room."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.benchmarks import pool as pool_module
+from irsim.cli.app import app
+
+PEOPLE = """
+world: {width: 10, height: 10, time_limit: 12, collision_mode: %s}
+robot: {kinematics: {name: diff}, state: [1, 1, 0], goal: [3, 1], shape: {name: circle, radius: 0.2},
+        behavior: {name: dash}}
+obstacle:
+  - {name: ann, kinematics: {name: omni}, state: [2, 5, 0], goal: [9, 5], shape: {name: circle, radius: 0.3},
+     behavior: {name: dash}}
+  - {name: bob, kinematics: {name: omni}, state: [8, 5, 0], goal: [1, 5], shape: {name: circle, radius: 0.3},
+     behavior: {name: dash}, tags: [pedestrian]}
+"""
+AWAY = """
+world: {width: 6, height: 6, time_limit: 10}
+robot:
+  - {name: stray, kinematics: {name: diff}, state: [5, 1, 0], goal: [8, 1], behavior: {name: dash}}
+  - {name: fast, kinematics: {name: diff}, state: [0.7, 3, 0], goal: [3, 3], vel_max: [10, 1], vel_min: [-10, -1],
+     shape: {name: circle, radius: 0.2}, behavior: {name: dash}}
+"""
+CROWDED = """
+world: {width: 5, height: 5, time_limit: 4}
+robot:
+  - {number: %d, kinematics: {name: diff}, shape: {name: circle, radius: 0.4}, behavior: {name: orca},
+     distribution: {name: random, range_low: [0.5, 0.5, -3], range_high: [4.5, 4.5, 3]}}
+"""
+
+
+def test_contacts_between_people_are_in_the_summary_of_a_run() -> None:
+    found = irsim.run(text=PEOPLE % "unobstructed_obstacles", steps=80)
+    assert (found.outcome, found.human_contacts) == ("success", 0)  # it ended before they met
+    late = irsim.run(text=(PEOPLE % "unobstructed_obstacles").replace("goal: [3, 1]", "goal: [9, 1]"))
+    assert late.human_contacts == 1
+    assert "; 1 contact between people ('ann' hit 'bob' at 2.8 s)" in late.summary
+    stopped = irsim.run(text=(PEOPLE % "stop").replace("goal: [3, 1]", "goal: [9, 1]"))
+    assert stopped.human_contacts == 1
+    assert "; 1 contact between people; 2 of 2 moving obstacles were stopped by a collision ('ann' hit 'bob'" in (
+        stopped.summary
+    )
+
+
+def test_the_first_contact_is_said_once() -> None:
+    """Robots can be people, too: their collisions are in the summary already."""
+    both = (PEOPLE % "stop").replace("goal: [3, 1]", "goal: [9, 1], tags: [pedestrian]")
+    found = irsim.run(
+        text=both.replace("state: [2, 5, 0]", "state: [9, 1, 3.14]").replace("goal: [9, 5]", "goal: [1, 1]")
+    )
+    assert found.human_contacts == 1
+    assert found.summary.count("hit 'ann' at") == 1
+    assert "; 1 contact between people" in found.summary
+
+
+def test_robots_that_left_or_jumped_are_in_the_summary_of_a_run() -> None:
+    found = irsim.run(text=AWAY)
+    assert [item.name for item in found.left] == ["stray"]
+    assert found.jumped == ["fast"]
+    [jump] = [event for event in found.events if event.kind == "overshoot" and event.object == "fast"][:1]
+    assert f"'fast' jumped over its goal at {round(jump.time, 2):g} s (raise goal_threshold or lower step_time)" in (
+        found.summary
+    )
+    assert "'stray' left the world at" in found.summary
+
+
+def test_who_arrives_after_a_jump_is_not_in_the_summary() -> None:
+    """A robot that passes its goal at first and comes back has arrived."""
+    text = AWAY.replace("step_time: 0.1", "").replace("vel_max: [10, 1]", "vel_max: [10, 1], acce: [4, 9]")
+    found = irsim.run(text=text.replace("goal: [3, 3]", "goal: [3, 3], goal_threshold: 0.3"))
+    robots = {robot.name: robot.outcome for robot in found.robots}
+    assert robots["fast"] == "success"
+    assert found.jumped == []
+    assert "jumped" not in found.summary
+
+
+def test_incidents_of_a_benchmark_are_counted_and_come_first(tmp_path: Path) -> None:
+    (tmp_path / "people.yaml").write_text((PEOPLE % "unobstructed_obstacles").replace("goal: [3, 1]", "goal: [9, 1]"))
+    (tmp_path / "away.yaml").write_text(AWAY)
+    files = [str(tmp_path / "people.yaml"), str(tmp_path / "away.yaml")]
+    found = irsim.benchmark(files, seeds=3, perturb="speed=5%")
+    people, away = found.episodes[:3], found.episodes[3:]
+    assert [episode.human_contacts for episode in people] == [1, 1, 1]
+    assert [episode.left for episode in away] == [["stray"]] * 3
+    assert [episode.jumped for episode in people] == [[]] * 3
+    jumped = sum(bool(episode.jumped) for episode in away)
+    assert jumped
+    assert found.rows[0].incidents == {"human_contacts": 3}
+    assert found.rows[1].incidents == {"left": 3, "jumped": jumped}
+    assert found.incidents == [
+        "contacts between people in 3 of 6 episodes (3 contacts)",
+        "objects left the world in 3 of 6 episodes",
+        f"objects jumped over their goal in {jumped} of 6 episodes",
+    ]
+    shown = CliRunner().invoke(app, ["benchmark", *files, "--seeds", "3", "--perturb", "speed=5%"]).output
+    assert shown.splitlines()[0] == "; ".join(found.incidents)
+
+
+def test_where_nothing_happened_nothing_is_said(tmp_path: Path) -> None:
+    (tmp_path / "calm.yaml").write_text(PEOPLE % "stop")
+    found = irsim.benchmark(str(tmp_path / "calm.yaml"))
+    assert (found.incidents, found.rows[0].incidents) == ([], {})
+    shown = CliRunner().invoke(app, ["benchmark", str(tmp_path / "calm.yaml")]).output
+    assert shown.splitlines()[0].startswith("scenario ")
+
+
+@pytest.fixture
+def crowded(tmp_path: Path) -> str:
+    (tmp_path / "crowded.yaml").write_text(CROWDED % 15)
+    return str(tmp_path / "crowded.yaml")
+
+
+def test_a_seed_without_room_is_an_outcome_of_its_own(crowded: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
+    found = irsim.benchmark(crowded, ["orca", "rvo"], 12, workers=1)
+    without = [episode.seed for episode in found.episodes[:12] if episode.outcome == "placement-crowded"]
+    assert 0 < len(without) < 12
+    for seed in range(12):
+        if seed in without:
+            with pytest.raises(irsim.PlacementError, match=f"with seed {seed}"):
+                irsim.run(crowded, seed=seed)
+    for row in found.rows:
+        ends = [e.outcome for e in found.episodes if e.behavior == row.behavior and e.seed not in without]
+        assert row.episodes == row.success.n == row.collision.n == row.timeout.n == len(ends)
+        assert row.success.count + row.collision.count + row.timeout.count == len(ends)
+        assert row.incidents["placement-crowded"] == len(without)
+        assert not set(without) & {seed for seeds in row.failed.values() for seed in seeds}
+    assert found.rows[1].paired["success"].n == 12 - len(without)
+    listed = ", ".join(map(str, without[:5])) + (f" and {len(without) - 5} more" if len(without) > 5 else "")
+    assert found.incidents[-1] == (
+        f"{len(without)} of 12 seeds had no room and do not count (placement-crowded): {listed}"
+    )
+    many = irsim.benchmark(crowded, ["orca", "rvo"], 12, workers=3)
+    assert many.model_dump_json() == found.model_dump_json()
+    empty = next(episode for episode in found.episodes if episode.seed in without)
+    assert (empty.steps, empty.failures, set(empty.metrics.values())) == (0, {}, {None})
+
+
+def test_the_table_counts_seeds_without_room_beside_n(crowded: str) -> None:
+    found = irsim.benchmark(crowded, seeds=12)
+    shown = CliRunner().invoke(app, ["benchmark", crowded, "--seeds", "12"]).output.splitlines()
+    assert "seeds had no room and do not count (placement-crowded)" in shown[0]
+    [line] = [line.split() for line in shown if line.startswith("crowded ")]
+    assert line[2] == str(found.rows[0].episodes)
+    table = CliRunner().invoke(app, ["benchmark", crowded, "--seeds", "12", "--csv"]).stdout
+    rows = list(csv.DictReader(io.StringIO(table)))
+    assert [row["outcome"] for row in rows] == [episode.outcome for episode in found.episodes]
+
+
+def test_where_no_seed_has_room_there_is_no_row(tmp_path: Path) -> None:
+    (tmp_path / "full.yaml").write_text(CROWDED % 25)
+    found = irsim.benchmark(str(tmp_path / "full.yaml"), seeds=3)
+    assert found.rows == []
+    assert found.incidents == ["3 of 3 seeds had no room and do not count (placement-crowded): 0, 1, 2"]
+    done = CliRunner().invoke(app, ["benchmark", str(tmp_path / "full.yaml"), "--seeds", "3"])
+    assert done.exit_code == 0
+    assert done.output.startswith("3 of 3 seeds had no room")
+
+
+def test_a_perturbed_start_without_room_says_so(tmp_path: Path) -> None:
+    """A long robot in a narrow gap: almost no heading fits."""
+    (tmp_path / "gap.yaml").write_text("""
+world: {width: 20, height: 20, time_limit: 2}
+robot: {name: train, kinematics: {name: diff}, state: [10, 10, 0], goal: [18, 10], behavior: {name: dash},
+        shape: {name: rectangle, length: 12, width: 0.999}}
+obstacle:
+  - {number: 2, shape: {name: rectangle, length: 18, width: 1}, state: [[10, 11, 0], [10, 9, 0]]}
+""")
+    found = irsim.benchmark(str(tmp_path / "gap.yaml"), seeds=5, perturb="heading=90deg")
+    assert "placement-crowded" in {episode.outcome for episode in found.episodes}
+    seed = next(episode.seed for episode in found.episodes if episode.outcome == "placement-crowded")
+    with pytest.raises(irsim.PlacementError) as error:
+        irsim.run(tmp_path / "gap.yaml", seed=seed, perturb="heading=90deg")
+    [item] = error.value.diagnostics
+    assert item.code == "placement-crowded"
+    assert f"no room for 'train' with seed {seed}" in item.message
+    assert "lower `position` or `heading` of perturb" in str(item.fix)
+    done = CliRunner().invoke(
+        app, ["run", str(tmp_path / "gap.yaml"), "--seed", str(seed), "--perturb", "heading=90deg", "--json"]
+    )
+    assert done.exit_code == 2
+    assert "placement-crowded" in json.dumps(json.loads(done.stdout))

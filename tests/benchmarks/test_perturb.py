@@ -1,0 +1,154 @@
+"""Benchmarks with perturbations: fixed scenes become random, everything says how, every episode can be looked at."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import irsim
+from irsim.benchmarks import BenchmarkError
+from irsim.benchmarks import pool as pool_module
+from irsim.cli.app import app
+from irsim.results.benchmark import BenchmarkResult
+from irsim.runs import open_run
+from irsim.runs.resimulation import check_reproduced, resimulate
+
+CROSSING = """
+world: {width: 10, height: 10, time_limit: 25}
+robot:
+  - {name: scout, kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, state: [1, 5, 0], goal: [9, 5],
+     behavior: {name: dash}}
+obstacle:
+  - {name: walker, kinematics: {name: omni}, shape: {name: circle, radius: 0.3}, state: [5, 1, 0], goal: [5, 9],
+     behavior: {name: dash}, tags: [pedestrian]}
+"""
+
+
+@pytest.fixture
+def crossing(tmp_path: Path) -> str:
+    (tmp_path / "crossing.yaml").write_text(CROSSING)
+    return str(tmp_path / "crossing.yaml")
+
+
+def test_a_fixed_scene_becomes_random(crossing: str) -> None:
+    plain = irsim.benchmark(crossing, seeds=8)
+    assert (len(plain.episodes), plain.rows[0].success.low) == (1, None)
+    assert "perturb would make seeds differ" in plain.notes[0]
+    found = irsim.benchmark(crossing, seeds=8, perturb={"position": 0.5, "delay": 3})
+    assert [episode.seed for episode in found.episodes] == list(range(8))
+    assert len({episode.metrics["path_length"] for episode in found.episodes}) == 8
+    assert {episode.outcome for episode in found.episodes} == {"success", "collision"}
+    assert found.rows[0].success.low is not None
+    assert found.random[crossing] == ["start positions", "start delays"]
+    said = "start ±0.5 m in x and in y, start delayed by 0 to 3 s of 'scout', 'walker'"
+    assert (found.perturb, found.perturbed) == (["position=0.5,delay=3"], {crossing: [said]})
+    assert found.notes == [f"perturbed, drawn uniformly for each seed: {said}"]
+    assert found.reproduce == f"irsim benchmark {crossing} --seeds 8 --perturb position=0.5,delay=3"
+
+
+def test_spread_zero_is_the_scenario_as_written(crossing: str) -> None:
+    zero = irsim.benchmark(crossing, seeds=8, perturb="position=0,heading=0,speed=0,delay=0")
+    plain = irsim.benchmark(crossing, seeds=8)
+    assert zero.episodes == plain.episodes
+    assert zero.rows == plain.rows
+
+
+def test_results_do_not_depend_on_the_number_of_processes(crossing: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pool_module, "_START_DELAY_S", 0.0)
+    asked = {"perturb": ["position=0.5,heading=20deg", "speed=10%,delay=3,objects=pedestrian"], "seeds": 8}
+    one = irsim.benchmark(crossing, ["dash", "orca"], workers=1, **asked)
+    four = irsim.benchmark(crossing, ["dash", "orca"], workers=4, **asked)
+    assert one.model_dump_json() == four.model_dump_json()
+
+
+def test_behaviors_meet_the_same_starts(crossing: str) -> None:
+    found = irsim.benchmark(crossing, ["dash", "{name: dash, wander: false}"], 6, perturb="position=0.5,speed=0.2")
+    assert [e.metrics for e in found.episodes[:6]] == [e.metrics for e in found.episodes[6:]]
+    assert found.rows[1].paired["time_to_goal"].mean == 0.0
+
+
+def test_each_episode_is_what_the_command_for_one_run_gives(crossing: str, tmp_path: Path) -> None:
+    spreads = ["position=0.5,heading=0.2", "speed=10%,delay=3,objects=walker"]
+    found = irsim.benchmark(crossing, ["as-written", "orca"], [3, 7], perturb=spreads)
+    for episode in found.episodes:
+        changed = None if episode.behavior == "as-written" else episode.behavior
+        alone = irsim.run(crossing, seed=episode.seed, behavior=changed, perturb=spreads)
+        assert (alone.outcome, alone.steps) == (episode.outcome, episode.steps)
+        assert alone.robots[0].time_to_goal == episode.metrics["time_to_goal"]
+        words = shlex.split(alone.reproduce)
+        assert words[2:5] == [crossing, "--seed", str(episode.seed)]
+        again = CliRunner().invoke(app, [*words[1:], "--json"])
+        assert json.loads(again.stdout) == json.loads(alone.model_dump_json())
+    again = CliRunner().invoke(app, [*shlex.split(found.reproduce)[1:], "--json"])
+    assert again.stdout.rstrip("\n") == found.model_dump_json()
+
+
+def test_a_seed_without_a_given_one_is_drawn_and_reported(crossing: str) -> None:
+    assert irsim.run(crossing).random == []
+    found = irsim.run(crossing, perturb="position=0.5")
+    assert found.random == ["start positions"]
+    assert f"--seed {found.seed} --perturb position=0.5" in found.reproduce
+
+
+def test_a_recorded_run_is_simulated_again_as_it_was(crossing: str, tmp_path: Path) -> None:
+    irsim.run(crossing, seed=5, perturb="position=0.5,speed=0.3,delay=2", record=tmp_path / "run")
+    run = open_run(tmp_path / "run")
+    env = resimulate(run)
+    check_reproduced(run, env)
+    start = run.trace().pose[0, 0]
+    assert 0 < abs(start[0] - 1) < 0.5
+
+
+def test_the_default_time_limit_leaves_time_for_the_delay(tmp_path: Path) -> None:
+    (tmp_path / "far.yaml").write_text(CROSSING.replace(", time_limit: 25", ""))
+    plain = irsim.run(tmp_path / "far.yaml").time_limit
+    assert irsim.run(tmp_path / "far.yaml", seed=1, perturb="delay=40").time_limit == pytest.approx(plain + 40)
+
+
+def test_what_still_waits_at_the_end_is_said(crossing: str) -> None:
+    found = irsim.run(crossing, seed=1, steps=20, perturb="delay=20,objects=scout")
+    assert found.reason is not None
+    assert "'scout' still waits 8.00 m from its goal (its start is delayed to " in found.reason
+
+
+def test_pedestrians_without_robots_start_as_late(crossing: str) -> None:
+    """The delay of people compares the same starts with and without the robot: here nobody is in the way."""
+    (Path(crossing)).write_text(CROSSING.replace("goal: [9, 5]", "goal: [2, 5]"))
+    found = irsim.benchmark(crossing, seeds=5, perturb="position=0.3,speed=0.3,delay=4")
+    assert [episode.metrics["pedestrian_delay"] for episode in found.episodes] == [0.0] * 5
+
+
+def test_the_command_says_what_was_perturbed(crossing: str) -> None:
+    run = CliRunner()
+    words = ["benchmark", crossing, "--seeds", "4", "--perturb", "position=0.1", "--perturb", "heading=0.2,delay=1"]
+    shown = run.invoke(app, words).output
+    assert (
+        "note: perturbed, drawn uniformly for each seed: start ±0.1 m in x and in y, heading ±0.2 rad, start" in shown
+    )
+    assert "--perturb position=0.1 --perturb heading=0.2,delay=1" in shown
+    told = run.invoke(app, [*words, "--json"])
+    same = irsim.benchmark(crossing, seeds=4, perturb=["position=0.1", {"heading": 0.2, "delay": 1}])
+    assert told.stdout.rstrip("\n") == same.model_dump_json()
+
+
+def test_wrong_perturbations_are_errors_as_data(crossing: str, tmp_path: Path) -> None:
+    for verb in ("benchmark", "run"):
+        done = CliRunner().invoke(app, [verb, crossing, "--perturb", "posiion=1,speed=3", "--json"])
+        assert done.exit_code == 2
+        error = json.loads(done.stdout)["error"]
+        assert error["code"] == "bad-argument"
+        assert "did you mean position?" in error["message"]
+        assert "speed must be a share" in error["message"]
+    (tmp_path / "other.yaml").write_text(CROSSING.replace("walker", "runner"))
+    with pytest.raises(BenchmarkError, match="no object of 'other' has the name, tag or role 'walker'"):
+        irsim.benchmark([crossing, str(tmp_path / "other.yaml")], perturb="delay=1,objects=walker")
+
+
+def test_the_result_reads_back(crossing: str, tmp_path: Path) -> None:
+    found = irsim.benchmark(crossing, seeds=3, perturb="position=0.1", log=tmp_path / "log")
+    assert irsim.benchmarks.logged(tmp_path / "log").model_dump_json() == found.model_dump_json()
+    assert BenchmarkResult.model_validate_json(found.model_dump_json()) == found

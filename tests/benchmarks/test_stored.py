@@ -1,0 +1,139 @@
+"""A benchmark in a folder: it goes on after any interruption, and its files are those of an undisturbed run."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from irsim.benchmarks.plan import Plan
+from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, resume_benchmark, run_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.runs.files import RunError
+
+SUITE = """
+suite: small
+version: 1
+title: Robots in a square
+scenarios:
+  - name: robots
+    vary: {"robot[0].number": [3, 6]}
+    scenario:
+      world: {width: 8, height: 8}
+      robot:
+        - number: 3
+          kinematics: {name: diff}
+          shape: {name: circle, radius: 0.2}
+          distribution: {name: random}
+seeds: {first: 7, count: 20}
+steps: 150
+protocols: [freeze, yield]
+policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
+"""
+
+
+@pytest.fixture(scope="module")
+def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("suite") / "small.yaml"
+    path.write_text(SUITE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def undisturbed(suite: Path) -> dict[str, str]:
+    folder = suite.with_name("undisturbed")
+    run_plan(suite_plan(str(suite)), folder, workers=1)
+    return contents(folder)
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Hash of each file of the benchmark, without those of its report."""
+    kept = (EPISODES, PLAN, RESULTS)
+    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in kept}
+
+
+def test_a_run_that_is_killed_at_any_moment_goes_on_as_if_nothing_had_happened(
+    suite: Path, undisturbed: dict[str, str], tmp_path: Path
+) -> None:
+    command = [sys.executable, "-m", "irsim", "benchmark", str(suite), "-o", str(tmp_path / "run"), "--workers", "2"]
+    for delay in (0.4, 0.7, 0.9):
+        process = subprocess.Popen(
+            [*command, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        time.sleep(delay)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    done = subprocess.run([*command, "--resume"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert contents(tmp_path / "run") == undisturbed
+
+
+@pytest.mark.parametrize("cut", [0.1, 0.5, 0.9])
+def test_half_a_line_at_the_end_of_the_log_is_run_again(
+    cut: float, suite: Path, undisturbed: dict[str, str], tmp_path: Path
+) -> None:
+    plan = suite_plan(str(suite))
+    run_plan(plan, tmp_path / "run")
+    log = tmp_path / "run" / EPISODES
+    log.write_bytes(log.read_bytes()[: int(cut * log.stat().st_size)])
+    (tmp_path / "run" / RESULTS).unlink()
+    resume_benchmark(tmp_path / "run", workers=1)
+    assert contents(tmp_path / "run") == undisturbed
+
+
+def test_a_finished_run_is_not_run_again_but_may_be_read_again(suite: Path, tmp_path: Path) -> None:
+    plan = suite_plan(str(suite), seeds=2)
+    first = run_plan(plan, tmp_path / "run")
+    with pytest.raises(RunError, match="holds episodes already"):
+        run_plan(plan, tmp_path / "run")
+    counted: list[tuple[int, int]] = []
+    again = run_plan(plan, tmp_path / "run", resume=True, progress=lambda *counts: counted.append(counts))
+    assert again == first
+    assert counted == []
+
+
+def test_a_folder_holds_one_benchmark(suite: Path, tmp_path: Path) -> None:
+    run_plan(suite_plan(str(suite), seeds=2), tmp_path / "run")
+    with pytest.raises(RunError, match="holds another benchmark"):
+        run_plan(suite_plan(str(suite), seeds=3), tmp_path / "run", resume=True)
+    with pytest.raises(RunError, match="holds no benchmark"):
+        resume_benchmark(tmp_path / "nothing")
+    plan = Plan.model_validate_json((tmp_path / "run" / PLAN).read_bytes())
+    (tmp_path / "run" / PLAN).write_text(plan.model_copy(update={"version": "0.0.1"}).model_dump_json(indent=1) + "\n")
+    with pytest.raises(RunError, match=r"was started by irsim 0\.0\.1"):
+        resume_benchmark(tmp_path / "run")
+
+
+def test_a_log_that_does_not_fit_on_the_disk_costs_no_episode(
+    suite: Path, undisturbed: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = 0
+    plain = os.write
+
+    def full(descriptor: int, data: bytes) -> int:
+        nonlocal written
+        written += len(data)
+        if written > 5000:
+            raise OSError(28, "No space left on device")
+        return plain(descriptor, data)
+
+    monkeypatch.setattr("irsim.benchmarks.log.os.write", full)
+    run_plan(suite_plan(str(suite)), tmp_path / "run", workers=1)
+    assert contents(tmp_path / "run") == undisturbed
+
+
+def test_the_folder_has_the_hash_of_what_decides_the_numbers(suite: Path, tmp_path: Path) -> None:
+    plan = suite_plan(str(suite))
+    moved = tmp_path / "elsewhere.yaml"
+    moved.write_text(SUITE, encoding="utf-8")
+    assert default_folder(plan).name == f"small-{plan.hash}"
+    assert suite_plan(str(moved)).hash == plan.hash
+    moved.write_text(SUITE.replace("timeHorizon: 2", "timeHorizon: 3"), encoding="utf-8")
+    assert suite_plan(str(moved)).hash != plan.hash
+    assert suite_plan(str(suite), seeds=3).hash != plan.hash

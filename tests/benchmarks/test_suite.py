@@ -1,0 +1,164 @@
+"""Suites: what a file may say, what it expands to, and what its protocols do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from irsim.benchmarks.suite_files import SuiteError, is_suite, load_suite, read_suite, suite_names
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.suite_scenarios import expand
+from irsim.env import Env
+from irsim.scenario.read import read
+from irsim.scenario.yaml.document import load_text
+
+MINIMAL: dict[str, Any] = {
+    "suite": "mine", "version": 1, "title": "Mine", "steps": 50, "policies": {"dash": "dash"},
+    "scenarios": [{"name": "one", "template": "crossing"}],
+}  # fmt: skip
+
+
+def written(tmp_path: Path, **changes: Any) -> Path:
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({**MINIMAL, **changes}), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", suite_names())
+def test_bundled_suites_are_valid_and_their_scenarios_can_be_built(name: str) -> None:
+    suite, _ = load_suite(name)
+    assert suite.suite == name
+    for scenario in suite_plan(name).scenarios:
+        reading = read(scenario.document())
+        assert [item.message for item in reading.diagnostics if item.severity == "error"] == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({"steps": 0}, "steps"),
+        ({"polices": {}}, "polices: there is no such key, did you mean policies?"),
+        ({"title": None}, "title"),
+        ({"scenarios": []}, "scenarios"),
+        ({"scenarios": [{"name": "one"}]}, "give exactly one of template, scenario and file, not none"),
+        ({"scenarios": [{"name": "one", "template": "crossing", "file": "x.yaml"}]}, "not template and file"),
+        ({"scenarios": MINIMAL["scenarios"] * 2}, "two scenarios have the name 'one'"),
+        ({"protocols": ["freeze", "freeze"]}, "listed twice"),
+        ({"protocols": ["melt"]}, "protocols"),
+        ({"seeds": {"count": 5, "full": 3}}, "full must be at least count (5), got 3"),
+        ({"density": "robot[0].number"}, "which no scenario varies"),
+        ({"scenarios": [{"name": "a b", "template": "crossing"}]}, "scenarios[0].name"),
+    ],
+)
+def test_every_problem_of_a_suite_file_is_named(changes: dict[str, Any], problem: str, tmp_path: Path) -> None:
+    with pytest.raises(SuiteError) as caught:
+        read_suite(written(tmp_path, **changes))
+    assert problem in caught.value.message
+
+
+def test_several_problems_are_named_at_once(tmp_path: Path) -> None:
+    with pytest.raises(SuiteError) as caught:
+        read_suite(written(tmp_path, steps=0, version="x", protocols=[]))
+    assert all(key in caught.value.message for key in ("steps", "version", "protocols"))
+
+
+@pytest.mark.parametrize(
+    ("scenario", "problem"),
+    [
+        ({"name": "one", "template": "crosing"}, "there is no template 'crosing'"),
+        ({"name": "one", "template": "crossing", "parameters": {"spede": 1}}, "spede"),
+        ({"name": "one", "file": "nowhere.yaml"}, "nowhere.yaml is not a scenario file"),
+        (
+            {"name": "one", "scenario": {"world": {"width": 5}}, "vary": {"robot[0].number": [1]}},
+            "has nothing at 'robot[0].number'",
+        ),
+        ({"name": "one", "scenario": {"world": {}}, "vary": {"world.width": list(range(1, 300))}}, "more than 200"),
+        ({"name": "one", "scenario": {"world": {}}, "vary": {"world.name": ["a b", "a/b"]}}, "are called 'one-a-b'"),
+    ],
+)
+def test_what_cannot_be_expanded_is_named(scenario: dict[str, Any], problem: str, tmp_path: Path) -> None:
+    file = written(tmp_path, scenarios=[scenario])
+    with pytest.raises(SuiteError) as caught:
+        expand(read_suite(file), file)
+    assert problem in caught.value.message
+
+
+def test_every_combination_of_values_is_a_scenario_under_every_protocol(tmp_path: Path) -> None:
+    scenario = {
+        "name": "field",
+        "scenario": {
+            "world": {"width": 5, "step_time": 0.2},
+            "robot": [{"number": 1, "distribution": {"name": "random"}}],
+        },
+        "vary": {"robot[0].number": [1, 2], "world.height": [5, 7.5]},
+    }  # fmt: skip
+    plan = suite_plan(str(written(tmp_path, scenarios=[scenario], protocols=["yield", "freeze"])))
+    names = [f"field-{n}-{h}" for n in (1, 2) for h in ("5", "7.5")]
+    assert [one.name for one in plan.scenarios] == [f"{n}/{p}" for p in ("yield", "freeze") for n in names]
+    last = yaml.safe_load(plan.scenarios[-1].text)
+    assert last["world"] == {
+        "width": 5, "height": 7.5, "step_time": 0.2, "after_arrival": "freeze", "time_limit": 10.0,
+    }  # fmt: skip
+    assert last["robot"][0]["number"] == 2
+    kept = suite_plan(str(written(tmp_path, scenarios=[scenario])), scenarios=["field-2-5"], policies=["dash", "rvo"])
+    assert [one.name for one in kept.scenarios] == ["field-2-5"]
+    assert kept.policies == {"dash": "dash", "rvo": "rvo"}
+
+
+def test_a_scenario_file_may_name_a_map_beside_it(tmp_path: Path) -> None:
+    from PIL import Image
+
+    Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
+    (tmp_path / "hall.yaml").write_text(
+        "world: {width: 5, height: 5, obstacle_map: hall.png}\nrobot: {goal: [4, 4, 0]}\n"
+    )
+    file = written(tmp_path, scenarios=[{"name": "hall", "file": "hall.yaml"}])
+    [one] = suite_plan(str(file)).scenarios
+    assert (one.folder, list(one.maps)) == (str(tmp_path), ["hall.png"])
+    before = suite_plan(str(file)).hash
+    Image.new("L", (20, 20), 0).save(tmp_path / "hall.png")
+    assert suite_plan(str(file)).hash != before
+
+
+def test_a_file_is_a_suite_if_it_says_so(tmp_path: Path) -> None:
+    assert is_suite("random_polygons_v1")
+    assert is_suite(str(written(tmp_path)))
+    (tmp_path / "scene.yaml").write_text("world: {width: 5}\n")
+    assert not is_suite(str(tmp_path / "scene.yaml"))
+    assert not is_suite("nowhere.yaml")
+
+
+MEETING = """
+world: {{width: 10, height: 10, after_arrival: {mode}}}
+robot:
+  - number: 2
+    distribution: {{name: manual}}
+    kinematics: {{name: omni}}
+    shape: {{name: circle, radius: 0.3}}
+    state: [[2, 5, 0], [0.5, 5, 0]]
+    goal: [[5, 5], [9, 5.02]]
+    behavior: {{name: orca}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("mode", "stands", "latched"), [("freeze", True, True), ("yield", False, True), ("null", False, False)]
+)
+def test_what_a_robot_does_that_has_arrived(mode: str, stands: bool, latched: bool) -> None:
+    scenario = read(load_text(MEETING.format(mode=mode))).scenario
+    assert scenario is not None
+    env = Env(scenario, seed=1, display=False, headless=True, log_level="ERROR")
+    first = env.robot_list[0]
+    place, moved, lost = None, 0.0, 0
+    while not env.done() and env.time < 20:
+        env.step()
+        if first.arrive and place is None:
+            place = first.state[:2, 0].copy()
+        if place is not None:
+            moved = max(moved, float(abs(first.state[:2, 0] - place).max()))
+            lost += not first.arrive
+    assert (moved == 0, lost == 0) == (stands, latched)
+    assert all(robot.arrive for robot in env.robot_list)
