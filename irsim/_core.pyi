@@ -439,8 +439,11 @@ class Perturbation:
         attempts: int,
     ) -> None: ...
 
-class FogView:
-    """A robot without lidar that clears the fog in its field of view: a sector of `angle` [rad] and `reach` [m]."""
+class View:
+    """The field of view of an object: a sector of `angle` [rad] about its heading and of `reach` [m].
+
+    With `occlusion`, what is hidden behind objects that are not `unobstructed` is not seen.
+    """
 
     def __init__(self, *, object: int, angle: float, reach: float, occlusion: bool) -> None: ...
 
@@ -449,7 +452,7 @@ class Fog:
 
     Args:
         carriers: Objects whose first native sensor clears the fog along its beams.
-        views: Objects that clear the fog in their field of view.
+        views: Fields of view that clear the fog.
     """
 
     def __init__(
@@ -460,11 +463,18 @@ class Fog:
         columns: int,
         rows: int,
         carriers: Sequence[int],
-        views: Sequence[FogView],
+        views: Sequence[View],
     ) -> None: ...
 
 class World:
-    """What never changes during an episode (shapes, drives, limits, options), for `copies` worlds of one template."""
+    """What never changes during an episode (shapes, drives, limits, options), for `copies` worlds of one template.
+
+    Args:
+        zones: Lines (a Linestring of two points) and regions (a Circle or Polygon), world frame. Events name who
+            crosses or enters them.
+        views: Fields of view that are watched. Events name which targets come into them or go out of them.
+        targets: Indices of the objects that count as seen.
+    """
 
     def __init__(
         self,
@@ -477,6 +487,9 @@ class World:
         copies: int,
         fog: Fog | None = None,
         perturbations: Sequence[Perturbation] = (),
+        zones: Sequence[Part] = (),
+        views: Sequence[View] = (),
+        targets: Sequence[int] = (),
     ) -> None: ...
     # collision_mode: 0 stop, 1 unobstructed, 2 unobstructed_obstacles, 3 contact
     copies: int
@@ -557,7 +570,9 @@ class State:
     def events(self, world: int, start: int = 0) -> list[tuple[str, int, int, int, float, float]]:
         """Events since the last reset except the first `start`: (kind, step, object, partner or -1, x, y).
 
-        The kind is "arrival", "waypoint", "collision", "no_path" or "overshoot"; objects are given by their number.
+        The kind is "arrival", "waypoint", "collision", "no_path", "overshoot", "zone_entry", "zone_exit",
+        "crossing_to_right", "crossing_to_left", "sight_start" or "sight_end". Objects are given by their number, zones
+        by their index in place of the partner. Who sees is the object, who is seen is the partner.
         """
     def collision_pairs(self, world: int) -> NDArray[np.int32]:
         """(P, 2) sorted pairs i < j whose closed shapes intersect now, including `unobstructed` ones."""
@@ -612,6 +627,11 @@ class State:
         """(K, 3 + E) state after each executed step since the last reset, if the state was made with history.
 
         Steps in which the object was static or stopped are left out.
+        """
+    def standings(self, row: int) -> tuple[NDArray[np.int64], Floats, Flags]:
+        """(K,) steps, (K, 3) goals and (K,) `stopped` of an object that can move, one entry per change.
+
+        Each entry holds at the ends of steps from its step on. The state must have been made with history.
         """
 
 class Trace:
@@ -681,7 +701,7 @@ def advance(
     """Run `steps` periods of every world; rows with `given` use `command` in the first one.
 
     With `until_done` a world ends once every robot has stopped or arrived; a world without robots never does. With
-    `external` the caller has set the poses, and only the phases from `finish` to `sense` run. Releases the GIL. Returns
+    `external` the caller has set the poses, and only the phases from `finish` to `watch` run. Releases the GIL. Returns
     the largest number of steps that a world executed.
     """
 
@@ -714,13 +734,16 @@ def push_apart(world: World, state: State) -> None:
 def collide(world: World, state: State) -> None: ...
 def arrive(world: World, state: State) -> None: ...
 def sense(world: World, state: State) -> None: ...
+def watch(world: World, state: State) -> None:
+    """Log who enters, leaves or crosses a zone, and who comes into or goes out of a field of view."""
+
 def scan(world: World, state: State, index: int, sensor: int, pose: Sequence[float]) -> None:
     """Let a native sensor of world `index`, numbered as in `World.scans`, take a scan with its carrier at `pose`."""
 
 def finish(world: World, state: State) -> None:
     """Count the step, append the history, clear `given`.
 
-    The order is decide, limit, integrate, (push_apart,) finish, collide, arrive, sense.
+    The order is decide, limit, integrate, (push_apart,) finish, collide, arrive, sense, watch.
     """
 
 # Used by the Python API and by tests
@@ -802,6 +825,20 @@ def clearances(
     kinds: (N,) what each object is to a robot: 0 robot, 1 human, 2 static, 3 ignored. Returns (rows, robots, 3) the
     distance to the nearest object of the kinds 0 to 2, negative where they overlap, and its index; NaN and -1 without
     such an object. Releases the GIL.
+    """
+
+def free_lines(
+    world: World, state: State, index: int, start: Floats, end: Floats, blocking: NDArray[np.uint8]
+) -> Flags:
+    """(K,) 1 where the straight line from (K, 2) starts to (K, 2) ends meets no static object of world `index`.
+
+    Args:
+        world: The world.
+        state: The state, whose static objects are where they are now.
+        index: Index of the world.
+        start: Starts [m].
+        end: Ends [m]; a line that is not finite meets nothing.
+        blocking: (N,) 1 for static objects that count.
     """
 
 def least_clearances(

@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 
 __all__ = ["OVERLAYS", "Overlay", "additions", "overlays_from", "plan_results", "plot_keys", "requested_plans"]
 
-Overlay = Literal["names", "goals", "paths", "sensors", "clearance", "plan"]
+Overlay = Literal["names", "goals", "paths", "sensors", "zones", "clearance", "plan"]
 OVERLAYS: dict[Overlay, tuple[str, ...]] = {
     "names": ("show_text", "show_goal_text"),
     "goals": ("show_goal",),
     "paths": ("show_trajectory",),
     "sensors": ("show_sensor",),
+    "zones": (),
     "clearance": (),
     "plan": (),
 }
@@ -65,13 +66,17 @@ def requested_plans(env: Env, overlays: Collection[Overlay] | None) -> list[Plan
 
 def additions(env: Env, overlays: Collection[Overlay] | None, ways: list[PlannedPath]) -> Extra:
     """A function that draws the overlays that no plot key switches."""
+    from irsim.graphics.scene.palette import Palette
     from irsim.graphics.scene.scene import Scene
+    from irsim.graphics.scene.zones import draw_zones
     from irsim.rendering.clearance_map import draw_clearance
     from irsim.rendering.planned_paths import draw_plans
 
     def add(scene: Scene) -> None:
         if overlays and "clearance" in overlays:
             draw_clearance(scene, env.simulation)
+        if overlays is None or "zones" in overlays:
+            draw_zones(env.scenario.world.zones, Palette().zone, scene.extent).add_to(scene)
         draw_plans(scene, ways)
 
     return add

@@ -51,7 +51,7 @@ _SEEDS_PER_TURN = 5
 """Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
 _COPIED = (
     *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
-    *("human_contacts", "left", "jumped"),
+    *("human_contacts", "left", "jumped", "zones"),
 )
 """Keys of the result of an episode that its row repeats."""
 

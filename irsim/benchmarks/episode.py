@@ -49,6 +49,7 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
         "human_contacts": 0,
         "left": [],
         "jumped": [],
+        "zones": {},
     }
 )
 """Result of an episode that does not take place, without its outcome and metrics."""
@@ -135,7 +136,7 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         ``outcome``, ``steps``, ``sim_time``, ``time_limit``, ``robots``, ``unreachable`` (number of robots without a
         path to their goal), ``failures`` (outcome of robots without success, by name), ``human_contacts`` (number of
         contacts between people), ``left`` and ``jumped`` (objects that left the world or jumped over their goal), and
-        ``metrics`` of the episode by key (NaN where undefined).
+        ``metrics`` of the episode by key (NaN where undefined), and ``zones``: metrics of each zone by its name.
     """
     job = task.job
     env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
@@ -169,6 +170,7 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         ],
         "jumped": list(incidents.jumps)[:_MAX_NAMES],
         "metrics": measured.episode,
+        "zones": measured.zones,
     }
 
 

@@ -150,6 +150,7 @@ def _row(
             for key in KEYS
             if pairs
         },
+        zones={} if name == ALL else _zones(episodes),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
             for outcome in ("collision", "timeout")
@@ -159,6 +160,15 @@ def _row(
         incidents=incident_counts(every),
         **shares,
     )
+
+
+def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
+    """Estimates of the metrics of each zone; episodes that were measured have the same zones."""
+    measured = [episode.zones for episode in episodes if episode.zones]
+    return {
+        zone: {key: estimate([zones[zone][key] for zones in measured]) for key in values}
+        for zone, values in (measured[0] if measured else {}).items()
+    }
 
 
 def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:

@@ -188,6 +188,10 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     for text, label in behaviors.items():
         if label != text:
             out.print(f"{label}: {clean(text, 400)}", soft_wrap=True)
+    for row in result.rows:
+        if watched := _watched_line(row):
+            combination = f"{clean(labels.get(row.scenario, row.scenario), 20)}, {behaviors[row.behavior]}"
+            out.print(f"watched: {combination}: {watched}")
     legend = "95 % intervals: Wilson for rates, Newcombe for their differences, bootstrap for means"
     legend += "; time s: time to goal of robots that arrived"
     if any(0 < row.metrics[key].n < row.episodes for row in result.rows for key in shown):
@@ -228,6 +232,22 @@ def _difference_line(row: BenchmarkRow, behavior: str, reference: str) -> str:
             differences.append(f"{name} {found.mean:+.2f}{unit}{interval}{_episodes_note(found, row.episodes)}")
     line = ", ".join(differences) or "no common episodes"
     return f"{clean(behavior)} minus {clean(reference)}, same seeds: {line}"
+
+
+def _watched_line(row: BenchmarkRow) -> str:
+    """Return the means of what was watched: zones, and how long robots were seen; empty if nothing was."""
+    from irsim.common.text import clean
+
+    parts = []
+    for name, zone in row.zones.items():
+        crossings = _mean(zone["zone_crossings"], 2, row.episodes)
+        if "time_in_zone" in zone:
+            parts.append(f"{clean(name, 24)} {_mean(zone['time_in_zone'], 2, row.episodes)} s, {crossings} entries")
+        else:
+            parts.append(f"{clean(name, 24)} {crossings} crossings (right - left)")
+    if row.metrics["seen_ratio"].n:
+        parts.append(f"seen {_mean(row.metrics['seen_ratio'], 2, row.episodes)} of the time")
+    return "; ".join(parts)
 
 
 def _share(found: Proportion) -> str:

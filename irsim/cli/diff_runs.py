@@ -69,7 +69,9 @@ def _show(found: RunsDiff) -> None:
     ):
         for event in events[:MAX_ROWS]:
             partner = "" if event.partner is None else f" with {clean(event.partner, 40)}"
-            who = f"{event.kind} of {clean(event.object, 40)}{partner}"
+            zone = "" if event.zone is None else f" at {clean(event.zone, 40)}"
+            way = "" if event.direction is None else f" ({event.direction.replace('_', ' ')})"
+            who = f"{event.kind} of {clean(event.object, 40)}{partner}{zone}{way}"
             out.print(f"only in {run}: {who} at step {event.step}", soft_wrap=True)
         if count > MAX_ROWS:
             out.print(f"... and {count - MAX_ROWS} more events only in {run}")

@@ -32,7 +32,8 @@ def inspect(
         str,
         typer.Option(
             help="rows: states step by step; collisions: objects that touched; closest: smallest distances between "
-            "objects, edge to edge; speeds: path length, speed (forward below 0 means backwards), turn rate."
+            "objects, edge to edge; speeds: path length, speed (forward below 0 means backwards), turn rate; zones: "
+            "who entered a region or crossed a line of world.zones; sight: who saw whom (fov)."
         ),
     ] = "rows",
     robot: Annotated[str | None, typer.Option(help="Show only this robot or object.", show_default=False)] = None,
@@ -163,7 +164,10 @@ def _show(table: RunTable, out: object) -> None:
         shown.add_column(
             column,
             overflow="fold",
-            justify="left" if column in ("robot", "object", "partner", "to", "kind", "status") else "right",
+            no_wrap=column == "what",
+            justify="left"
+            if column in ("robot", "object", "partner", "to", "kind", "status", "zone", "what", "observer", "seen")
+            else "right",
         )
     for row in table.rows:
         shown.add_row(*(_cell(value) for value in row))

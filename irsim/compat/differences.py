@@ -231,6 +231,8 @@ EXTENSIONS: dict[str, str] = {
     "world.time_limit": "time horizon of a run",
     "world.description": "any text",
     "world.metadata": "any mapping",
+    "world.zones": "lines and areas that are watched, without effect on anything else",
+    "world.plot.show_zones": "draw them",
     "entry.tags": "any words; metrics count objects with the tag pedestrian as humans",
     "entry.waypoints": "several goals in order, with fewer brackets than in `goal`",
     "entry.fov_occlusion": "hidden objects are not seen",

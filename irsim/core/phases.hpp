@@ -15,6 +15,8 @@ void finish(const World& world, State& state, int w);
 void collide(const World& world, State& state, int w);
 void arrive(const World& world, State& state, int w);
 void sense(const World& world, State& state, int w, Workspace& work);
+/// Log who enters, leaves or crosses a zone, and who comes into or goes out of a watched field of view.
+void watch(const World& world, State& state, int w, Workspace& work);
 
 /// Place the geometry of the moving objects at their present poses.
 void place_moving(const World& world, State& state, int w);

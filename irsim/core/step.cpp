@@ -14,6 +14,7 @@ void step(const World& world, State& state, int w, Workspace& work, bool externa
   collide(world, state, w);      // broad phase, exact narrow phase, effects of the collision mode
   arrive(world, state, w);       // goals, waypoints
   sense(world, state, w, work);  // lidars, fog
+  watch(world, state, w, work);  // zones and fields of view -> events
 }
 
 bool done(const World& world, const State& state, int w) {

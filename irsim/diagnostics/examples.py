@@ -61,6 +61,7 @@ EXAMPLES: dict[str, tuple[str, str]] = {
     "stacked": ("robot: {number: 3, state: [1, 1, 0]}", "robot: {number: 3, distribution: {name: random}}"),
     "circle-overlap": ("robot: {number: 20, distribution: {name: circle, radius: 1}}", "robot: {number: 20, distribution: {name: circle, radius: 4}}"),
     "outside-world": ("robot: {goal: [12, 5]}", "robot: {goal: [9, 5]}"),
+    "zone-outside-world": ("world: {zones: [{name: door, line: [[5, 14], [5, 16]]}]}", "world: {zones: [{name: door, line: [[5, 4], [5, 6]]}]}"),
     "behavior-without-kinematics": ("robot: {kinematics: null, behavior: {name: dash}}", "robot: {kinematics: {name: diff}, behavior: {name: dash}}"),
     "no-behavior": ("robot: {behavior: null}", "robot: {behavior: {name: dash}}"),
     "wander-and-loop": ("robot: {behavior: {name: rvo, wander: true, loop: true}}", "robot: {behavior: {name: rvo, wander: true}}"),

@@ -20,6 +20,7 @@ from irsim.objects.extensions.attach import attach_python
 from irsim.objects.views import make_view
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
+from irsim.simulation.events import Event, read_events
 from irsim.simulation.random_streams import check_seed, fresh_seed
 from irsim.simulation.simulation import Simulation
 
@@ -88,6 +89,14 @@ class Batch:
     def done(self) -> NDArray[np.bool_]:
         """Whether every robot of a world has arrived or stopped, (n,)."""
         return self._simulation.done()
+
+    def events(self, world: int) -> list[Event]:
+        """Return the events of a world since its last reset, in order of time.
+
+        Args:
+            world: Index of the world.
+        """
+        return read_events(self._simulation, world)
 
     def step(self, actions: Any = None) -> None:
         """Advance every world by one period.

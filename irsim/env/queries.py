@@ -161,7 +161,7 @@ def sim_time(env: EnvState) -> float:
 
 
 def events(env: EnvState) -> list[Event]:
-    """Return the events since the last reset, such as arrivals, waypoints and collisions, in order of time."""
+    """Return the events since the last reset in order of time: arrivals, collisions, zones entered, sights and more."""
     return read_events(env._simulation)
 
 

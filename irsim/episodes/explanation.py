@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,8 @@ from irsim.episodes.stuck import (
     jam_message,
     no_progress_since,
 )
-from irsim.results.run import HorizonSource, Left, RobotResult
+from irsim.episodes.watching import sights_message, zones_message
+from irsim.results.run import HorizonSource, Left, RobotResult, ZoneResult
 from irsim.simulation.events import Event
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ __all__ = ["has_one_end", "others_arrived_message", "reason_message", "summary_m
 _MAX_NAMED = 3
 """Number of robots that a sentence names."""
 _MAX_EVENTS = 100
-"""Number of last events that are searched for a missing path."""
+"""Number of last events of a robot that are searched for a missing path."""
 _MAX_STANDING_SPEED = 1e-3
 """Speed [m/s] below which a robot stands still; for a very slow robot a tenth of its top speed."""
 _LIMIT_SOURCES: dict[HorizonSource, str] = {
@@ -53,6 +54,7 @@ def summary_message(
     events: Sequence[Event],
     left: Sequence[Left],
     incidents: Incidents,
+    zones: Mapping[str, ZoneResult],
 ) -> str:
     """Say which robots arrived, the first collision, and what else happened to objects."""
     parts = [_arrivals_message(robots, env.sim_time, parked)]
@@ -71,6 +73,10 @@ def summary_message(
         parts.append(touched)
     if jam := jam_message(env.simulation, held):
         parts.append(jam)
+    if zone := zones_message(zones):
+        parts.append(zone)
+    if sight := sights_message(events):
+        parts.append(sight)
     changed = "" if behavior is None else f"with behavior {behavior} for all robots: "
     return changed + "; ".join(parts)
 
@@ -178,7 +184,7 @@ def _state(env: Env, view: ObjectView, robot: RobotResult, events: Sequence[Even
     record = view.record
     speed = float(np.linalg.norm(view.velocity_xy))
     standing = min(_MAX_STANDING_SPEED, view.max_speed / 10 or _MAX_STANDING_SPEED)
-    last = events[-_MAX_EVENTS:]
+    last = [event for event in events if event.object == robot.name][-_MAX_EVENTS:]
     place = "without a goal" if robot.distance_to_goal is None else f"{robot.distance_to_goal:.2f} m from its goal"
     if not _is_inside(env, robot):
         place += f", outside the world at ({robot.pose[0]:.2f}, {robot.pose[1]:.2f})"

@@ -40,7 +40,7 @@ def find_incidents(records: Sequence[ObjectRecord], events: Sequence[Event]) -> 
         if event.kind == "collision":
             if event.object in humans and event.partner in humans:
                 found.human_contacts.append(event)
-        elif event.kind != "no_path":
+        elif event.kind in ("arrival", "waypoint", "overshoot"):
             found.jumps.pop(event.object, None)
             if event.kind == "overshoot":
                 found.jumps[event.object] = event

@@ -17,10 +17,12 @@ from irsim.episodes.incidents import find_incidents
 from irsim.episodes.out_of_bounds import MAX_LISTED_EXITS, find_exits
 from irsim.episodes.reproduce import reproduce_command
 from irsim.episodes.stuck import find_jammed
+from irsim.episodes.watching import goal_visibility, watched_metrics, zone_results
 from irsim.results.findings import Finding
 from irsim.results.run import EventRecord, HorizonSource, Left, RobotResult, RunResult
 from irsim.scenario.resolve.randomness import random_parts
-from irsim.simulation.events import Event, first_events, passable_names
+from irsim.simulation.events import SIGHTS, Event, first_events, passable_names
+from irsim.simulation.history import all_poses
 from irsim.simulation.outcome import robot_outcomes
 
 if TYPE_CHECKING:
@@ -70,6 +72,7 @@ def run_result(
     parked = [record.name for record in env.scenario.robots() if env.scenario.is_parked(record)]
     robots = _robots(env, events, counts, parked)
     left, incidents = _exits(env), find_incidents(env.scenario.objects, events)
+    zones = zone_results(env, events)
     ends = [robot.outcome for robot in robots]
     outcome: Literal["success", "collision", "timeout"] = "timeout"
     if ends and all(end == "success" for end in ends):
@@ -87,7 +90,7 @@ def run_result(
         behavior=behavior,
         perturb=list(perturb),
         outcome=outcome,
-        summary=summary_message(env, robots, hits, behavior, parked, held, events, left, incidents),
+        summary=summary_message(env, robots, hits, behavior, parked, held, events, left, incidents, zones),
         reason=None if outcome == "success" else reason_message(env, robots, hits, events, source, parked, held),
         steps=int(env.simulation.count[0]),
         sim_time=env.sim_time,
@@ -99,7 +102,8 @@ def run_result(
         left=left[:MAX_LISTED_EXITS],
         jumped=list(incidents.jumps)[:MAX_LISTED_EXITS],
         human_contacts=len(incidents.human_contacts),
-        events=[EventRecord(**{k: getattr(e, k) for k in EventRecord.model_fields}) for e in listed[:_MAX_EVENTS]],
+        zones=zones,
+        events=[EventRecord(**event._asdict()) for event in _first(listed)],
         event_count=len(listed),
         warnings=warnings,
         files=files,
@@ -112,7 +116,10 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
     outcomes = robot_outcomes(env.simulation, events=events)
     arrivals = first_events(events, "arrival")
     robots = []
-    nearest = _approaches(env, arrivals)
+    small = (int(env.simulation.count[0]) + 1) * env.simulation.objects <= _MAX_POSES
+    nearest = _approaches(env, arrivals) if small else {}
+    watched = watched_metrics(env, events, arrivals)
+    visible = goal_visibility(env, arrivals) if small else {}
     for view in env.robot_list:
         approach = nearest.get(view.row)
         ended = outcomes[view.name]
@@ -129,6 +136,8 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
                 distance_to_goal=None if goal is None else math.dist(goal[:2, 0], view.position[:, 0]),
                 min_clearance=None if approach is None else approach.distance,
                 nearest=None if approach is None else approach.partner,
+                goal_visible_ratio=visible.get(view.name),
+                **watched[view.name],
                 pose=(float(view.state[0, 0]), float(view.state[1, 0]), float(view.state[2, 0])),
             )
         )
@@ -136,19 +145,13 @@ def _robots(env: Env, events: list[Event], counts: Counter[str], parked: Sequenc
 
 
 def _approaches(env: Env, arrivals: dict[str, Event]) -> dict[int, Approach | None]:
-    """Find what each robot, by row, came nearest to until it arrived; empty in very large runs."""
+    """Find what each robot, by row, came nearest to until it arrived; empty if objects came or went."""
     from irsim.metrics.clearances import least
 
-    state, rows, steps = env.simulation.state, [view.row for view in env.robot_list], int(env.simulation.count[0])
-    if not rows or (steps + 1) * env.simulation.objects > _MAX_POSES:
+    rows, steps = [view.row for view in env.robot_list], int(env.simulation.count[0])
+    poses = all_poses(env.simulation) if rows else None
+    if poses is None:
         return {}
-    tracks = [state.trajectory(row)[:, :3] for row in range(env.simulation.objects)]  # empty for static objects
-    if any(len(track) not in (0, steps) for track in tracks):  # objects came or went
-        return {}
-    poses = np.empty((steps + 1, len(tracks), 3))
-    for row, track in enumerate(tracks):
-        poses[0, row] = state.initial_state(row)[:3]
-        poses[1:, row] = track if len(track) else poses[0, row]
     ends = [arrivals[view.name].step + 1 if view.name in arrivals else steps + 1 for view in env.robot_list]
     return dict(zip(rows, least(poses, env.simulation, rows, ends), strict=True))
 
@@ -201,3 +204,16 @@ def _without_repeats(scenario: ResolvedScenario, events: Sequence[Event]) -> lis
             seen.add(event.object)
         kept.append(event)
     return kept
+
+
+def _first(events: list[Event]) -> list[Event]:
+    """The events that a result lists; if there are too many, those of sights are left out first."""
+    room = _MAX_EVENTS - sum(event.kind not in SIGHTS for event in events)
+    kept = []
+    for event in events:
+        if event.kind in SIGHTS:
+            room -= 1
+            if room < 0:
+                continue
+        kept.append(event)
+    return kept[:_MAX_EVENTS]

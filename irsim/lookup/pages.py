@@ -8,12 +8,13 @@ from irsim.bundled import templates
 from irsim.diagnostics.codes import CODES, TOOL_CODES
 from irsim.lookup.answer import Answer, Key
 from irsim.lookup.guides import GUIDES
-from irsim.lookup.schema_walk import COLOR, Node
+from irsim.lookup.schema_walk import COLOR, Node, yaml_text
 from irsim.lookup.tables import key_list, key_table, plain_table
 from irsim.lookup.topics import lookup
 from irsim.lookup.unsupported import find_gaps
 from irsim.options.registry import KINEMATICS, REGISTRIES
 from irsim.scenario.model.json_schema import json_schema
+from irsim.scenario.model.zones import Zone
 
 __all__ = ["PAGES", "pages"]
 
@@ -43,12 +44,23 @@ def _world(source: _Source) -> str:
         "The section `world`: extent, time, modes. Lengths in meters, times in seconds.",
         _keys(source, "world"),
         "`plot` is in [plot.md](plot.md).",
+        "## Lines and areas that are watched: `world.zones`\n\n" + _zones(source),
         f"## Grid maps: `world.obstacle_map`\n\n{_components(source, 'map', '###')}",
         "## The section `gui`\n\n### `gui.keyboard`\n\n" + _keys(source, "gui.keyboard"),
         "### `gui.mouse`\n\n" + _keys(source, "gui.mouse"),
         "## The section `custom`\n\n" + source.about("custom").text,
     ]
     return "\n\n".join(parts)
+
+
+def _zones(source: _Source) -> str:
+    examples = "\n".join(f"- `{yaml_text(example)}`" for example in Zone.schema_extra["examples"])
+    guide = (
+        "Events say who enters (`zone_entry`), leaves (`zone_exit`) and crosses (`line_crossing`, with its direction), "
+        "with step and time; `irsim inspect RUN --view zones` and the tool `inspect_run` list them. The metrics "
+        "`time_in_zone` and `zone_crossings` are in results of runs and benchmarks."
+    )
+    return f"{' '.join((Zone.__doc__ or '').split())}\n\n{_keys(source, 'world.zones')}\n\n{guide}\n\n{examples}"
 
 
 def _objects(source: _Source) -> str:

@@ -55,7 +55,7 @@ def alternatives(root: Node, node: Node) -> Iterator[Node]:
             target = target[part.replace("~1", "/").replace("~0", "~")]
         node = {**target, **{name: value for name, value in node.items() if name != "$ref"}}
     for union in ("anyOf", "oneOf"):
-        if union in node:
+        if union in node and "properties" not in node:  # beside properties it says which of them go together
             for option in node[union]:
                 yield from alternatives(root, option)
             return

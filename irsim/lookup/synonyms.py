@@ -14,7 +14,7 @@ EVERYDAY: dict[str, str] = {
     "robot.sensors": "sensor, camera, depth camera, imu, gps",
     "robot.sensors.lidar2d.noise": "lidar noise, laser noise, sensor noise, measurement noise, noise",
     "robot.kinematics.diff.noise": "motion noise, actuator noise, odometry noise, noise",
-    "robot.fov": "field of view, view angle, visual range",
+    "robot.fov": "field of view, view angle, visual range, sees, seen, visible, visibility, surveillance, guard",
     "robot.kinematics.acker": "car, ackermann, ackerman, car-like, bicycle, bicycle model, vehicle, truck, bus, "
     "steering, tricycle, lorry, forklift",
     "robot.kinematics.diff": "differential, differential drive, diff drive, unicycle, turtlebot, two wheels, tank, "
@@ -70,6 +70,7 @@ EVERYDAY: dict[str, str] = {
     "world.obstacle_map.image": "image map, png, floor plan, bitmap, picture",
     "world.obstacle_map.ros": "ros map, map server, pgm, slam",
     "world.obstacle_map.perlin": "random map, forest, procedural",
+    "world.zones": "zone, region, gate, finish line, trip wire, geofence, enters, crosses a line, restricted area",
     "world.collision_mode": "collision, crash, hit, bump, collide, impact",
     "world.time_limit": "time limit, timeout, duration, horizon, episode length, max steps, deadline",
     "world.step_time": "time step, step time, timestep, dt, period, frequency, sampling time, step size",

@@ -132,6 +132,19 @@ def _extras() -> tuple[Metric, ...]:
         extra("obstacle_force_agents", "m/s", "pushes of the nearest static objects on humans, summed times dt"),
         extra("pedestrian_velocity_avg", "m/s", "mean speed of the humans until it arrived"),
         extra("control_effort", "s", "squared controls, each over its limit, summed times dt", better="less"),
+        extra("time_in_zone", "s", "its footprint overlapped a region of world.zones"),
+        extra(
+            "zone_crossings",
+            "count",
+            "entries into regions of world.zones, plus crossings of its lines: +1 from left to right, -1 from right to "
+            "left",
+        ),
+        extra(
+            "seen_ratio",
+            "0-1",
+            "share of time in the field of view (fov, with fov_occlusion) of at least one other object",
+        ),
+        extra("goal_visible_ratio", "0-1", "share of time with a straight line to its goal free of static objects"),
         extra("left_world", "0/1", "its position was outside the world", "max", "less"),
     )
 

@@ -19,6 +19,7 @@ from irsim.metrics.progress import progress_metrics
 from irsim.metrics.proximity import proximity_metrics
 from irsim.metrics.social import social_metrics
 from irsim.metrics.trajectory import Track, tracks
+from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
 from irsim.simulation.events import partner_of
 from irsim.simulation.simulation import Simulation
 
@@ -44,6 +45,7 @@ class EpisodeMetrics:
         names: Names of the robots.
         hits: Name of the first object that each robot touched before it arrived, None without a contact.
         clearance: Clearances of the robots.
+        zones: Metrics of each zone by its name, see :func:`irsim.metrics.watching.zone_metrics`: means over the robots.
     """
 
     robots: list[dict[str, float]]
@@ -52,6 +54,7 @@ class EpisodeMetrics:
     names: list[str]
     hits: list[str | None]
     clearance: Clearance
+    zones: dict[str, dict[str, float]]
 
 
 def robot_metrics(
@@ -94,18 +97,23 @@ def episode_metrics(
     )
     geodesics = Geodesics(simulation) if ways is None else ways
     order = [metric.key for metric in METRICS]
-    values, flags = [], []
+    watching = Watching.read(simulation, events)
+    values, flags, zones = [], [], []
     for track in cut:
+        rows = Rows(track.first, len(track.pose), track.step_time)
+        zones.append(zone_metrics(watching, track.name, rows))
+        watched = watching_metrics(watching, track.name, rows)
+        watched["goal_visible_ratio"] = goal_visible_ratio(track.position, track.goal, simulation)
         made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
         near, apart = proximity_metrics(track)
-        found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made
+        found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made | watched
         if missing := [key for key in order if key not in found]:
             raise LookupError(f"no module of irsim/metrics computes {', '.join(missing)}")
         values.append({key: _without_rounding_error(found[key]) for key in order})
         flags.append(odd + apart)
     names = [track.name for track in cut]
     hits = [_partner(track) for track in cut]
-    return EpisodeMetrics(values, flags, _of_episode(values), names, hits, distances)
+    return EpisodeMetrics(values, flags, _of_episode(values), names, hits, distances, _of_zones(zones))
 
 
 def episode_value(key: str, values: Sequence[float]) -> float:
@@ -138,6 +146,14 @@ def _of_episode(robots: list[dict[str, float]]) -> dict[str, float]:
     times = [robot["time_to_goal"] for robot in robots]
     found["aggregated_time"] = max(times) if times and not any(map(math.isnan, times)) else math.nan
     return found
+
+
+def _of_zones(robots: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]]:
+    """Means over the robots of the metrics of each zone; empty without robots."""
+    return {
+        zone: {key: math.fsum(robot[zone][key] for robot in robots) / len(robots) for key in values}
+        for zone, values in (robots[0] if robots else {}).items()
+    }
 
 
 def _without_rounding_error(value: float) -> float:

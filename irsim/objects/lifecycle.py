@@ -34,7 +34,7 @@ def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
 
 def alone(scenario: ResolvedScenario, record: ObjectRecord, seed: int) -> Simulation:
     """Return a simulation of one object in an otherwise empty world with the settings of ``scenario``."""
-    world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none"})
+    world = scenario.world.model_copy(update={"obstacle_map": None, "fog_map": False, "boundary": "none", "zones": []})
     simulation = Simulation(
         replace(scenario, world=world, objects=[record], placements=[], grid=None), [seed], history=True
     )

@@ -162,7 +162,10 @@ def change(view: SimObject, name: str, value: Any) -> None:
     given = SETTINGS[name](view, name, value)
     if name in ("wander", "loop") and view.record.kinematics is None:
         refuse(repr(view.name), name, "it has no drive")
-    view.amend(replace(view.record, **{name: given}))
+    changed = {name: given}
+    if name == "fov":
+        changed["watches"] = given is not None
+    view.amend(replace(view.record, **changed))
     if name == "static" and given:
         view._simulation.control[view.row] = 0.0
         view._simulation.twist[view.row] = 0.0

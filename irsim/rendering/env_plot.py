@@ -248,6 +248,8 @@ class EnvPlot(PlotSteps, ScriptDrawings):
         )
         if self._region is not None:
             scene.look_at(self._region)
+        if self._options.show_zones:
+            self._builder.add_zones(scene)
         return self._without_hidden(scene)
 
     def _title(self) -> str | None:

@@ -65,6 +65,9 @@ class BenchmarkRow(Result):
     """Differences to the first behavior, paired by scenario and seed; ``success``, ``collision`` and ``timeout`` are
     among them. The intervals of these three are Newcombe's for paired shares, which hold even where all pairs
     agree."""
+    zones: dict[str, dict[str, Estimate]] = Field(default_factory=dict)
+    """Metrics of each zone of ``world.zones``, by its name: ``time_in_zone`` [s], ``zone_crossings``, and of a line
+    ``left_to_right`` and ``right_to_left``; empty for ``(all)``."""
     failed: dict[str, list[int]] = Field(default_factory=dict)
     """Seeds that ended in ``collision`` and in ``timeout``; empty for ``(all)``."""
     failures: dict[str, int] = Field(default_factory=dict)
@@ -105,6 +108,8 @@ class EpisodeRow(Result):
     """The first ten objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
     metrics: dict[str, float | None]
     """Metrics of the episode by key; None where undefined."""
+    zones: dict[str, dict[str, float]] = Field(default_factory=dict)
+    """Metrics of each zone of ``world.zones``, by its name: means over the robots."""
 
 
 class BenchmarkResult(Result):

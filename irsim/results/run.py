@@ -9,7 +9,7 @@ from pydantic import Field
 from irsim.results.base import Result
 from irsim.results.findings import Finding
 
-__all__ = ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable"]
+__all__ = ["EventRecord", "HorizonSource", "Left", "ReplayResult", "RobotResult", "RunResult", "RunTable", "ZoneResult"]
 
 HorizonSource = Literal["argument", "scenario", "default", "limits"]
 """Where the time limit of a run comes from."""
@@ -18,21 +18,38 @@ HorizonSource = Literal["argument", "scenario", "default", "limits"]
 class EventRecord(Result):
     """Something that happened in an episode."""
 
-    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
+    kind: Literal[
+        "arrival",
+        "waypoint",
+        "collision",
+        "no_path",
+        "overshoot",
+        "zone_entry",
+        "zone_exit",
+        "line_crossing",
+        "sight_start",
+        "sight_end",
+    ]
     """``collision`` is reported when contact begins, ``no_path`` when ``follow`` finds no path, ``overshoot`` when an
-    object passes its goal within ``goal_threshold`` between two steps without arriving."""
+    object passes its goal within ``goal_threshold`` between two steps without arriving, ``zone_entry`` and
+    ``zone_exit`` when a body begins and ceases to touch a region of ``world.zones``, ``line_crossing`` when a centre
+    crosses a line, ``sight_start`` and ``sight_end`` when another object comes into and goes out of a field of view."""
     time: float
     """Simulated time [s]."""
     step: int
     """Steps executed; 0 is the initial state."""
     object: str
-    """Name of the object; in a collision, of the first of the two."""
+    """Name of the object; in a collision, of the first of the two; of a sight, of the one that sees."""
     partner: str | None
-    """Name of the other object in a collision."""
+    """Name of the other object in a collision, or of the object that is seen."""
     x: float
-    """Position of the object [m]."""
+    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
     y: float
-    """Position of the object [m]."""
+    """Position of the object, or of the one that is seen; for a line, where it is crossed [m]."""
+    zone: str | None = None
+    """Name of the zone."""
+    direction: Literal["left_to_right", "right_to_left"] | None = None
+    """How a line is crossed, as seen from its first point towards its second."""
 
 
 class Left(Result):
@@ -68,8 +85,37 @@ class RobotResult(Result):
     there is nothing to hit, and in runs of more than two million poses."""
     nearest: str | None = None
     """Name of that nearest object."""
+    time_in_zone: float | None = None
+    """Time in which its body touched a region of ``world.zones``, until it arrived [s]; None without regions."""
+    zone_crossings: int | None = None
+    """Entries into regions after the start, plus crossings of lines (+1 from left to right, -1 from right to left),
+    until it arrived; None without ``world.zones``."""
+    seen_ratio: float | None = None
+    """Share of time, until it arrived, in the field of view (``fov``) of another object; None if none has one."""
+    goal_visible_ratio: float | None = None
+    """Share of time, until it arrived, with a straight line to its goal free of static objects; None without a goal,
+    and in runs of more than two million poses."""
     pose: tuple[float, float, float]
     """x, y [m] and heading [rad] at the end."""
+
+
+class ZoneResult(Result):
+    """What robots and moving obstacles did in a zone of ``world.zones``, in the whole run."""
+
+    objects: int
+    """Number of objects that were in the region, or crossed the line."""
+    names: list[str]
+    """The first ten of them, in order of time."""
+    first_time: float | None
+    """When the first of them was there [s]; None if there was none."""
+    entries: int | None = None
+    """Entries after the start; None for a line."""
+    time_in_zone: float | None = None
+    """Time in the region, of all objects together [s]; None for a line."""
+    left_to_right: int | None = None
+    """Crossings from left to right, as seen from the first point of the line; None for a region."""
+    right_to_left: int | None = None
+    """Crossings from right to left; None for a region."""
 
 
 class RunResult(Result):
@@ -111,8 +157,11 @@ class RunResult(Result):
     """The first objects that passed a goal within ``goal_threshold`` between two steps and did not arrive later."""
     human_contacts: int = 0
     """Number of contacts that began between two people: moving obstacles, or objects tagged ``pedestrian``."""
+    zones: dict[str, ZoneResult] = Field(default_factory=dict)
+    """What happened in each zone of ``world.zones``, by its name."""
     events: list[EventRecord]
-    """The first events, in order; repeated arrivals of an object at the same goal count once."""
+    """The first events, in order; repeated arrivals of an object at the same goal count once. If there are too many,
+    ``sight_start`` and ``sight_end`` are left out first."""
     event_count: int
     """Number of such events."""
     warnings: list[Finding]

@@ -241,8 +241,8 @@ def _only_in(events: list[Event], others: list[Event]) -> list[Event]:
     return lone
 
 
-def _identity(event: Event) -> tuple[str, int, str, str | None]:
-    return event.kind, event.step, event.object, event.partner
+def _identity(event: Event) -> tuple[str, int, str, str | None, str | None, str | None]:
+    return event.kind, event.step, event.object, event.partner, event.zone, event.direction
 
 
 def _summary(found: RunsDiff) -> str:

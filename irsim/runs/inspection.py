@@ -1,10 +1,9 @@
-"""Tables of a recorded run: positions step by step, collisions, closest approaches, speeds."""
+"""Tables of a recorded run: positions step by step, collisions, closest approaches, speeds, zones, sights."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -18,47 +17,21 @@ from irsim.results.run import RunTable
 from irsim.runs.files import RunError
 from irsim.runs.reading import Run, open_run
 from irsim.runs.resimulation import scenario_of
+from irsim.runs.tables import Cell, Field, Question, Table, paged, rounded
+from irsim.runs.watching import sight_view, zone_view
 from irsim.scenario.limits import Limits
 from irsim.simulation.trace import Trace
 
 __all__ = ["FIELDS", "VIEWS", "Field", "View", "inspect_run"]
 
-View = Literal["rows", "collisions", "closest", "speeds"]
-Field = Literal["x", "y", "heading", "speed", "turn_rate", "control", "goal", "goal_distance", "nearest_hit", "status"]
+View = Literal["rows", "collisions", "closest", "speeds", "zones", "sight"]
 FIELDS: tuple[Field, ...] = get_args(Field)
 _SHOWN: tuple[Field, ...] = ("x", "y", "heading", "speed", "goal_distance", "status")
 _MIN_SPEED = 1e-3
 """Speed [m/s] below which an object stands still."""
-_DECIMALS = 4
-"""Decimals of the numbers of a table."""
 _NOT_RECORDED = "not recorded"
 _MAX_PARTNERS = 5
 """Number of objects of each kind that ``closest`` lists for one object."""
-Cell = float | int | str | bool | None
-
-
-@dataclass(frozen=True)
-class _Question:
-    """A request for a table; ``first`` and ``last`` are rows of the trace, ``objects`` its columns."""
-
-    run: Run
-    trace: Trace
-    objects: list[int]
-    first: int
-    last: int
-    every: int | None
-    fields: Sequence[Field]
-    start: int
-    limit: int | None
-    limits: Limits | None
-
-
-@dataclass(frozen=True)
-class _Found:
-    columns: list[str]
-    rows: list[list[Cell]]
-    total: int
-    every: int = 1
 
 
 def inspect_run(
@@ -85,8 +58,10 @@ def inspect_run(
             ``speeds``: path length and speeds of each robot and its longest stop, until it arrived (or of all requested
             steps if they begin after its arrival). ``speed`` is a magnitude, never negative;
             ``min_forward_speed`` is the velocity along the heading, negative where the robot drove backwards (None for
-            omnidirectional drives); ``max_turn_rate`` is a magnitude, too.
-        robot: Name of one robot, or of another object; default: all robots.
+            omnidirectional drives); ``max_turn_rate`` is a magnitude, too. ``zones``: who was in a region of
+            ``world.zones`` from when to when, and who crossed a line in which direction; ``sight``: who saw whom from
+            when to when.
+        robot: Name of one robot, or of another object; default: all robots, in ``zones`` and ``sight`` all objects.
         from_step: First step.
         to_step: Last step; default: the last step of the run.
         every: Take every Nth step; default: the smallest N with which the table fits into ``limit``.
@@ -110,7 +85,9 @@ def inspect_run(
     chosen = _fields(fields)
     objects = _objects(opened, robot)
     start = _start(cursor)
-    question = _Question(opened, trace, objects, from_step - begin, last - begin, every, chosen, start, limit, limits)
+    question = Question(
+        opened, trace, objects, robot, from_step - begin, last - begin, every, chosen, start, limit, limits
+    )
     found = VIEWS[view](question)
     if start and start >= found.total:
         what = f"cursor {cursor!r} is beyond the last row"
@@ -166,7 +143,7 @@ def _start(cursor: str | None) -> int:
 # views ----------------------------------------------------------------------------------------------------------------
 
 
-def _rows(asked: _Question) -> _Found:
+def _rows(asked: Question) -> Table:
     """Rows of the trace, step by step, in each step robot by robot."""
     steps, count = asked.last - asked.first + 1, len(asked.objects)
     every = asked.every
@@ -185,25 +162,25 @@ def _rows(asked: _Question) -> _Found:
     for number in range(asked.start, stop):
         row, index = int(picked[number // count]), asked.objects[number % count]
         cells = [cell for field in asked.fields for cell in _cells(asked, field, row, index, controls)]
-        rows.append([int(asked.trace.step[row]), _number(asked.trace.time[row]), asked.trace.names[index], *cells])
-    return _Found(["step", "time", "robot", *columns], rows, total, every)
+        rows.append([int(asked.trace.step[row]), rounded(asked.trace.time[row]), asked.trace.names[index], *cells])
+    return Table(["step", "time", "robot", *columns], rows, total, every)
 
 
-def _controls(asked: _Question) -> int:
+def _controls(asked: Question) -> int:
     """Greatest number of control values of the chosen objects."""
     objects = asked.run.resolved["objects"]
     chosen = [objects[index].get("vel_dim") for index in asked.objects if objects[index].get("kinematics") is not None]
     return max((count for count in chosen if isinstance(count, int) and 0 < count <= 3), default=2)
 
 
-def _cells(asked: _Question, field: Field, row: int, index: int, controls: int) -> list[Cell]:
+def _cells(asked: Question, field: Field, row: int, index: int, controls: int) -> list[Cell]:
     trace, no_goal = asked.trace, not asked.run.resolved["objects"][index].get("goals")
     x, y, heading = trace.pose[row, index].tolist()
     goal_x, goal_y, _ = trace.goal[row, index].tolist()
     if field == "control":
-        return [_number(value) for value in trace.control[row, index, :controls]]
+        return [rounded(value) for value in trace.control[row, index, :controls]]
     if field == "goal":
-        return [None, None] if no_goal else [_number(goal_x), _number(goal_y)]
+        return [None, None] if no_goal else [rounded(goal_x), rounded(goal_y)]
     if field == "status":
         flags = (("arrived", trace.arrived), ("collided", trace.collided), ("stopped", trace.stopped))
         return [" ".join(word for word, flag in flags if flag[row, index]) or ("" if no_goal else "under way")]
@@ -213,24 +190,24 @@ def _cells(asked: _Question, field: Field, row: int, index: int, controls: int) 
         if any(row >= len(block) for block in blocks):
             return [_NOT_RECORDED]
         least = [float(block[row].min()) for block in blocks if block.size]
-        return [_number(min(least, default=math.inf))]
+        return [rounded(min(least, default=math.inf))]
     if field == "speed":
-        return [_number(float(_speeds(trace, index, row, row)[0]))]
+        return [rounded(float(_speeds(trace, index, row, row)[0]))]
     if field == "turn_rate":
-        return [_number(_turn_rate(trace, index, row))]
+        return [rounded(_turn_rate(trace, index, row))]
     value = {
         "x": x,
         "y": y,
         "heading": heading,
         "goal_distance": math.nan if no_goal else math.hypot(goal_x - x, goal_y - y),
     }[field]
-    return [_number(value)]
+    return [rounded(value)]
 
 
-def _collisions(asked: _Question) -> _Found:
+def _collisions(asked: Question) -> Table:
     """Beginnings of contacts, with the speeds of both objects just before."""
     trace = asked.trace
-    steps = (int(trace.step[asked.first]), int(trace.step[asked.last]))
+    steps = asked.steps
     chosen = {trace.names[index] for index in asked.objects}
     events = [
         event
@@ -241,13 +218,13 @@ def _collisions(asked: _Question) -> _Found:
     for event in events:
         row = event.step - int(trace.step[0])
         before = [_speed_before(trace, name, row) for name in (event.object, event.partner)]
-        place = [_number(event.x), _number(event.y)]
-        rows.append([event.step, _number(event.time), event.object, event.partner, *place, *before])
+        place = [rounded(event.x), rounded(event.y)]
+        rows.append([event.step, rounded(event.time), event.object, event.partner, *place, *before])
     columns = ["step", "time", "object", "partner", "x", "y", "speed", "partner_speed"]
-    return _paged(asked, columns, rows)
+    return paged(asked, columns, rows)
 
 
-def _closest(asked: _Question) -> _Found:
+def _closest(asked: Question) -> Table:
     """Closest approaches of each robot to other objects, the closest first."""
     scenario = scenario_of(asked.run, asked.limits)
     part, trace = asked.trace.pose[asked.first : asked.last + 1], asked.trace
@@ -256,14 +233,14 @@ def _closest(asked: _Question) -> _Found:
     rows: list[list[Cell]] = []
     for each, index in sorted(found, key=lambda item: (item[0].distance, item[1])):
         row = asked.first + each.row
-        moment: list[Cell] = [int(trace.step[row]), _number(trace.time[row])]
-        place: list[Cell] = [_number(value) for value in trace.pose[row, index, :2]]
-        speed = _number(float(_speeds(trace, index, row, row)[0]))
+        moment: list[Cell] = [int(trace.step[row]), rounded(trace.time[row])]
+        place: list[Cell] = [rounded(value) for value in trace.pose[row, index, :2]]
+        speed = rounded(float(_speeds(trace, index, row, row)[0]))
         rows.append([trace.names[index], _precise(each.distance), each.partner, each.kind, *moment, *place, speed])
-    return _paged(asked, ["robot", "edge_distance", "to", "kind", "step", "time", "x", "y", "speed"], rows)
+    return paged(asked, ["robot", "edge_distance", "to", "kind", "step", "time", "x", "y", "speed"], rows)
 
 
-def _speeds_of_robots(asked: _Question) -> _Found:
+def _speeds_of_robots(asked: Question) -> Table:
     """Path length and speeds of each robot until it arrived, and its longest stop."""
     trace, rows = asked.trace, list[list[Cell]]()
     for index in asked.objects:
@@ -273,32 +250,29 @@ def _speeds_of_robots(asked: _Question) -> _Found:
         speeds = _speeds(trace, index, asked.first, last)
         way = float(speeds[1:].sum() * trace.step_time) if len(speeds) > 1 else 0.0
         begin, length = _longest_stop(speeds[:first])
-        stand: list[Cell] = [_number(length * trace.step_time), None]
+        stand: list[Cell] = [rounded(length * trace.step_time), None]
         if length:
             stand[1] = int(trace.step[asked.first + begin])
         mean = way / (max(1, len(speeds) - 1) * trace.step_time)
-        fast: list[Cell] = [_number(mean), _number(float(speeds.max()))]
+        fast: list[Cell] = [rounded(mean), rounded(float(speeds.max()))]
         turning = max((abs(_turn_rate(trace, index, row)) for row in range(asked.first, last + 1)), default=0.0)
-        extremes: list[Cell] = [_least_forward(asked, index, last), _number(turning)]
-        rows.append([trace.names[index], _number(way), *fast, *extremes, *stand, bool(arrived.any())])
+        extremes: list[Cell] = [_least_forward(asked, index, last), rounded(turning)]
+        rows.append([trace.names[index], rounded(way), *fast, *extremes, *stand, bool(arrived.any())])
     columns = [
         *("robot", "path_length", "mean_speed", "max_speed", "min_forward_speed", "max_turn_rate"),
         *("stood", "stood_from_step", "arrived"),
     ]
-    return _paged(asked, columns, rows)
+    return paged(asked, columns, rows)
 
 
-VIEWS: dict[str, Callable[[_Question], _Found]] = {
+VIEWS: dict[str, Callable[[Question], Table]] = {
     "rows": _rows,
     "collisions": _collisions,
     "closest": _closest,
     "speeds": _speeds_of_robots,
+    "zones": zone_view,
+    "sight": sight_view,
 }
-
-
-def _paged(asked: _Question, columns: list[str], rows: list[list[Cell]]) -> _Found:
-    stop = None if asked.limit is None else asked.start + asked.limit
-    return _Found(columns, rows[asked.start : stop], len(rows))
 
 
 # numbers --------------------------------------------------------------------------------------------------------------
@@ -314,7 +288,7 @@ def _speeds(trace: Trace, index: int, first: int, last: int) -> Floats:
     return speeds
 
 
-def _least_forward(asked: _Question, index: int, last: int) -> Cell:
+def _least_forward(asked: Question, index: int, last: int) -> Cell:
     """Least velocity along the heading [m/s]; None for omnidirectional drives, and without steps."""
     drive = asked.run.resolved["objects"][index].get("kinematics")
     name = drive.get("name") if isinstance(drive, dict) else None
@@ -323,7 +297,7 @@ def _least_forward(asked: _Question, index: int, last: int) -> Cell:
         return None
     moved, heading = np.diff(pose[:, :2], axis=0), pose[:-1, 2]
     forward = moved[:, 0] * np.cos(heading) + moved[:, 1] * np.sin(heading)
-    return _number(float(forward.min()) / asked.trace.step_time)
+    return rounded(float(forward.min()) / asked.trace.step_time)
 
 
 def _turn_rate(trace: Trace, index: int, row: int) -> float:
@@ -337,7 +311,7 @@ def _speed_before(trace: Trace, name: str | None, row: int) -> Cell:
     """Speed in the step before a contact; None for a partner that is not an object of the trace."""
     if name not in trace.names:
         return None
-    return _number(float(_speeds(trace, trace.names.index(name), row, row)[0]))
+    return rounded(float(_speeds(trace, trace.names.index(name), row, row)[0]))
 
 
 def _longest_stop(speeds: Floats) -> tuple[int, int]:
@@ -351,12 +325,6 @@ def _longest_stop(speeds: Floats) -> tuple[int, int]:
     return best
 
 
-def _number(value: float) -> float | None:
-    """A number rounded to four decimals; None if it is not finite."""
-    return round(float(value), _DECIMALS) if math.isfinite(value) else None
-
-
 def _precise(value: float) -> float:
     """A number rounded to four decimals, or to two digits if that would make it 0."""
-    rounded = round(value, _DECIMALS)
-    return rounded if rounded or not value else float(f"{value:.2g}")
+    return rounded(value) or (float(f"{value:.2g}") if value else 0.0)

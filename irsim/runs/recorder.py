@@ -26,6 +26,7 @@ from irsim.runs.piece_writer import PieceWriter
 from irsim.runs.plain_scenario import plain_scenario
 from irsim.runs.pruning import prune, remove, tidy
 from irsim.runs.store import FILES, META, RESULT, SCENARIO_FILE, make_run_folder, mark_used, runs_path
+from irsim.simulation.events import read_events
 from irsim.simulation.trace import sensors
 
 if TYPE_CHECKING:
@@ -242,10 +243,9 @@ class Recorder:
                 thread, while the simulation fills another log.
         """
         self._writer.wait()
-        events = self._simulation.state.events(0, self._events)
+        events = read_events(self._simulation, start=self._events)
         self._events += len(events)
-        names, step_time = self._simulation.names, self._meta["step_time"]
-        records = [_event_record(event, names, step_time) for event in events]
+        records = [event._asdict() for event in events]
         log, number = self._log, f"{self._pieces:04d}"
         if log.rows or events:
             self._pieces += 1
@@ -337,14 +337,6 @@ def _log_of(simulation: Simulation, scans: bool) -> tuple[core.Log, list[int]]:
     movers = [row for row, record in enumerate(records) if any_can_move or not record.static]
     columns = max((records[row].vel_dim for row in movers), default=0)
     return core.Log(simulation.world, movers, min(3, columns), scans), movers
-
-
-def _event_record(event: tuple[Any, ...], names: Mapping[int, str], step_time: float) -> dict[str, Any]:
-    """An event of the core as JSON types, with the fields of :func:`irsim.simulation.events.read_events`."""
-    kind, step, first, second, x, y = event
-    partner = names[second] if second >= 0 else None
-    time = step * step_time
-    return {"kind": kind, "time": time, "step": step, "object": names[first], "partner": partner, "x": x, "y": y}
 
 
 def _stem(scenario: str) -> str:

@@ -24,6 +24,7 @@ from irsim.options.registry import (
 )
 from irsim.simulation.compound import compound_body
 from irsim.simulation.fog import build_fog
+from irsim.simulation.watching import build_targets, build_views, build_zones
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
@@ -239,6 +240,9 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
             for index, record in enumerate(scenario.objects)
             if record.spreads is not None
         ],
+        zones=build_zones(scenario),
+        views=build_views(scenario),
+        targets=build_targets(scenario),
     )
     world.after_arrival = AFTER_ARRIVAL[scenario.world.after_arrival]
     x0, y0, x1, y1 = scenario.world.bounds

@@ -1,4 +1,4 @@
-"""Events that the core records during a step: arrivals, waypoints, and collisions with partner, point and time."""
+"""Events that the core records during a step: arrivals, waypoints, collisions, zones and fields of view."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ if TYPE_CHECKING:
     from irsim.simulation.simulation import Simulation
 
 __all__ = [
+    "SIGHTS",
+    "Direction",
     "Event",
+    "EventKind",
     "first_collisions",
     "first_events",
     "is_collision_of",
@@ -18,28 +21,62 @@ __all__ = [
 ]
 
 
+EventKind = Literal[
+    "arrival",
+    "waypoint",
+    "collision",
+    "no_path",
+    "overshoot",
+    "zone_entry",
+    "zone_exit",
+    "line_crossing",
+    "sight_start",
+    "sight_end",
+]
+"""Kinds of events; :class:`Event` says what they mean."""
+Direction = Literal["left_to_right", "right_to_left"]
+"""Direction in which a line is crossed, as seen from its first point towards its second."""
+SIGHTS: tuple[EventKind, ...] = ("sight_start", "sight_end")
+"""Kinds of events of fields of view."""
+_CROSSINGS: dict[str, Direction] = {"crossing_to_right": "left_to_right", "crossing_to_left": "right_to_left"}
+"""Names that the core gives the crossing of a line, by direction."""
+
+
 class Event(NamedTuple):
     """An event of an episode.
+
+    Zones and fields of view are looked at in the initial state and after every step. An object that starts in a region
+    enters it at step 0, and one that starts in view is seen from step 0 on. The path of an object is the straight line
+    from its position at one step to that at the next.
 
     Attributes:
         kind: ``arrival`` (the last goal is reached), ``waypoint`` (a goal is reached and another follows),
             ``collision`` (a contact of two objects begins; reported once per contact, not per step), ``no_path``
-            (``follow`` has found no path) or ``overshoot`` (the object passed its goal within the threshold between two
-            steps without arriving; reported once per goal).
+            (``follow`` has found no path), ``overshoot`` (the object passed its goal within the threshold between two
+            steps without arriving; reported once per goal), ``zone_entry`` and ``zone_exit`` (the body of an object
+            that can move begins or ceases to touch a region of ``world.zones``), ``line_crossing`` (its centre crosses
+            a line of ``world.zones``), ``sight_start`` and ``sight_end`` (another object comes into, or goes out of,
+            the field of view that the scenario gives the object with ``fov``; of static obstacles only those with tags
+            count).
         time: Simulated time [s].
         step: Number of executed steps at the event; 0 is the initial state.
-        object: Name of the object; for a collision, of the first of the two objects.
-        partner: Name of the second object of a collision.
-        x, y: Position of the object, or a point of the contact [m, world frame].
+        object: Name of the object; for a collision, of the first of the two objects; for a sight, of the one that sees.
+        partner: Name of the second object of a collision, or of the object that is seen.
+        x, y: Position of the object, a point of the contact, the point at which the line is crossed, or the position
+            of the object that is seen [m, world frame].
+        zone: Name of the zone.
+        direction: Direction in which the line is crossed, as seen from its first point towards its second.
     """
 
-    kind: Literal["arrival", "waypoint", "collision", "no_path", "overshoot"]
+    kind: EventKind
     time: float
     step: int
     object: str
     partner: str | None
     x: float
     y: float
+    zone: str | None = None
+    direction: Direction | None = None
 
 
 def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[Event]:
@@ -50,12 +87,19 @@ def read_events(simulation: Simulation, world: int = 0, start: int = 0) -> list[
         world: Index of the world.
         start: Number of earliest events to skip.
     """
-    name = simulation.names
-    step_time = simulation.scenario.world.step_time
-    return [
-        Event(kind, step * step_time, step, name[a], name[b] if b >= 0 else None, x, y)  # type: ignore[arg-type]
-        for kind, step, a, b, x, y in simulation.state.events(world, start)
-    ]
+    zones = simulation.scenario.world.zones
+    step_time = float(simulation.scenario.world.step_time)
+    found = []
+    for kind, step, first, second, x, y in simulation.state.events(world, start):
+        time, name = step * step_time, simulation.names[first]
+        if kind in _CROSSINGS:
+            found.append(Event("line_crossing", time, step, name, None, x, y, zones[second].name, _CROSSINGS[kind]))
+        elif kind in ("zone_entry", "zone_exit"):
+            found.append(Event(kind, time, step, name, None, x, y, zones[second].name))  # type: ignore[arg-type]
+        else:
+            partner = simulation.names[second] if second >= 0 else None
+            found.append(Event(kind, time, step, name, partner, x, y))  # type: ignore[arg-type]
+    return found
 
 
 def first_events(events: list[Event], kind: str) -> dict[str, Event]:

@@ -50,7 +50,7 @@ def build_fog(scenario: ResolvedScenario) -> core.Fog | None:
             carriers.append(index)
         elif record.fov is not None and record.fov_radius is not None:
             views.append(
-                core.FogView(object=index, angle=record.fov, reach=record.fov_radius, occlusion=record.fov_occlusion)
+                core.View(object=index, angle=record.fov, reach=record.fov_radius, occlusion=record.fov_occlusion)
             )
     return core.Fog(
         origin=[float(v) for v in world.offset[:2]],

@@ -203,6 +203,7 @@ class Simulation:
         core.collide(world, state)
         core.arrive(world, state)
         core.sense(world, state)
+        core.watch(world, state)
         self.measure()
         if self.log is not None:
             self.log.add(state)

@@ -18,6 +18,7 @@ from irsim.scenario.resolve.body_size import parts_of
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.simulation.fog import fog_resolution
 from irsim.simulation.simulation import Simulation
+from irsim.simulation.watching import is_watching
 
 __all__ = ["UNIT", "step_work"]
 
@@ -44,6 +45,16 @@ _NEIGHBOR_US = {"rvo": 0.5, "sfm": 0.12}
 """Time per moving neighbor in range, for behaviors that consider each neighbor [µs]."""
 _STATIC_BODY_US = {"rvo": 1.5, "sfm": 0.2, "orca": 0.12}
 """Time per static body in range [µs]."""
+_ZONE_US = 0.01
+"""Time of one zone per moving body [µs]."""
+_VIEW_BODY_US = 0.006
+"""Time of a watched field of view per body [µs]."""
+_SEEN_BODY_US = 0.06
+"""Time of a watched field of view per body in range [µs]."""
+_OCCLUSION_US = 0.7
+"""Additional time per body in range with occlusion [µs]."""
+_BLOCKER_US = 0.03
+"""Additional time per body in range and body that may hide it [µs]."""
 _PYTHON_PART_US = 90.0
 """Time of each part of a step that Python computes [µs]."""
 _PLAN_CELL_US = {"astar": 0.003, "jps": 0.01}
@@ -71,7 +82,10 @@ def step_work(scenario: ResolvedScenario, simulation: Simulation) -> float:
     static = np.array([record.static for record in records], dtype=bool)
     near = _Nearness(place, corners)
     work = _CORNER_US * float((corners[~static] - 1).sum())
+    work += _ZONE_US * len(scenario.world.zones) * int((~static).sum())
     for row, record in enumerate(records):
+        if is_watching(record):
+            work += _view_time(record, row, near)
         if record.sensors:
             work += sum(_scan_time(scenario, sensor, row, near) for sensor in record.sensors)
         if not record.static:
@@ -149,6 +163,14 @@ def _scan_time(scenario: ResolvedScenario, sensor: Any, row: int, near: _Nearnes
         fog = _FOG_CELL_US * 2 * longest / fog_resolution(scenario)
     beam = _BEAM_US + _BEAM_DEPTH_US * math.sqrt(bodies) + noise + fog
     return beams * beam + _SCAN_BODY_US * bodies + _SCAN_EDGE_US * edges
+
+
+def _view_time(record: ObjectRecord, row: int, near: _Nearness) -> float:
+    """Estimate the time of a watched field of view per step [µs]."""
+    bodies = len(near.corners)
+    there = float(near.estimate(record.fov_radius or 0.0, "bodies", lambda: np.ones(bodies))[row])
+    hidden = _OCCLUSION_US + _BLOCKER_US * there if record.fov_occlusion else 0.0
+    return _VIEW_BODY_US * bodies + (_SEEN_BODY_US + hidden) * there
 
 
 def _behavior_time(

@@ -247,6 +247,7 @@ WORLD: dict[str, Any] = {
     "obstacle_map": {"name": "perlin", "resolution": 0.5},
     "fog_map": False,
     "fog_map_resolution": 0.5,
+    "zones": [{"name": "door", "line": [[1, 1], [2, 2]]}],
     "gravity": 5,
     "friction": 0.1,
     "restitution": 0.2,

@@ -59,7 +59,7 @@ def test_beams_lift_it(seed: int, shape: tuple[int, int], mounted: float) -> Non
 def test_sectors_lift_it() -> None:
     for angle in (0.4, 2.0, 2 * PI):
         pose = [1.0, -0.5, 2.5]
-        sight = core.FogView(object=0, angle=angle, reach=2.2, occlusion=False)
+        sight = core.View(object=0, angle=angle, reach=2.2, occlusion=False)
         world, state = scene(robot(pose=pose, behavior=None), fog=fog(40, 30, [], [sight]))
         core.advance(world, state, 1)
         for i in range(40):
@@ -74,7 +74,7 @@ def test_what_is_hidden_stays_in_the_fog() -> None:
     wall = obstacle(pose=[1, 0, 0], parts=[rectangle(0.1, 20)])
     explored = {}
     for occlusion in (False, True):
-        sight = core.FogView(object=0, angle=PI, reach=3.0, occlusion=occlusion)
+        sight = core.View(object=0, angle=PI, reach=3.0, occlusion=occlusion)
         world, state = scene(robot(behavior=None), wall, fog=fog(40, 30, [], [sight]))
         core.advance(world, state, 1)
         explored[occlusion] = state.explored[0].astype(bool)
@@ -107,7 +107,7 @@ def test_worlds_without_fog_have_no_cells() -> None:
     with pytest.raises(ValueError, match="cell"):
         scene(robot(), fog=fog(0, 3))
     with pytest.raises(ValueError, match="names an object that does not exist"):
-        scene(robot(), fog=fog(views=[core.FogView(object=3, angle=1.0, reach=1.0, occlusion=False)]))
+        scene(robot(), fog=fog(views=[core.View(object=3, angle=1.0, reach=1.0, occlusion=False)]))
 
 
 def test_far_beams_cost_no_more_than_the_world() -> None:

@@ -134,7 +134,7 @@ def test_degenerate_input_does_not_crash_or_spread(data: st.DataObject) -> None:
                 ],
             )
         )
-    views = [core.FogView(object=k, angle=3.0, reach=2.0, occlusion=bool(k % 2)) for k in range(len(objects))]
+    views = [core.View(object=k, angle=3.0, reach=2.0, occlusion=bool(k % 2)) for k in range(len(objects))]
     fog = core.Fog(origin=[0, 0], size=[60, 60], columns=12, rows=9, carriers=range(len(objects)), views=views)
     world, state = scene(*objects, mode=1, fog=fog)
     command(state, [0.1, 0.0], *([data.draw(WILD)] * 3 for _ in objects[1:]))

@@ -124,6 +124,9 @@ def scene(
     fog: core.Fog | None = None,
     perturbations: Sequence[core.Perturbation] = (),
     extent: Sequence[float] = (0.0, 0.0, 10.0, 10.0),
+    zones: Sequence[core.Part] = (),
+    views: Sequence[core.View] = (),
+    targets: Sequence[int] = (),
 ) -> tuple[core.World, core.State]:
     """World and state of these objects; one copy per seed."""
     world = core.World(
@@ -135,6 +138,9 @@ def scene(
         copies=len(seeds),
         fog=fog,
         perturbations=perturbations,
+        zones=zones,
+        views=views,
+        targets=targets,
     )
     if perturbations:
         world.extent = tuple(extent)

@@ -99,6 +99,18 @@ def test_an_arrival_in_one_run_only_is_an_event_of_it(workspace: Path) -> None:
     assert (found.events_after, found.event_counts) == ([], (1, 0))
 
 
+def test_a_line_elsewhere_is_crossed_in_another_step(workspace: Path) -> None:
+    def street(x: float) -> str:
+        return STREET.replace("height: 6", f"height: 6, zones: [{{name: gate, line: [[{x}, 0], [{x}, 6]]}}]")
+
+    runs = recorded(street(1.55)), recorded(street(1.65))
+    found = irsim.diff_runs(*runs)
+    assert (found.same, found.step, found.event_counts) == (False, None, (2, 2))
+    done = CliRunner().invoke(app, ["diff-runs", *runs])
+    for run, step in zip(runs, (6, 7), strict=True):
+        assert f"only in {run}: line_crossing of slow at gate (left to right) at step {step}" in done.stdout
+
+
 def test_small_differences_are_tolerated_if_asked_for(workspace: Path) -> None:
     first, second = recorded(STREET), recorded(STREET.replace("state: [1, 4, 0]", "state: [1, 4.000001, 0]"))
     assert irsim.diff_runs(first, second).step == 0

@@ -22,9 +22,13 @@ DRIVES = {
 
 @st.composite
 def scenarios(draw: st.DrawFn) -> str:
-    """Small random worlds: every drive, noise, lidars, wandering, random shapes and placements."""
+    """Small random worlds: every drive, noise, lidars, wandering, random shapes and placements, zones, views."""
     mode = draw(st.sampled_from(["stop", "unobstructed", "unobstructed_obstacles"]))
-    lines = [f"world: {{height: 12, width: 12, collision_mode: {mode}}}", "robot:"]
+    zones = (
+        "[{name: line, line: [[6, 0], [6, 12]]}, {name: left, rectangle: [0, 0, 6, 12]}, "
+        "{name: disc, circle: {center: [6, 6], radius: 3}}]"
+    )
+    lines = [f"world: {{height: 12, width: 12, collision_mode: {mode}, zones: {zones}}}", "robot:"]
     for drive in draw(st.lists(st.sampled_from(sorted(DRIVES)), min_size=1, max_size=3)):
         top, shape = DRIVES[drive]
         low = "[" + ", ".join("-" + v.strip() for v in top.strip("[]").split(",")) + "]"
@@ -47,6 +51,8 @@ def scenarios(draw: st.DrawFn) -> str:
             f"    vel_min: {low}",
             f"    behavior: {behavior}",
         ]
+        if draw(st.booleans()):
+            lines.append(f"    fov: 2\n    fov_radius: 4\n    fov_occlusion: {str(draw(st.booleans())).lower()}")
         if draw(st.booleans()):
             lines.append(f"    acce: [{', '.join(['2.0'] * len(top.split(',')))}]")
         if draw(st.booleans()):
@@ -85,7 +91,9 @@ def test_alone_in_batch_and_rolled_out_agree(tmp_path: Path, text: str, seed: in
                     assert np.array_equal(alone, batched, equal_nan=True), (episode, step, world, name)
                 assert np.array_equal(env.simulation.control, one.velocity[world])
                 assert np.array_equal(env.simulation.ranges, one.ranges[world])
+                assert env.events == one.events(world) == many.events(world)
             assert np.array_equal(trace.pose[step], envs[0].simulation.pose)
+            assert [event for event in rolled.events if event.step <= step + 1] == envs[0].events
             for name in ("pose", "velocity", "ranges", "arrived", "collided"):
                 assert np.array_equal(getattr(one, name), getattr(many, name))
         one.reset(np.ones(3, dtype=bool))

@@ -58,6 +58,8 @@ SITUATIONS = [
         "merging",
         "station platform",
         "perpendicular streams",
+        "line crossing",
+        "field of view",
     ),
 ]
 

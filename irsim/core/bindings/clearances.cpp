@@ -1,6 +1,7 @@
-// The functions `clearances` and `least_clearances`: distances over recorded poses.
+// The functions `clearances`, `least_clearances` and `free_lines`: distances and lines of sight over recorded poses.
 #include "runs/clearances.hpp"
 #include "bindings/bound_state.hpp"
+#include "runs/free_lines.hpp"
 
 namespace irsim {
 namespace {
@@ -60,6 +61,27 @@ nb::tuple least_clearances_of(World& world, BoundState& bound, int w, const Pose
   return nb::make_tuple(own(std::move(distance), {each}), own(std::move(partner), {each}), own(std::move(row), {each}));
 }
 
+using Points = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
+
+nb::object free_lines_of(World& world, BoundState& bound, int w, const Points& start, const Points& end,
+                         const Mask& blocking) {
+  const State& state = bound.of(world);
+  bound.check_world(w);
+  const std::size_t count = start.shape(0);
+  if (end.shape(0) != count) throw nb::value_error("there must be one end per start");
+  if (blocking.shape(0) != static_cast<std::size_t>(world.objects))
+    throw nb::value_error("blocking must have one entry per object");
+  std::vector<std::uint8_t> out(count);
+  const std::shared_ptr<const Shapes> shapes = state.scenes[w].shapes;
+  const std::shared_ptr<const Fixed> fixed = state.scenes[w].fixed;
+  {
+    nb::gil_scoped_release free;
+    free_lines(world, *shapes, *fixed, reinterpret_cast<const Vec2*>(start.data()),
+               reinterpret_cast<const Vec2*>(end.data()), count, blocking.data(), out.data());
+  }
+  return own(std::move(out), {count});
+}
+
 }  // namespace
 
 void bind_clearance(nb::module_& m) {
@@ -67,6 +89,8 @@ void bind_clearance(nb::module_& m) {
         nb::arg("robots"), nb::arg("kinds"));
   m.def("least_clearances", &least_clearances_of, nb::arg("world"), nb::arg("state"), nb::arg("index"),
         nb::arg("poses"), nb::arg("robots"), nb::arg("kinds"), nb::arg("ends"));
+  m.def("free_lines", &free_lines_of, nb::arg("world"), nb::arg("state"), nb::arg("index"), nb::arg("start"),
+        nb::arg("end"), nb::arg("blocking"));
 }
 
 }  // namespace irsim

@@ -67,6 +67,22 @@ nb::object trajectory(const BoundState& self, int row) {
   return own(track, {track.size() / columns, columns});
 }
 
+nb::object standings(const BoundState& self, int row) {
+  self.check_row(row);
+  if (!self.state.keep_history) throw nb::value_error("this state does not keep a history");
+  std::vector<std::int64_t> steps;
+  std::vector<double> goals;
+  std::vector<std::uint8_t> stopped;
+  for (const Standing& s : self.state.standings[row]) {
+    steps.push_back(s.step);
+    goals.insert(goals.end(), {s.goal.x, s.goal.y, s.goal.theta});
+    stopped.push_back(s.stopped);
+  }
+  const std::size_t count = steps.size();
+  return nb::make_tuple(own(std::move(steps), {count}), own(std::move(goals), {count, 3}),
+                        own(std::move(stopped), {count}));
+}
+
 std::tuple<double, double> velocity_of(const BoundState& self, int row) {
   self.check_row(row);
   const Vec2 v = velocity_world(*self.world, self.state, row);
@@ -231,7 +247,7 @@ void bind_state(nb::module_& m) {
           [](S& self, int row, double angle, double reach, bool occlusion) {
             self.check_row(row);
             const int n = self.world->objects;
-            return in_view(*self.world, self.state, row / n, row % n, {angle, reach, occlusion},
+            return in_view(*self.world, self.state, row / n, {row % n, angle, reach, occlusion},
                            self.state.workspaces.front());
           },
           nb::arg("row"), nb::arg("angle"), nb::arg("reach"), nb::arg("occlusion"))
@@ -260,7 +276,8 @@ void bind_state(nb::module_& m) {
                sense(*self.world, self.state, w, self.state.workspaces.front());
              }
            })
-      .def("trajectory", &trajectory, nb::arg("row"));
+      .def("trajectory", &trajectory, nb::arg("row"))
+      .def("standings", &standings, nb::arg("row"));
   bind_row_geometry(state);
 }
 

@@ -137,6 +137,7 @@ void bind_steps(nb::module_& m) {
   phase("collide", [](W world, State& s, int w, Workspace&) { collide(world, s, w); });
   phase("arrive", [](W world, State& s, int w, Workspace&) { arrive(world, s, w); });
   phase("sense", [](W world, State& s, int w, Workspace& work) { sense(world, s, w, work); });
+  phase("watch", [](W world, State& s, int w, Workspace& work) { watch(world, s, w, work); });
   m.def(
       "scan",
       [](World& world, BoundState& bound, int w, int sensor, std::array<double, 3> pose) {

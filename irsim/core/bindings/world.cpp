@@ -11,14 +11,23 @@ void bind_world(nb::module_& m) {
   bind_fields<ObjectSpec>(m, "ObjectSpec");
   bind_fields<RandomPlacement>(m, "RandomPlacement");
   bind_fields<Perturbation>(m, "Perturbation");
-  bind_fields<FogView>(m, "FogView");
+  bind_fields<View>(m, "View");
   bind_fields<Fog>(m, "Fog");
   nb::class_<World>(m, "World")
-      .def(nb::init<double, int, double, std::vector<ObjectSpec>, std::vector<RandomPlacement>, int, std::optional<Fog>,
-                    std::vector<Perturbation>>(),
-           nb::kw_only(), nb::arg("step_time"), nb::arg("collision_mode"), nb::arg("gravity"), nb::arg("objects"),
-           nb::arg("placements"), nb::arg("copies"), nb::arg("fog") = nb::none(),
-           nb::arg("perturbations") = std::vector<Perturbation>())
+      .def(
+          "__init__",
+          [](World* self, double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> objects,
+             std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog,
+             std::vector<Perturbation> perturbations, const std::vector<PartSpec>& zones, std::vector<View> views,
+             const std::vector<int>& targets) {
+            new (self) World(step_time, collision_mode, gravity, std::move(objects), std::move(placements), copies,
+                             std::move(fog), std::move(perturbations),
+                             Zones(draw_outlines(zones, Draws({}, Stream::shape, 0))), std::move(views), targets);
+          },
+          nb::kw_only(), nb::arg("step_time"), nb::arg("collision_mode"), nb::arg("gravity"), nb::arg("objects"),
+          nb::arg("placements"), nb::arg("copies"), nb::arg("fog") = nb::none(),
+          nb::arg("perturbations") = std::vector<Perturbation>(), nb::arg("zones") = std::vector<PartSpec>(),
+          nb::arg("views") = std::vector<View>(), nb::arg("targets") = std::vector<int>())
       .def_ro("copies", &World::copies)
       .def_ro("objects", &World::objects)
       .def_ro("step_time", &World::step_time)

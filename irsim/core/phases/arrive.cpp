@@ -12,6 +12,21 @@ bool at_goal(const World& world, int object, const Pose& pose, const Goal& goal)
   return std::sqrt(dx * dx + dy * dy + turn * turn) < world.goal_threshold[object];
 }
 
+bool same_goal(const Goal& a, const Goal& b) {
+  const auto same = [](double p, double q) { return p == q || (std::isnan(p) && std::isnan(q)); };
+  return same(a.x, b.x) && same(a.y, b.y) && same(a.theta, b.theta);
+}
+
+void note_standings(const World& world, State& state, int w) {
+  for (const int i : world.moving) {
+    const int row = w * world.objects + i;
+    std::vector<Standing>& past = state.standings[row];
+    const Standing now{state.count[w], state.goal[row], state.stopped[row]};
+    if (past.empty() || past.back().stopped != now.stopped || !same_goal(past.back().goal, now.goal))
+      past.push_back(now);
+  }
+}
+
 /// Whether an object has arrived for good: a robot with nowhere else to go, where the world says so.
 bool is_settled(const World& world, const State& state, int row, int object) {
   return world.after_arrival != kUnlatched && state.arrived[row] && world.is_robot[object] && !world.wander[object] &&
@@ -64,6 +79,7 @@ void arrive(const World& world, State& state, int w) {
       if (world.after_arrival == kFreeze && is_settled(world, state, row, i)) state.stopped[row] = 1;
     }
   }
+  if (state.keep_history) note_standings(world, state, w);
 }
 
 }  // namespace irsim

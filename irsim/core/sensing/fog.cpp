@@ -114,7 +114,7 @@ void lift_fog(const World& world, State& state, int w, Workspace& work) {
     }
   }
   for (std::size_t k = 0; k < fog.views.size(); ++k) {
-    const FogView& view = fog.views[k];
+    const View& view = fog.views[k];
     const int row = w * world.objects + view.object;
     const Pose& pose = state.pose[row];
     if (!view.occlusion) {

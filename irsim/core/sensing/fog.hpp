@@ -6,6 +6,7 @@
 
 #include "fields.hpp"
 #include "geometry/vec.hpp"
+#include "sensing/view.hpp"
 
 namespace irsim {
 
@@ -15,24 +16,12 @@ struct World;
 
 constexpr int kMaxFogCells = 1 << 22;  // largest number of cells along an axis
 
-/// A robot without lidar that clears the fog in its field of view.
-struct FogView {
-  int object;
-  double angle, reach;  // [rad], [m]
-  bool occlusion;       // whether cells that are hidden by objects stay in the fog
-  static constexpr auto fields() {
-    using V = FogView;
-    return std::make_tuple(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
-                           field("occlusion", &V::occlusion));
-  }
-};
-
 /// Cells over the world. Cell (i, j), i along x, has the index i * rows + j.
 struct Fog {
   std::array<double, 2> origin, size;  // lower left corner, extent [m]
   int columns, rows;
-  std::vector<int> carriers;   // robots that clear the fog with their first lidar
-  std::vector<FogView> views;  // robots that clear the fog without a lidar
+  std::vector<int> carriers;  // robots that clear the fog with their first lidar
+  std::vector<View> views;    // fields of view of robots that clear the fog without a lidar
   static constexpr auto fields() {
     using F = Fog;
     return std::make_tuple(field("origin", &F::origin), field("size", &F::size), field("columns", &F::columns),

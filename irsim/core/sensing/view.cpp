@@ -3,6 +3,7 @@
 #include "geometry/sector.hpp"
 #include "phases.hpp"
 #include "sensing/raycast.hpp"
+#include "world/workspace.hpp"
 
 namespace irsim {
 namespace {
@@ -213,15 +214,19 @@ bool is_partly_visible(const World& world, const State& state, int w, int object
 
 }  // namespace
 
-std::vector<int> in_view(const World& world, State& state, int w, int object, const View& view, Workspace& work) {
-  std::vector<int> seen;
-  if (!(view.angle >= 0.0 && view.reach >= 0.0)) return seen;
-  place_moving(world, state, w);
-  const Pose& pose = state.pose[w * world.objects + object];
+bool sees(const World& world, const State& state, int w, const View& view, int target, Workspace& work) {
+  if (!(view.angle >= 0.0 && view.reach >= 0.0)) return false;
+  const Pose& pose = state.pose[w * world.objects + view.object];
   const Sector sector{pose.position(), pose.theta, view.angle >= kTurn ? kPi : 0.5 * view.angle, view.reach};
+  if (target == view.object || !meets(state.footprint(world, w, target), sector)) return false;
+  return !view.occlusion || is_partly_visible(world, state, w, view.object, target, sector, work);
+}
+
+std::vector<int> in_view(const World& world, State& state, int w, const View& view, Workspace& work) {
+  place_moving(world, state, w);
+  std::vector<int> seen;
   for (int i = 0; i < world.objects; ++i) {
-    if (i == object || !meets(state.footprint(world, w, i), sector)) continue;
-    if (!view.occlusion || is_partly_visible(world, state, w, object, i, sector, work)) seen.push_back(i);
+    if (sees(world, state, w, view, i, work)) seen.push_back(i);
   }
   return seen;
 }

@@ -3,20 +3,30 @@
 
 #include <vector>
 
-#include "world/state.hpp"
-#include "world/workspace.hpp"
-#include "world/world.hpp"
+#include "fields.hpp"
 
 namespace irsim {
 
-/// A field of view about the heading of an object: `angle` is the full opening angle [rad], `reach` the range from its
-/// origin [m].
+struct State;
+struct Workspace;
+struct World;
+
+/// The field of view of an object, about its heading: `angle` is the full opening angle [rad], `reach` the range from
+/// its origin [m].
 struct View {
+  int object;
   double angle, reach;
-  bool occlusion;  // whether parts hidden behind objects that are not unobstructed are left out
+  bool occlusion;  // whether what is hidden behind objects that are not unobstructed is left out
+  static constexpr auto fields() {
+    using V = View;
+    return std::make_tuple(field("object", &V::object), field("angle", &V::angle), field("reach", &V::reach),
+                           field("occlusion", &V::occlusion));
+  }
 };
 
-/// Ids, ascending, of the objects of world w that are partly or wholly in the view of `object` at the present poses.
-std::vector<int> in_view(const World& world, State& state, int w, int object, const View& view, Workspace& work);
+/// Whether `target` is partly or wholly in a view, where the moving objects were placed last.
+bool sees(const World& world, const State& state, int w, const View& view, int target, Workspace& work);
+/// Indices, ascending, of the objects of world w that are partly or wholly in a view at the present poses.
+std::vector<int> in_view(const World& world, State& state, int w, const View& view, Workspace& work);
 
 }  // namespace irsim

@@ -52,6 +52,47 @@ std::vector<double> track_of(const State& from, int row, int extra_rows) {
   return track;
 }
 
+/// What was watched, with the indices of the new objects. Objects that have gone leave their zones and all views.
+Watched continue_watching(const World& world, State& state, const World& world_before, const State& before,
+                          const std::vector<int>& new_row) {
+  const Watched& old = before.scenes[0].watched;
+  const std::size_t n = world.objects, old_n = world_before.objects;
+  const int zones = std::min(world.zones.count(), world_before.zones.count());
+  Watched out;
+  if (zones == 0 && world.views.empty() && world_before.views.empty()) return out;
+  out.inside.assign(world.zones.count() * n, 0);
+  out.seen.assign(world.views.size() * n, 0);
+  for (std::size_t i = 0; i < n; ++i) out.position.push_back(state.pose[static_cast<int>(i)].position());
+  for (std::size_t i = 0; i < old.position.size(); ++i) {
+    if (new_row[i] >= 0) out.position[new_row[i]] = old.position[i];
+  }
+  for (int zone = 0; zone < zones; ++zone) {
+    for (std::size_t i = 0; i < old_n; ++i) {
+      if (!old.inside[zone * old_n + i]) continue;
+      if (new_row[i] >= 0) {
+        out.inside[zone * n + new_row[i]] = 1;
+      } else {
+        state.log_numbers(0, EventKind::zone_exit, world_before.number[i], zone, old.position[i]);
+      }
+    }
+  }
+  for (std::size_t v = 0; v < world_before.views.size(); ++v) {
+    const int object = world_before.views[v].object;
+    const auto now = std::find_if(world.views.begin(), world.views.end(),
+                                  [&](const View& view) { return view.object == new_row[object]; });
+    for (std::size_t i = 0; i < old_n; ++i) {
+      if (!old.seen[v * old_n + i]) continue;
+      if (now != world.views.end() && new_row[i] >= 0 && world.is_target[new_row[i]]) {
+        out.seen[(now - world.views.begin()) * n + new_row[i]] = 1;
+      } else {
+        state.log_numbers(0, EventKind::sight_end, world_before.number[object], world_before.number[i],
+                          old.position[i]);
+      }
+    }
+  }
+  return out;
+}
+
 /// Pairs of old rows as pairs of new rows; pairs of removed objects are left out.
 std::vector<Pair> rename_pairs(const std::vector<Pair>& pairs, const std::vector<int>& new_row) {
   std::vector<Pair> out;
@@ -95,13 +136,17 @@ void continue_from(const World& world, State& state, const World& world_before, 
     if (origin.state == &before) new_row[origin.object] = i;
     copy_row(state, i, *origin.state, origin.object);
     set_limits(world, state, i);
-    if (state.keep_history) state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);
+    if (state.keep_history) {
+      state.history[i] = track_of(*origin.state, origin.object, state.extra_rows);
+      state.standings[i] = origin.state == &before ? before.standings[origin.object] : std::vector<Standing>();
+    }
     shapes->copy(*origin.state->scenes[0].shapes, origin.object, world.is_static[i] != 0);
   }
   scene.shapes = std::move(shapes);
   scene.sweep.reset(world.moving);
   scene.contacts.clear();
   scene.pairs = rename_pairs(before.scenes[0].pairs, new_row);
+  scene.watched = continue_watching(world, state, world_before, before, new_row);
   rebuild_geometry(world, state, 0);
   sense(world, state, 0, state.workspaces.front());
 }

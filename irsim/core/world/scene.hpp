@@ -12,6 +12,7 @@
 #include "geometry/shapes.hpp"
 #include "orca/obstacles.hpp"
 #include "surroundings/walls.hpp"
+#include "world/zones.hpp"
 
 namespace irsim {
 
@@ -30,13 +31,28 @@ struct Fixed {
   Obstacles obstacles;        // all of these in the form that `orca` needs
 };
 
-enum class EventKind { arrival, waypoint, collision, no_path, overshoot };
-constexpr const char* kEventNames[] = {"arrival", "waypoint", "collision", "no_path", "overshoot"};
+enum class EventKind {
+  arrival,
+  waypoint,
+  collision,
+  no_path,
+  overshoot,
+  zone_entry,
+  zone_exit,
+  crossing_to_right,  // of a line, from its left side to its right
+  crossing_to_left,
+  sight_start,
+  sight_end
+};
+constexpr const char* kEventNames[] = {"arrival",          "waypoint",    "collision", "no_path",
+                                       "overshoot",        "zone_entry",  "zone_exit", "crossing_to_right",
+                                       "crossing_to_left", "sight_start", "sight_end"};
 
 struct Event {
   EventKind kind;
   long long step;
-  int object, partner;  // World::number of both; partner is -1 unless the event is a collision
+  int object;   // World::number; who sees, if it is about a sight
+  int partner;  // World::number of the other of a collision, or of whom is seen; index of a zone; otherwise -1
   double x, y;
 };
 
@@ -49,6 +65,7 @@ struct Scene {
   std::vector<Event> events;                // since the last reset
   std::shared_ptr<const Bodies> bodies;     // rigid bodies of `shapes`; null until they are needed
   std::vector<Contact> contacts;            // contacts of the last step, in the order in which they were found
+  Watched watched;
 };
 
 }  // namespace irsim

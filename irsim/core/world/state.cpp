@@ -86,6 +86,7 @@ State::State(const World& world, const std::uint64_t* seeds, bool history_, bool
       initial_extra(static_cast<std::size_t>(rows) * extra_rows),
       initial_control(rows),
       history(keep_history ? rows : 0),
+      standings(keep_history ? rows : 0),
       scenes(worlds),
       fresh(worlds),
       event_count(worlds) {
@@ -146,7 +147,7 @@ void restart_row(const World& world, State& state, int row) {
   state.infeasible[row] = 0;
   state.goal_draws[row] = 0;
   if (!state.routes.empty()) state.routes[row] = {};
-  if (state.keep_history) state.history[row].clear();
+  if (state.keep_history) state.history[row].clear(), state.standings[row].clear();
   if (world.wander[i]) {
     draw_wander_goal(world, state, w, i);
     state.goals[row].initial = state.goals[row].goals;
@@ -166,6 +167,8 @@ void restart(const World& world, State& state, int w) {
   for (int i = 0; i < world.objects; ++i) restart_row(world, state, w * world.objects + i);
   place_fixed(world, state, w);
   evaluate(world, state, w, true);
+  scene.watched = {};
+  watch(world, state, w, state.workspaces.front());
 }
 
 void draw_scene(const World& world, State& state, int w) {

@@ -16,6 +16,13 @@
 
 namespace irsim {
 
+/// The goal of an object, and whether contacts kept it in place, at the ends of steps from `step` on.
+struct Standing {
+  std::int64_t step;
+  Goal goal;
+  std::uint8_t stopped;
+};
+
 /// Goals of one object. The queue starts at `head`; `loop` and resets restore `initial`.
 struct GoalQueue {
   std::vector<Goal> goals, initial;
@@ -72,12 +79,13 @@ struct State {
   std::vector<Pose> initial_pose;         // (R,)
   std::vector<double> initial_extra;
   std::vector<Vec3> initial_control;
-  std::vector<std::vector<double>> history;  // (R,) recorded states, K * (3 + E) numbers each
-  std::vector<Scene> scenes;                 // (W,)
-  std::vector<std::uint8_t> fresh;           // (W,) 1 if the next reset draws scene 0 with noise 0
-  std::vector<std::int64_t> event_count;     // (W,) number of events since the state was made
-  std::vector<Workspace> workspaces;         // one per thread
-  std::shared_ptr<Log> record;               // record of world 0; null unless one is attached
+  std::vector<std::vector<double>> history;      // (R,) recorded states, K * (3 + E) numbers each
+  std::vector<std::vector<Standing>> standings;  // (R,) goals and stops of moving objects, one entry per change
+  std::vector<Scene> scenes;                     // (W,)
+  std::vector<std::uint8_t> fresh;               // (W,) 1 if the next reset draws scene 0 with noise 0
+  std::vector<std::int64_t> event_count;         // (W,) number of events since the state was made
+  std::vector<Workspace> workspaces;             // one per thread
+  std::shared_ptr<Log> record;                   // record of world 0; null unless one is attached
 
   /// Key of the random draws of the present episode of world w.
   Key key(int w) const { return make_key(seed[w], scene_index[w], noise[w]); }
@@ -101,8 +109,11 @@ struct State {
     return {outlines.centres[scene.shapes->placed[object].object], scene.shapes->radius[object]};
   }
   void log(const World& world, int w, EventKind kind, int object, int partner, Vec2 where) {
-    const int second = partner < 0 ? -1 : world.number[partner];
-    scenes[w].events.push_back({kind, count[w], world.number[object], second, where.x, where.y});
+    log_numbers(w, kind, world.number[object], partner < 0 ? -1 : world.number[partner], where);
+  }
+  /// Like `log`, with the number of the object and that of its partner, or the index of a zone.
+  void log_numbers(int w, EventKind kind, int number, int partner, Vec2 where) {
+    scenes[w].events.push_back({kind, count[w], number, partner, where.x, where.y});
     ++event_count[w];
   }
   void sync_goal(int row) {

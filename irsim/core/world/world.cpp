@@ -85,7 +85,7 @@ void add_fog_beams(World& world) {
   if (fog.columns < 1 || fog.rows < 1) throw std::invalid_argument("fog needs at least one cell");
   if (std::max(fog.columns, fog.rows) > kMaxFogCells) throw std::invalid_argument("fog has too many cells");
   const double cell = std::min(fog.cell().x, fog.cell().y);
-  for (const FogView& view : fog.views) {
+  for (const View& view : fog.views) {
     if (view.object < 0 || view.object >= world.objects)
       throw std::invalid_argument("a view of the fog names an object that does not exist");
     Mount mount = mount_of(view.object, 0);
@@ -124,7 +124,8 @@ void check(const ObjectSpec& spec) {
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
              std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_,
-             std::vector<Perturbation> perturbations_)
+             std::vector<Perturbation> perturbations_, Zones zones_, std::vector<View> views_,
+             const std::vector<int>& targets)
     : step_time(step_time_),
       collision_mode(collision_mode_),
       gravity(gravity_),
@@ -134,8 +135,19 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
       specs(std::move(specs_)),
       fog(std::move(fog_)),
       placements(std::move(placements_)),
-      perturbations(std::move(perturbations_)) {
+      perturbations(std::move(perturbations_)),
+      zones(std::move(zones_)),
+      views(std::move(views_)),
+      is_target(objects, 0) {
   if (copies < 0) throw std::invalid_argument("copies must not be negative");
+  for (const View& view : views) {
+    if (view.object < 0 || view.object >= objects)
+      throw std::invalid_argument("a field of view names an object that does not exist");
+  }
+  for (const int i : targets) {
+    if (i < 0 || i >= objects) throw std::invalid_argument("a target is an object that does not exist");
+    is_target[i] = 1;
+  }
   bool random_shapes = false, random_statics = false;
   for (const RandomPlacement& placement : placements) {
     for (const int i : placement.objects) {

@@ -12,6 +12,7 @@
 #include "kinematics.gen.hpp"
 #include "sensing/fog.hpp"
 #include "world/scene.hpp"
+#include "world/zones.hpp"
 
 namespace irsim {
 
@@ -53,7 +54,7 @@ struct BodyDynamics {
 struct World {
   World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
         std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog,
-        std::vector<Perturbation> perturbations);
+        std::vector<Perturbation> perturbations, Zones zones, std::vector<View> views, const std::vector<int>& targets);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -89,6 +90,9 @@ struct World {
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
   std::vector<RandomPlacement> placements;
   std::vector<Perturbation> perturbations;  // of different objects, static ones first
+  Zones zones;                              // what objects enter or cross
+  std::vector<View> views;                  // fields of view that are watched
+  std::vector<std::uint8_t> is_target;      // (N,) whether it is watched who sees an object
 
   std::shared_ptr<const Shapes> shapes;  // null if some are drawn for each scene
   std::shared_ptr<const Bodies> bodies;  // rigid bodies of `shapes`; null until they are needed

@@ -222,6 +222,11 @@ OBJECTS: dict[str, Code] = {
         "Objects do not stop at the edge; check the numbers of 'state', 'goal' or the 'distribution'. With "
         "'world.boundary: walls' there are walls at the edge, which keep everything inside.",
     ),
+    "zone-outside-world": Code(
+        "zone outside the world",
+        "A zone of 'world.zones' lies entirely outside the world, so that only objects that leave the world can reach "
+        "it. Example: line: [[5, 14], [5, 16]] in a world of 10 m; write line: [[5, 4], [5, 6]].",
+    ),
     "behavior-without-kinematics": Code(
         "behavior without kinematics",
         "An object without kinematics never moves, so its behavior and its goal have no effect.",

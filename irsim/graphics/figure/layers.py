@@ -20,7 +20,7 @@ from irsim.graphics.scene.scene import Beams, Circle, Dots, Fog, Geometry, Line,
 
 __all__ = ["BeamLayer", "FogLayer", "MarkLayer", "geometry_path", "layer_key", "opaque_colors", "rgba"]
 
-_PARTS = ("field", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
+_PARTS = ("field", "zone", "trail", "trajectory", "plan", "fov", "goal", "body", "beams", "arrow", "contact")
 """Drawing order of the parts that have the same zorder."""
 
 _ZORDER_STEP = 1e-3

@@ -17,6 +17,7 @@ _BLUE = "#0072B2"
 _PINK = "#CC79A7"
 _YELLOW = "#F0E442"
 _RED = "#CC3311"
+_PURPLE = "#882255"  # of Tol's muted scheme
 
 
 @dataclass
@@ -34,6 +35,7 @@ class Palette:
         laser_highlight: Beams picked out by ``set_laser_color``.
         fmcw_zero_velocity, fmcw_positive_velocity, fmcw_negative_velocity: Doppler beams whose target keeps its
             distance, recedes, approaches.
+        zone: Lines and areas of `world.zones`.
         marker: Points of ``draw_points``.
         path: Lines of ``draw_trajectory`` and ``draw_box``.
         quiver: Arrows of ``draw_quiver``.
@@ -52,6 +54,7 @@ class Palette:
     fmcw_zero_velocity: str = _SKY
     fmcw_positive_velocity: str = _RED
     fmcw_negative_velocity: str = _BLUE
+    zone: str = _PURPLE
     marker: str = _PINK
     path: str = _BLUE
     quiver: str = "k"

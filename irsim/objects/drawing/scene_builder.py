@@ -10,22 +10,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common.arrays import Floats
-from irsim.graphics.scene.bodies import Body, Pose, arrow, box, ellipse, place, read_body
+from irsim.graphics.scene.bodies import Body, Pose, arrow, place, read_body
 from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import (
-    Circle,
     Fog,
-    Geometry,
     GridImage,
     Label,
-    Line,
     Mark,
     Picture,
     Scene,
-    Sector,
     Stroke,
 )
 from irsim.graphics.scene.style import ObjectStyle, resolve_style, tint_of
+from irsim.graphics.scene.zones import DrawnZones, draw_zones
+from irsim.objects.drawing.object_marks import shape_mark, text_label, trail_mark, trajectory_line, view_sector
 from irsim.objects.sensors.contact import Contact2D
 from irsim.objects.sensors.contact_drawing import draw_forces
 from irsim.objects.sensors.lidar import Lidar2D
@@ -43,8 +41,6 @@ MODES = ("dynamic", "static", "all")
 
 _FOG_ZORDER = 2
 _GRID_ZORDER = 0.0
-MAX_SECTOR_ANGLE = 2 * math.pi - 0.01
-"""Angle [rad] of the field of view from which on it is drawn as a circle."""
 MIN_ARROW_SPEED = 1e-9
 """Speed [m/s] up to which the arrow of an ``omni`` drive shows the heading of the body."""
 
@@ -104,6 +100,7 @@ class SceneBuilder:
         self._trails: dict[int, _Trail] = {}
         self._known: tuple[int, int] | None = None  # scene and revision
         self._grids: dict[int, GridImage] = {}
+        self._zones: DrawnZones | None = None
 
     def build(
         self,
@@ -155,6 +152,12 @@ class SceneBuilder:
             scene.center = float(viewpoint[0]), float(viewpoint[1])
         return scene
 
+    def add_zones(self, scene: Scene) -> None:
+        """Add the zones of the world to a scene."""
+        if self._zones is None:
+            self._zones = draw_zones(self.simulation.scenario.world.zones, self.palette.zone, scene.extent)
+        self._zones.add_to(scene)
+
     # one object ------------------------------------------------------------------------------------------------------
     def body(self, view: SimObject) -> Body:
         """Return the shape of an object in its body frame."""
@@ -200,7 +203,7 @@ class SceneBuilder:
         if style.show_trajectory or style.show_trail:
             states = self.simulation.state.trajectory(view.row)
             if style.show_trajectory and len(states) > 1:
-                scene.marks.append(_trajectory(view.id, body, style, states))
+                scene.marks.append(trajectory_line(view.id, body, style, states))
             if style.show_trail:
                 start = self.simulation.state.initial_state(view.row)[None, :3]
                 scene.marks += self._trail(view.id, body, style, np.concatenate([start, states[:, :3]]))
@@ -231,7 +234,7 @@ class SceneBuilder:
         every = max(1, int(style.trail_freq))
         for index in range(-(-trail.states // every) * every, len(states), every):
             x, y, theta = states[index].tolist()
-            trail.marks.append(_trail_mark(object_id, body, style, (x, y, theta)))
+            trail.marks.append(trail_mark(object_id, body, style, (x, y, theta)))
         trail.states = len(states)
         return trail.marks[-style.keep_trail_length :]
 
@@ -259,11 +262,11 @@ class SceneBuilder:
 
     def path_of(self, view: SimObject, states: Floats, overrides: Mapping[str, Any]) -> Mark:
         """Return the line through states (N, 3 or more) of an object."""
-        return _trajectory(view.id, self.body(view), self.style(view, overrides), states)
+        return trajectory_line(view.id, self.body(view), self.style(view, overrides), states)
 
     def trail_mark(self, view: SimObject, pose: Pose, overrides: Mapping[str, Any]) -> Mark:
         """Return a snapshot of an object at a pose."""
-        return _trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
+        return trail_mark(view.id, self.body(view), self.style(view, overrides), pose)
 
     def grid(self, view: SimObject) -> GridImage:
         """Return the image of a map."""
@@ -307,12 +310,12 @@ def _draw(
     drawn = _Drawn(key, [], [], None)
     marks, number = drawn.marks, view.id
     if style.show_fov and view.fov is not None and view.fov_radius is not None:
-        marks.append(_view_sector(number, view.fov, view.fov_radius, style, pose))
+        marks.append(view_sector(number, view.fov, view.fov_radius, style, pose))
     has_goal = not math.isnan(goal[0])
     if style.show_goal and has_goal:
         goal_pose = (goal[0], goal[1], 0.0 if math.isnan(goal[2]) else goal[2])
         marks.append(
-            _shape_mark(number, "goal", place(body.geometry, goal_pose), style.goal_color, Stroke(style.goal_color),
+            shape_mark(number, "goal", place(body.geometry, goal_pose), style.goal_color, Stroke(style.goal_color),
                         style.goal_alpha, style.goal_zorder)
         )  # fmt: skip
     if view.description is not None and body.kind != "compound" and has_picture(view.description):
@@ -329,68 +332,15 @@ def _draw(
     else:
         stroke = Stroke(style.obj_color, style.obj_linewidth, style=style.obj_linestyle)
         body_now = place(body.geometry, pose)
-        marks.append(_shape_mark(number, "body", body_now, style.obj_color, stroke, style.obj_alpha, style.obj_zorder))
+        marks.append(shape_mark(number, "body", body_now, style.obj_color, stroke, style.obj_alpha, style.obj_zorder))
     if style.show_arrow:
         pointer = place(arrow(style.arrow_length, style.arrow_width), (pose[0], pose[1], heading))
         color = style.arrow_color
         marks.append(Mark(number, "arrow", pointer, color, Stroke(color), style.arrow_alpha, style.arrow_zorder))
     if style.show_text and view.shape != "walls":  # the walls round the world need no label
         text = view.abbr if view.text is None else view.text
-        drawn.labels.append(_label(number, "name", pose[0], pose[1], text, style))
+        drawn.labels.append(text_label(number, "name", pose[0], pose[1], text, style))
         if style.show_goal and style.show_goal_text and has_goal:
             text = view.goal_abbr if view.goal_text is None else view.goal_text
-            drawn.labels.append(_label(number, "goal", goal[0], goal[1], text, style))
+            drawn.labels.append(text_label(number, "goal", goal[0], goal[1], text, style))
     return drawn
-
-
-def _shape_mark(
-    number: int, part: str, geometry: Geometry, color: Any, stroke: Stroke, alpha: float, zorder: float
-) -> Mark:
-    return Mark(number, part, geometry, None if isinstance(geometry, Line) else color, stroke, alpha, zorder)
-
-
-def _label(number: int, part: str, x: float, y: float, text: str, style: ObjectStyle) -> Label:
-    dx, dy = style.text_position
-    size, alpha = style.text_size, style.text_alpha
-    return Label(number, part, x + dx, y + dy, (x, y), str(text), style.text_color, size, alpha, style.text_zorder)
-
-
-def _view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:
-    x, y, theta = pose
-    shape: Geometry = Circle(x, y, radius)
-    if angle < MAX_SECTOR_ANGLE:
-        shape = Sector(x, y, radius, theta - angle / 2, theta + angle / 2)
-    return Mark(number, "fov", shape, style.fov_color, Stroke(style.fov_edge_color), style.fov_alpha, style.fov_zorder)
-
-
-def _trajectory(number: int, body: Body, style: ObjectStyle, states: Floats) -> Mark:
-    kept = states[-int(style.keep_traj_length) :] if style.keep_traj_length else states
-    points = np.array(kept[:, :2])
-    if body.kind == "compound" and body.middle[1]:
-        shift = body.middle[1]
-        points += np.stack([-np.sin(kept[:, 2]), np.cos(kept[:, 2])], axis=1) * shift
-    stroke = Stroke(
-        style.traj_color,
-        float(style.traj_width),
-        metric=True,
-        style=style.traj_style,
-        round_caps=body.kind == "circle",
-    )
-    return Mark(number, "trajectory", Line(points), None, stroke, style.traj_alpha, style.traj_zorder)
-
-
-def _trail_mark(number: int, body: Body, style: ObjectStyle, pose: Pose) -> Mark:
-    shape = _trail_shape(body, style.trail_type)
-    fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
-    stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
-    return Mark(number, "trail", place(shape, pose), fill, stroke, style.trail_alpha, style.trail_zorder)
-
-
-def _trail_shape(body: Body, kind: str) -> Geometry:
-    if kind == "ellipse":
-        return ellipse(body)
-    if kind == "rectangle" and body.kind != "polygon":
-        return box(body)
-    if kind == "circle" and body.kind != "circle":
-        return Circle(*body.middle, body.radius)
-    return body.geometry

@@ -16,7 +16,7 @@ from irsim.common.text import clean
 from irsim.runs.initial_scene import initial_scene
 from irsim.runs.reading import Run
 from irsim.runs.replay.columns import Columns, changes, folded, quantised
-from irsim.runs.replay.drawing import page_grid, page_objects
+from irsim.runs.replay.drawing import page_grid, page_objects, page_zones
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import Event
 from irsim.simulation.trace import Trace
@@ -29,7 +29,18 @@ _MAX_POSES = 2_000_000
 """Number of rows times moving objects; of longer runs the page shows every Nth step."""
 _MAX_EVENTS = 4000
 """Number of events that the page shows."""
-_RANKS = {"collision": 0, "no_path": 1, "overshoot": 2, "arrival": 3, "waypoint": 4}
+_RANKS = {
+    "collision": 0,
+    "no_path": 1,
+    "overshoot": 2,
+    "arrival": 3,
+    "line_crossing": 4,
+    "zone_entry": 4,
+    "zone_exit": 4,
+    "waypoint": 5,
+    "sight_start": 6,
+    "sight_end": 6,
+}
 """Importance of the kinds of events, the most important first."""
 _MAX_RANGES = 2_000_000
 """Number of recorded ranges up to which the page shows them; of longer scans it computes the ranges."""
@@ -74,6 +85,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
     with initial_scene(run, limits) as env:
         shapes, objects, lidars = page_objects(env)
         grid = page_grid(env)
+        zones = page_zones(env)
         world = env.simulation.scenario.world
         title = env.simulation.scenario.name
     columns = Columns()
@@ -112,6 +124,7 @@ def pack_run(run: Run, *, limits: Limits | None = None) -> Packed:
         "lidars": lidars,
         "scans": scans,
         "grid": grid,
+        "zones": zones,
         **_events(run, trace, objects),
     }
     return Packed(columns.block(head), head)
@@ -196,7 +209,7 @@ def _ending(run: Run) -> dict[str, Any]:
 
 
 def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, Any]:
-    """Events as [step, kind, object, partner or -1, x, y], their number, and how many of each kind are left out."""
+    """Events as [step, kind, object, partner or -1, x, y, zone if any], and how many there are and are left out."""
     number = {name: row for row, name in enumerate(trace.names)}
     last = int(trace.step[-1])
     events = [event for event in run.events if event.step <= last and event.object in number]
@@ -212,6 +225,7 @@ def _events(run: Run, trace: Trace, objects: list[dict[str, Any]]) -> dict[str, 
             number.get(event.partner, -1) if event.partner is not None else -1,
             _number(event.x),
             _number(event.y),
+            *_where(event),
         ]
         for event in events
     ]
@@ -233,6 +247,14 @@ def _most_important(events: list[Event], robots: Container[str]) -> list[Event]:
         count = min(len(places), _MAX_EVENTS - len(chosen))
         chosen += [places[k] for k in np.linspace(0, len(places) - 1, count).round().astype(int)]
     return [events[place] for place in sorted(chosen)]
+
+
+def _where(event: Event) -> list[str]:
+    """The zone of an event, and the direction in which a line is crossed; empty for other events."""
+    if event.zone is None:
+        return []
+    way = "" if event.direction is None else f" ({event.direction.replace('_', ' ')})"
+    return [clean(event.zone) + way]
 
 
 def _number(value: float) -> float:

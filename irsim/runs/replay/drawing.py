@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from irsim.common.text import clean
+from irsim.graphics.scene.palette import Palette
 from irsim.graphics.scene.scene import Circle, Geometry, Line, Region
 from irsim.objects.drawing.scene_builder import SceneBuilder
 from irsim.objects.sensors.lidar import FMCWLidar2D, Lidar2D
@@ -17,7 +18,7 @@ from irsim.objects.views import views
 if TYPE_CHECKING:
     from irsim.env import Env
 
-__all__ = ["page_grid", "page_objects"]
+__all__ = ["page_grid", "page_objects", "page_zones"]
 
 _DECIMALS = 4
 """Decimals of coordinates."""
@@ -81,6 +82,19 @@ def page_grid(env: Env) -> dict[str, Any] | None:
             runs = np.diff(np.concatenate([[0], ends, [full.size]]))
             return {"cells": list(grid.levels.shape), "extent": [float(v) for v in grid.extent], "runs": runs}
     return None
+
+
+def page_zones(env: Env) -> list[dict[str, Any]]:
+    """Zones with their ``name``, ``color``, outline, and the place ``at`` of their name."""
+    zones = list[dict[str, Any]]()
+    for zone in env.scenario.world.zones:
+        left, _, _, top = zone.bounds
+        color = _hex(Palette().zone if zone.color is None else zone.color)
+        shape = {"line" if zone.is_line else "rings": _flat(zone.points) if zone.is_line else [_flat(zone.points)]}
+        if zone.circle is not None:
+            shape = {"circle": [_rounded(value) for value in (*zone.circle.center, zone.circle.radius)]}
+        zones.append({"name": clean(zone.name), "color": color, "at": [_rounded(left), _rounded(top)], **shape})
+    return zones
 
 
 def _lidar(sensor: Lidar2D, row: int, key: str) -> dict[str, Any]:

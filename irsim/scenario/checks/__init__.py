@@ -21,6 +21,7 @@ from irsim.scenario.checks import (
     units,
     unsupported,
     world,
+    zones,
 )
 from irsim.scenario.checks._context import Context
 from irsim.scenario.messages.findings import Finding
@@ -34,6 +35,7 @@ _FAMILIES = (
     world,
     magnitude,
     names,
+    zones,
     kinematics,
     shapes,
     goals,

@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["crosses_itself", "repair_outline"]
+__all__ = ["crosses_itself", "distinct_corners", "repair_outline"]
 
 Corner = tuple[float, float]
 _MIN_AREA = 1e-12
 """Outlines with a smaller area enclose none [m^2]."""
 _MAX_SWEEP_CORNERS = 200
 """Corners up to which the sweep is faster than loading the geometry library."""
+
+
+def distinct_corners(vertices: Sequence[Sequence[float]]) -> list[Corner]:
+    """The corners without repeated neighbours, and without the first corner repeated at the end."""
+    corners: list[Corner] = []
+    for x, y in vertices:
+        if not corners or corners[-1] != (x, y):
+            corners.append((x, y))
+    if len(corners) > 1 and corners[0] == corners[-1]:
+        corners.pop()
+    return corners
 
 
 def crosses_itself(corners: Sequence[Corner]) -> bool:

@@ -15,10 +15,15 @@ MAX_MAGNITUDE = 1e7
 
 
 def check(context: Context) -> Iterator[Finding]:
-    """Check the extent of the world, and the places, bodies and speeds of its objects."""
+    """Check the extent of the world, its zones, and the places, bodies and speeds of its objects."""
     world = context.scenario.world
     for key, values in (("width", [world.width]), ("height", [world.height]), ("offset", world.offset)):
         yield from _check_values(("world", key), values)
+    for index, zone in enumerate(world.zones):
+        places = [*(value for point in zone.points for value in point)]
+        if zone.circle is not None:
+            places += [*zone.circle.center, zone.circle.radius]
+        yield from _check_values(("world", "zones", index), places)
     seen: set[Path] = set()
     for record in context.entry_objects:
         goals = [value for goal in record.goals for value in goal[:2]]

@@ -7,7 +7,7 @@ from typing import Any
 
 from irsim.diagnostics.diagnostic import Edit, Path
 from irsim.scenario.checks._context import Context
-from irsim.scenario.checks._outline import crosses_itself, repair_outline
+from irsim.scenario.checks._outline import crosses_itself, distinct_corners, repair_outline
 from irsim.scenario.messages.findings import Finding, error, hint
 from irsim.scenario.resolve.expand import DEFAULT_RADIUS
 from irsim.scenario.yaml.formatting import flow
@@ -76,7 +76,7 @@ def _polygon(path: Path, shape: Any) -> Iterator[Finding]:
     if shape.vertices is None:
         yield hint("default-vertices", path, "without 'vertices' the polygon is a square of 2 m")
         return
-    corners = _distinct_corners(shape.vertices)
+    corners = distinct_corners(shape.vertices)
     where = (*path, "vertices")
     if len(corners) < 3:
         yield error(
@@ -131,14 +131,3 @@ def _linestring(path: Path, shape: Any) -> Iterator[Finding]:
             "a linestring must have at least 2 different points",
             given=shape.vertices,
         )
-
-
-def _distinct_corners(vertices: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
-    """The corners without repeated neighbours, and without the first corner repeated at the end."""
-    corners: list[tuple[float, float]] = []
-    for x, y in vertices:
-        if not corners or corners[-1] != (x, y):
-            corners.append((x, y))
-    if len(corners) > 1 and corners[0] == corners[-1]:
-        corners.pop()
-    return corners

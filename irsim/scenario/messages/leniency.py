@@ -16,7 +16,7 @@ from irsim.scenario.model.lookup import at
 __all__ = ["carry_on_group", "carry_on_type", "carry_on_unknown_key", "carry_on_value"]
 
 _STRICT_SHAPES = ("circle", "rectangle")
-_STRICT_SECTIONS = ("", "entry.kinematics", "gui.mouse")
+_STRICT_SECTIONS = ("", "entry.kinematics", "gui.mouse", "world.zones", "world.zones.circle")
 _FALLBACKS = {
     "world.collision_mode": "unobstructed",
     "world.control_mode": "auto",

@@ -138,7 +138,8 @@ class Entry(Options):
     unobstructed: Annotated[Bool, OrNull(False)] = False
     """Other objects do not collide with this one and lidars do not see it; it still collides with others."""
     fov: SpanAngle | None = None
-    """Opening angle of the field of view; null is the lidar's."""
+    """Opening angle of the field of view; null is the lidar's. If it is given, events say when the object sees
+    others: robots, objects that can move, and obstacles with `tags`."""
     fov_radius: Annotated[Meters, Field(ge=0)] | None = None
     """Reach of the field of view; null is the lidar's."""
     fov_occlusion: Bool = False

@@ -13,6 +13,7 @@ from irsim.options.registry import MAPS
 from irsim.options.selection import Select
 from irsim.options.units import Bool, Fraction, Integer, Meters, Number, Seconds
 from irsim.options.vectors import OrNull, Point, vector
+from irsim.scenario.model.zones import Zone
 
 __all__ = ["SavedFigure", "WorldModel", "WorldPlot"]
 
@@ -83,6 +84,8 @@ class WorldPlot(Options):
     """Hide the axes."""
     tight: Bool = True
     """Fill the whole figure with the world, without margins."""
+    show_zones: Bool = False
+    """Draw `world.zones` with their names. Snapshots draw them anyway."""
     viewpoint: Annotated[Any, PlainValidator(_viewpoint), WithJsonSchema(_VIEWPOINT)] = None
     """Centre of the view: a point [x, y], or the name of an object to follow."""
 
@@ -112,6 +115,9 @@ class WorldModel(Options):
         "horizon": "time_limit",
         "timeout": "time_limit",
         "random_seed": "seed",
+        "regions": "zones",
+        "areas": "zones",
+        "gates": "zones",
     }
 
     name: Text | None = None
@@ -154,6 +160,9 @@ class WorldModel(Options):
     """Occupancy grid over the world: an image file name, or a mapping with a generator's name and options."""
     mdownsample: Annotated[int, Field(strict=True, ge=1), OrNull(1)] = 1
     """Keep every Nth row and column of the grid."""
+    zones: Annotated[list[Zone], Field(max_length=1000), OrNull([])] = []
+    """Named lines and areas that are watched: who crosses, enters and leaves them, and when. Without effect on
+    motion and sensors."""
     fog_map: Annotated[Bool, OrNull(False)] = False
     """Cover the world with fog that sensors clear."""
     fog_map_resolution: Annotated[Meters, Field(gt=0)] | None = None

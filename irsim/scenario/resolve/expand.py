@@ -234,6 +234,7 @@ class _Maker:
             restitution=self.world.restitution if value["restitution"] is None else value["restitution"],
             drive_tau=self._tau(kinematics),
             tags=tuple(value["tags"]),
+            watches=entry.fov is not None,
         )
 
     def _tau(self, kinematics: KinematicsOptions | None) -> float:

@@ -85,6 +85,7 @@ class ObjectRecord:
     restitution: float
     drive_tau: float  # effective: kinematics first, then world
     tags: tuple[str, ...] = ()
+    watches: bool = False  # whether `fov` is written, and the field of view is not just that of its lidar
     joined: bool = True  # whether it follows the behavior of its group
     spreads: Spreads | None = None  # None: it starts as written
 

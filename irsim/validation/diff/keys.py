@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Pairs", "changed_keys", "data_of", "entry_pairs", "moved", "place", "same"]
 
-_LISTS = ("robot", "obstacle", "sensors", "sensor", "parts")
+_LISTS = ("robot", "obstacle", "sensors", "sensor", "parts", "zones")
 """Keys whose list items are matched by content, so that an inserted item does not change all after it."""
 _MIN_LIKENESS = 0.34
 """Least share of common leaves of two items that match."""

@@ -25,10 +25,11 @@ _DECIMALS = 9
 _WORLD = (
     "width", "height", "offset", "step_time", "sample_time", "time_limit", "control_mode", "collision_mode", "after_arrival",
     "step_mode", "boundary", "seed", "obstacle_map", "mdownsample", "fog_map", "fog_map_resolution",
+    "zones",
 )  # fmt: skip
 _RECORD = (
     "role", "group", "static", "unobstructed", "goal_threshold", "arrive_mode", "wander", "loop", "target_roles",
-    "tags", "fov", "fov_radius", "fov_occlusion", "wheelbase", "color", "description",
+    "tags", "fov", "fov_radius", "fov_occlusion", "watches", "wheelbase", "color", "description",
 )  # fmt: skip
 _POSE = ("x", "y", "theta")
 _CONTACT_WORLD = ("gravity",)

@@ -41,6 +41,8 @@ _SHARES = ("success", "collision", "timeout")
 """Outcomes whose shares a row has."""
 _METRICS = ("time_to_goal", "path_length", "velocity_avg", "spl", "min_clearance")
 """Metrics of a row."""
+_SOMETIMES = ("distance_to_human_min", "time_in_zone", "zone_crossings", "seen_ratio")
+"""Metrics that a row has if they are defined anywhere."""
 _DIFFERENCES = (*_SHARES, "time_to_goal")
 """Values of which a row has differences to the first behavior."""
 _MAX_ROWS = 50
@@ -176,7 +178,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 
 
 def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
-    extra = ["distance_to_human_min"] if any(r["metrics"]["distance_to_human_min"]["n"] for r in result["rows"]) else []
+    extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
     labels = labels_of(result["behaviors"])
     found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_MAX_ROWS]]
     found.summary = _summary(result, labels)
@@ -220,6 +222,8 @@ def _row(row: dict[str, Any], metrics: Sequence[str], labels: dict[str, str]) ->
     }
     shown |= {key: _numbers(row[key], "rate") for key in _SHARES}
     shown |= _defined(row["metrics"], metrics, row["episodes"])
+    zones = {clean(name): {key: _numbers(found) for key, found in zone.items()} for name, zone in row["zones"].items()}
+    shown |= {"zones": zones} if zones else {}
     diff = _defined(row["paired"], _DIFFERENCES, row["episodes"])
     shown |= {"diff": diff} if diff else {}
     if failed := seeds_of(row["failed"], _MAX_FAILED_SEEDS):

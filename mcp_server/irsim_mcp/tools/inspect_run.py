@@ -18,10 +18,11 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Table", "tool"]
 
 _DESCRIPTION = """
-    Look into a run: why did it fail? view=collisions: which objects touched, where, how fast; closest: closest
-    approaches of each robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards) and turn rates, longest
-    stop; rows: `fields` step by step, spread over the run unless `every` is given. Of a benchmark: its episodes.
-    Returns a table, in pages (next_cursor). Next: draw the moment with render_snapshot run_id step.
+    Why did a run fail? view=collisions: which objects touched, where, how fast; closest: closest approaches of each
+    robot, edge to edge; speeds: path, extreme speeds (forward <0: backwards), turn rates, longest stop; zones: who
+    entered or crossed what; sight: who saw whom; rows: `fields` step by step, spread over the run unless `every` is
+    given. Of a benchmark: its episodes. Returns a table, in pages (next_cursor). Next: draw the moment with
+    render_snapshot run_id step.
 """
 _MAX_CELL_LENGTH = 60
 """Number of characters of a cell."""
@@ -56,7 +57,7 @@ def tool(services: Services) -> StrictTool:
 
     async def inspect_run(
         run_id: RunId,
-        view: Literal["rows", "collisions", "closest", "speeds"] = "rows",
+        view: Literal["rows", "collisions", "closest", "speeds", "zones", "sight"] = "rows",
         robot: Annotated[str | None, Field(description="Name; default: all robots.")] = None,
         from_step: Annotated[int, Field(ge=0)] = 0,
         to_step: Annotated[int | None, Field(ge=0)] = None,

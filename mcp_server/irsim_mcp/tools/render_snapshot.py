@@ -25,7 +25,9 @@ _DESCRIPTION = """
     things overlap, lie outside the world, are goals in obstacles? Returns a line of text (meaning of r0 and G-r0, its
     goal; poses) and the image; writes no file. Next: edit and validate again, or run_episode.
 """
-_OVERLAYS = "Default: names, goals, paths. clearance: shaded where a robot's middle can't be; plan: paths to goals."
+_OVERLAYS = (
+    "Default: names, goals, paths, zones. clearance: shaded where a robot's middle can't be; plan: paths to goals."
+)
 _MAX_NAMED = 10
 """Number of robots, plans and moving obstacles that the text lists."""
 
@@ -46,7 +48,7 @@ def tool(services: Services) -> StrictTool:
         seed: Seed = None,
         size_px: Annotated[int, Field(ge=200, le=1024, description="Longer side; 600 px cost about 480 tokens.")] = 600,
         overlays: Annotated[
-            list[Literal["names", "goals", "paths", "sensors", "clearance", "plan"]] | None,
+            list[Literal["names", "goals", "paths", "sensors", "zones", "clearance", "plan"]] | None,
             Field(description=_OVERLAYS),
         ] = None,
         region: Annotated[

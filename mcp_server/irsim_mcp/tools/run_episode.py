@@ -36,15 +36,22 @@ _MAX_CONCISE = 10
 _MAX_DETAILED = 50
 """Number of robots and events in a detailed result."""
 _DECIMALS = 3
+_WATCHED = {
+    "time_in_zone": "in zones for {:g} s",
+    "zone_crossings": "{:g} zone crossings",
+    "seen_ratio": "seen {:g} of the time",
+    "goal_visible_ratio": "saw its goal {:g} of the time",
+}
+"""Metrics of zones and of sight, and how the text says them."""
 
 
 class Robot(BaseModel):
     """Result of one robot; lengths in m, times in s."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="allow")  # and those of _WATCHED that are defined
 
     name: str
-    outcome: Literal["success", "collision", "timeout"]
+    outcome: str
     time_to_goal: float | None = None
     distance_to_goal: float | None = None
     min_clearance: float | None = None
@@ -56,7 +63,7 @@ class Robot(BaseModel):
 
 
 class Event(BaseModel):
-    """An event of the episode."""
+    """An event of the episode; the partner is the other object, or the zone."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra=lambda schema: schema.pop("description"))
 
@@ -197,13 +204,16 @@ def _incidents(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(found: dict[str, Any], detailed: bool, most: int) -> list[dict[str, Any]]:
-    """The first events in order; a concise result prefers those of robots, which wandering people would crowd out."""
+    """The first events in order; a concise result prefers those of robots, and leaves out sights first."""
     events: list[dict[str, Any]] = found["events"]
     if detailed:
         return events[:most]
     robots = {robot["name"] for robot in found["robots"]}
     important = [event for event in events if event["kind"] != "waypoint"]
-    kept = sorted(important, key=lambda event: not robots & {event["object"], event["partner"]})[:most]
+    sights = ("sight_start", "sight_end")
+    kept = sorted(
+        important, key=lambda event: (event["kind"] in sights, not robots & {event["object"], event["partner"]})
+    )[:most]
     return sorted(kept, key=lambda event: int(event["step"]))  # a stable sort keeps the order within a step
 
 
@@ -224,12 +234,21 @@ def _robot(robot: dict[str, Any], detailed: bool) -> Robot:
         infeasible_steps=robot["infeasible_steps"],
         path_length=_rounded(robot["path_length"]) if detailed else None,
         pose=[_rounded(value) for value in robot["pose"]] if detailed else None,
+        **{key: _rounded(robot[key]) for key in _shown(detailed) if robot[key] is not None},
     )
 
 
+def _shown(detailed: bool) -> list[str]:
+    """Keys of :data:`_WATCHED` of a result; a concise one leaves out what every robot has."""
+    return [key for key in _WATCHED if detailed or key != "goal_visible_ratio"]
+
+
 def _event(event: dict[str, Any]) -> Event:
-    names = {key: None if event[key] is None else clean(event[key]) for key in ("object", "partner")}
-    return Event(**{**{key: _rounded(value) for key, value in event.items()}, **names})
+    partner = event["partner"] or event["zone"]
+    kind = event["kind"] if event["direction"] is None else f"{event['kind']} {event['direction']}"
+    numbers = {key: _rounded(event[key]) for key in ("time", "step", "x", "y")}
+    name = clean(event["object"])
+    return Event(kind=kind, object=name, partner=None if partner is None else clean(partner), **numbers)
 
 
 def _advice(found: dict[str, Any]) -> str:
@@ -276,7 +295,8 @@ def _text(episode: Episode) -> str:
     if episode.events:
         lines.append(f"Events ({len(episode.events)} of {episode.event_count}):")
     for event in episode.events:
-        partner = f" with {event.partner!r}" if event.partner is not None else ""
+        link = " with" if event.kind == "collision" else ":"
+        partner = "" if event.partner is None else f"{link} {event.partner!r}"
         place = f"({event.x:g}, {event.y:g})"
         lines.append(f"- {event.time:g} s, step {event.step}: {event.kind} of {event.object!r}{partner} at {place}")
     lines += [f"Warning: {warning}" for warning in episode.warnings]
@@ -299,6 +319,9 @@ def _robot_text(robot: Robot) -> str:
         facts.append(f"{robot.infeasible_steps} steps in which its behavior found no collision-free velocity")
     if robot.path_length is not None:
         facts.append(f"drove {robot.path_length:g} m")
+    facts += [
+        words.format(value) for key, words in _WATCHED.items() if (value := getattr(robot, key, None)) is not None
+    ]
     if robot.pose is not None:
         facts.append("ends at x {:g} y {:g} heading {:g}".format(*robot.pose))
     return ", ".join(facts)

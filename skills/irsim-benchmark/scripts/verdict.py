@@ -40,7 +40,7 @@ EITHER = """
     velocity_min velocity_max acceleration_min jerk_min time_to_collision_min proxemics_intimate_ratio
     proxemics_personal_ratio proxemics_social_ratio proxemics_public_ratio distance_to_human_avg
     discomfort_min_dist human_collisions_by_robot human_collisions_by_human obstacle_force_agents
-    pedestrian_velocity_avg
+    pedestrian_velocity_avg time_in_zone zone_crossings seen_ratio goal_visible_ratio
 """.split()  # noqa: SIM905
 # Whether more or less is better, None if that depends; as in references/metrics.md.
 BETTER = dict.fromkeys(MORE, "more") | dict.fromkeys(LESS, "less") | dict.fromkeys(EITHER)

@@ -207,7 +207,9 @@ def _add_goal(bag: Bag, messages: Messages, topic: Topic | None, stamp: int, goa
 def _log(messages: Messages, stamp: int, event: Event) -> Any:
     """An event as a log message."""
     partner = "" if event.partner is None else f" with {event.partner}"
-    text = f"{event.kind}{partner} at x {event.x:.3f} y {event.y:.3f}"
+    zone = "" if event.zone is None else f" of {event.zone}"
+    way = "" if event.direction is None else f" {event.direction.replace('_', ' ')}"
+    text = f"{event.kind}{partner}{zone}{way} at x {event.x:.3f} y {event.y:.3f}"
     level = _WARN if event.kind in ("collision", "no_path") else _INFO
     return messages("rcl_interfaces", "Log")(messages.time(stamp), level, event.object, text, "", "", 0)
 

@@ -62,6 +62,7 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
     context.drawImage(drawing.image.canvas, 0, 0, to - x, high - low);
     context.restore();
   }
+  drawZones(context, run, camera, colors);
   context.strokeStyle = colors.line;
   context.lineWidth = 1.5 / camera.scale;
   context.strokeRect(left, bottom, right - left, top - bottom);
@@ -69,6 +70,24 @@ function drawGround(context, drawing, run, camera, colors, ratio) {
     if (object.track < 0 && object.role !== "robot" && object.shape >= 0) {
       paintShape(context, run, object, poseAt(run, object.index, 0), camera, ratio, seen(colors, object.color), 1);
     }
+  }
+}
+
+/** Lines and areas that are watched: areas pale with a dashed edge. */
+function drawZones(context, { zones }, camera, colors) {
+  const px = 1 / camera.scale;
+  for (const { path, line, color } of zones) {
+    context.fillStyle = context.strokeStyle = seen(colors, color);
+    context.lineWidth = (line ? 2.5 : 1) * px;
+    if (!line) {
+      context.globalAlpha = 0.13;
+      context.fill(path, "evenodd");
+      context.setLineDash([5 * px, 4 * px]);
+    }
+    context.globalAlpha = 0.85;
+    context.stroke(path);
+    context.setLineDash([]);
+    context.globalAlpha = 1;
   }
 }
 
@@ -298,6 +317,13 @@ function drawNames(context, run, at, camera, colors, ratio) {
   context.lineWidth = 3;
   context.lineJoin = "round";
   context.strokeStyle = colors.paper;
+  context.fillStyle = colors.ink;
+  for (const { name, at: corner, color } of run.zones) {
+    const [x, y] = toPixels(camera, ...corner);
+    context.fillStyle = seen(colors, color);
+    context.strokeText(name, x, y - 2);
+    context.fillText(name, x, y - 2);
+  }
   context.fillStyle = colors.ink;
   for (const object of run.objects) {
     if (object.track < 0 && object.role !== "robot") continue;

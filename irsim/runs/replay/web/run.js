@@ -27,6 +27,7 @@ export function makeRun({ head, columns }) {
     lidars: new Map(),
     cells: head.grid ? cellsOf(head.grid, columns.cells) : null,
     paths: head.shapes.map(pathOf),
+    zones: (head.zones ?? []).map((zone) => ({ ...zone, path: pathOf(zone) })),
     reach: head.shapes.map(reachOf),
   };
   head.objects.forEach((object, index) => {
@@ -41,8 +42,8 @@ export function makeRun({ head, columns }) {
     if (!run.lidars.has(lidar.object)) run.lidars.set(lidar.object, []);
     run.lidars.get(lidar.object).push(lidar);
   }
-  run.events = head.events.map(([step, kind, object, partner, x, y]) => ({
-    row: rowOfStep(run, step), time: step * head.step_time, step, kind, object, partner, x, y,
+  run.events = head.events.map(([step, kind, object, partner, x, y, where = ""]) => ({
+    row: rowOfStep(run, step), time: step * head.step_time, step, kind, object, partner, x, y, where,
   }));
   return run;
 }

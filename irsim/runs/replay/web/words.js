@@ -2,18 +2,24 @@
 
 import { ARRIVED, COLLIDED, flagsAt, goalAt, poseAt, speedAt, STOPPED } from "./run.js";
 
-const KINDS = { collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
-  overshoot: "jumps over its goal" };
-const MANY_OF = { collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
-  overshoot: "jumps over goals" };
+const KINDS = {
+  collision: "hits", arrival: "arrives", waypoint: "passes a waypoint", no_path: "finds no way",
+  overshoot: "jumps over its goal", zone_entry: "enters", zone_exit: "leaves", line_crossing: "crosses",
+  sight_start: "sees", sight_end: "no longer sees",
+};
+const MANY_OF = {
+  collision: "collisions", arrival: "arrivals", waypoint: "waypoints", no_path: "searches without a way",
+  overshoot: "jumps over goals", zone_entry: "zones entered", zone_exit: "zones left", line_crossing: "lines crossed",
+  sight_start: "sights begun", sight_end: "sights ended",
+};
 
 export const manyWords = (kind) => MANY_OF[kind] ?? kind;
 
 export const metres = (value) => `${value.toFixed(2)} m`;
 export const seconds = (value) => `${value.toFixed(Math.abs(value) < 1000 ? 2 : 1)} s`;
 
-export function eventWords(run, { kind, object, partner }) {
-  const name = run.objects[object].name, whom = partner >= 0 ? ` ${run.objects[partner].name}` : "";
+export function eventWords(run, { kind, object, partner, where }) {
+  const name = run.objects[object].name, whom = partner >= 0 ? ` ${run.objects[partner].name}` : where && ` ${where}`;
   return kind === "collision" ? `${name} hits${whom || " something"}` : `${name} ${KINDS[kind] ?? kind}${whom}`;
 }
 

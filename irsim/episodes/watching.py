@@ -1,0 +1,132 @@
+"""What was watched in a run: metrics of robots, zones, and the sentences about both in the summary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from irsim.common.text import listed, quoted, seconds
+from irsim.results.run import ZoneResult
+from irsim.simulation.history import past_goals, past_poses
+
+if TYPE_CHECKING:
+    from irsim.env import Env
+    from irsim.scenario.model.zones import Zone
+    from irsim.simulation.events import Event
+
+__all__ = ["goal_visibility", "sights_message", "watched_metrics", "zone_results", "zones_message"]
+
+_MAX_NAMES = 10
+"""Number of objects that the result of a zone names."""
+_MAX_NAMED = 3
+"""Number of zones that a sentence names."""
+
+
+def watched_metrics(env: Env, events: Sequence[Event], arrivals: Mapping[str, Event]) -> dict[str, dict[str, Any]]:
+    """Metrics of zones and of fields of view by the name of each robot, until it arrived; None where undefined.
+
+    Args:
+        env: The environment after the last step.
+        events: Its events.
+        arrivals: First arrivals by name.
+    """
+    from irsim.metrics.watching import Rows, Watching, watching_metrics
+
+    watching, steps = Watching.read(env.simulation, events), int(env.simulation.count[0])
+    found = {}
+    for view in env.robot_list:
+        last = arrivals[view.name].step if view.name in arrivals else steps
+        metrics = watching_metrics(watching, view.name, Rows(0, last + 1, env.step_time))
+        found[view.name] = {key: None if math.isnan(value) else value for key, value in metrics.items()}
+    return found
+
+
+def goal_visibility(env: Env, arrivals: Mapping[str, Event]) -> dict[str, float | None]:
+    """``goal_visible_ratio`` by the name of each robot; None where undefined, and if its past is unknown.
+
+    Args:
+        env: The environment after the last step.
+        arrivals: First arrivals by name.
+    """
+    from irsim.metrics.watching import goal_visible_ratio
+
+    found: dict[str, float | None] = {}
+    for view in env.robot_list:
+        poses, goals = past_poses(env.simulation, view.row), past_goals(env.simulation, view.row)
+        if env.scenario.is_parked(view.record) or poses is None or goals is None:
+            continue
+        rows = slice(arrivals[view.name].step + 1 if view.name in arrivals else None)
+        share = goal_visible_ratio(poses[rows, :2], goals[rows], env.simulation)
+        found[view.name] = None if math.isnan(share) else share
+    return found
+
+
+def zone_results(env: Env, events: Sequence[Event]) -> dict[str, ZoneResult]:
+    """What all objects did in each zone, by its name."""
+    from irsim.metrics.watching import Rows, Watching, zone_metrics
+
+    zones = env.scenario.world.zones
+    if not zones:
+        return {}
+    watching = Watching.read(env.simulation, events)
+    rows = Rows(0, int(env.simulation.count[0]) + 1, env.step_time)
+    of = {name: zone_metrics(watching, name, rows) for name in watching.of_object}
+    first: dict[str, dict[str, float]] = {zone.name: {} for zone in zones}
+    for event in events:
+        if event.zone is not None:
+            first[event.zone].setdefault(event.object, event.time)
+    return {zone.name: _zone_result(zone, first[zone.name], of) for zone in zones}
+
+
+def _zone_result(
+    zone: Zone, first: dict[str, float], of: Mapping[str, Mapping[str, Mapping[str, float]]]
+) -> ZoneResult:
+    """The result of a zone.
+
+    Args:
+        zone: The zone.
+        first: Time of the first event of each object at the zone, by its name, in order.
+        of: Metrics of all zones by the name of the object.
+    """
+
+    def total(key: str) -> float:
+        return math.fsum(of[name][zone.name][key] for name in first)
+
+    return ZoneResult(
+        objects=len(first),
+        names=list(first)[:_MAX_NAMES],
+        first_time=next(iter(first.values()), None),
+        entries=None if zone.is_line else int(total("zone_crossings")),
+        time_in_zone=None if zone.is_line else total("time_in_zone"),
+        left_to_right=int(total("left_to_right")) if zone.is_line else None,
+        right_to_left=int(total("right_to_left")) if zone.is_line else None,
+    )
+
+
+def zones_message(zones: Mapping[str, ZoneResult]) -> str | None:
+    """Say which zones were entered or crossed, how often, and by which object first; None if none was."""
+    parts = [_zone_message(name, zone) for name, zone in zones.items() if zone.objects]
+    return listed(parts, _MAX_NAMED) if parts else None
+
+
+def _zone_message(name: str, zone: ZoneResult) -> str:
+    first = f"first {quoted(zone.names[0])} at {seconds(zone.first_time or 0.0)}"
+    if zone.time_in_zone is not None:
+        objects = "1 object" if zone.objects == 1 else f"{zone.objects} objects"
+        return f"{quoted(name)}: {objects} for {seconds(zone.time_in_zone)} ({first})"
+    crossings = (zone.left_to_right or 0) + (zone.right_to_left or 0)
+    return f"{quoted(name)}: crossed {'once' if crossings == 1 else f'{crossings} times'} ({first})"
+
+
+def sights_message(events: Sequence[Event]) -> str | None:
+    """Say which object saw another first, and how many such pairs there are; None if none did."""
+    pairs: dict[tuple[str, str | None], float] = {}
+    for event in events:
+        if event.kind == "sight_start":
+            pairs.setdefault((event.object, event.partner), event.time)
+    if not pairs:
+        return None
+    (observer, seen), time = next(iter(pairs.items()))
+    more = f" (the first of {len(pairs)} such pairs)" if len(pairs) > 1 else ""
+    return f"{quoted(observer)} saw {quoted(seen)} at {seconds(time)}{more}"

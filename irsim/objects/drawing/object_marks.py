@@ -1,0 +1,76 @@
+"""Marks and labels of one object: body, goal, field of view, trajectory, snapshots, texts."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.graphics.scene.bodies import Body, Pose, box, ellipse, place
+from irsim.graphics.scene.scene import Circle, Geometry, Label, Line, Mark, Sector, Stroke
+from irsim.graphics.scene.style import ObjectStyle
+
+__all__ = ["shape_mark", "text_label", "trail_mark", "trajectory_line", "view_sector"]
+
+MAX_SECTOR_ANGLE = 2 * math.pi - 0.01
+"""Angle [rad] of the field of view from which on it is drawn as a circle."""
+
+
+def shape_mark(
+    number: int, part: str, geometry: Geometry, color: Any, stroke: Stroke, alpha: float, zorder: float
+) -> Mark:
+    """A mark of an object; lines have no fill."""
+    return Mark(number, part, geometry, None if isinstance(geometry, Line) else color, stroke, alpha, zorder)
+
+
+def text_label(number: int, part: str, x: float, y: float, text: str, style: ObjectStyle) -> Label:
+    """A text beside a point x, y [m]."""
+    dx, dy = style.text_position
+    size, alpha = style.text_size, style.text_alpha
+    return Label(number, part, x + dx, y + dy, (x, y), str(text), style.text_color, size, alpha, style.text_zorder)
+
+
+def view_sector(number: int, angle: float, radius: float, style: ObjectStyle, pose: Pose) -> Mark:
+    """The field of view of an opening angle [rad] and a radius [m]."""
+    x, y, theta = pose
+    shape: Geometry = Circle(x, y, radius)
+    if angle < MAX_SECTOR_ANGLE:
+        shape = Sector(x, y, radius, theta - angle / 2, theta + angle / 2)
+    return Mark(number, "fov", shape, style.fov_color, Stroke(style.fov_edge_color), style.fov_alpha, style.fov_zorder)
+
+
+def trajectory_line(number: int, body: Body, style: ObjectStyle, states: Floats) -> Mark:
+    """The line through the latest of (T, 3 or more) states."""
+    kept = states[-int(style.keep_traj_length) :] if style.keep_traj_length else states
+    points = np.array(kept[:, :2])
+    if body.kind == "compound" and body.middle[1]:
+        shift = body.middle[1]
+        points += np.stack([-np.sin(kept[:, 2]), np.cos(kept[:, 2])], axis=1) * shift
+    stroke = Stroke(
+        style.traj_color,
+        float(style.traj_width),
+        metric=True,
+        style=style.traj_style,
+        round_caps=body.kind == "circle",
+    )
+    return Mark(number, "trajectory", Line(points), None, stroke, style.traj_alpha, style.traj_zorder)
+
+
+def trail_mark(number: int, body: Body, style: ObjectStyle, pose: Pose) -> Mark:
+    """A snapshot of a body at a pose."""
+    shape = _trail_shape(body, style.trail_type)
+    fill = style.trail_color if style.trail_fill and not isinstance(shape, Line) else None
+    stroke = Stroke(style.trail_edgecolor, style.trail_linewidth)
+    return Mark(number, "trail", place(shape, pose), fill, stroke, style.trail_alpha, style.trail_zorder)
+
+
+def _trail_shape(body: Body, kind: str) -> Geometry:
+    if kind == "ellipse":
+        return ellipse(body)
+    if kind == "rectangle" and body.kind != "polygon":
+        return box(body)
+    if kind == "circle" and body.kind != "circle":
+        return Circle(*body.middle, body.radius)
+    return body.geometry
