@@ -124,7 +124,7 @@ def test_paths_are_paths(path: Any) -> None:
     for call in calls:
         with pytest.raises(ArgumentError, match=r"path must be the path of a file, got .* Fix: give the path"):
             call(path)
-    told = r"files\[0\] must be .*" if isinstance(path, list) else "files must be .*"
+    told = r"files\[0\] must be .*" if isinstance(path, (list, dict)) else "files must be .*"
     with pytest.raises(ArgumentError, match=told + "Fix: give a path"):
         irsim.benchmark([3] if isinstance(path, list) else path)  # type: ignore[list-item]
 

@@ -6,6 +6,7 @@ A text of the form ``$(expression)`` stands for a value of the case's parameters
 from __future__ import annotations
 
 import keyword
+from inspect import cleandoc
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_validator
@@ -77,7 +78,7 @@ def _attribute(name: str) -> str:
 
 
 _predicates: dict[str, Any] = {
-    _attribute(name): (predicate | None, Field(default=None, alias=name, description=(predicate.__doc__ or "").strip()))
+    _attribute(name): (predicate | None, Field(default=None, alias=name, description=cleandoc(predicate.__doc__ or "")))
     for name, predicate in registered().items()
 }
 Assertion: Any = create_model("Assertion", __base__=_AssertionBase, **_predicates)
