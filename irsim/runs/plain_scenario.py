@@ -43,7 +43,8 @@ def plain_scenario(simulation: Simulation) -> bytes:
         objects.append({**own, "state": [*pose, *record.state[3:]], "goals": goals(row), "options": len(options) - 1})
     whole = {
         "name": scenario.name,
-        "world": _values(scenario.world),
+        # A model that was only ever read as a part of another has no serializer of its own before it is asked for one.
+        "world": {**_values(scenario.world), "zones": [zone.model_dump(mode="json") for zone in scenario.world.zones]},
         "radius": simulation.radius.tolist(),
         "objects": objects,
         "options": options,
