@@ -104,7 +104,6 @@ def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:
 
 def _with_limit(one: Expanded) -> str:
     """The text of a scenario with the horizon of the suite as its time limit."""
-    data = yaml.safe_load(one.text)
-    world = dict(data.get("world") or {})
+    world = dict(one.data.get("world") or {})
     world["time_limit"] = round(one.steps * float(world.get("step_time") or 0.1), 9)
-    return str(yaml.safe_dump({**data, "world": world}, sort_keys=False, allow_unicode=True))
+    return str(yaml.safe_dump({**one.data, "world": world}, sort_keys=False, allow_unicode=True))

@@ -31,7 +31,7 @@ class Expanded:
         protocol: What robots do that have arrived.
         values: The values that vary in its family.
         steps: Horizon in steps.
-        text: The scenario as YAML.
+        data: The scenario.
         folder: Folder relative to which it names other files.
     """
 
@@ -40,7 +40,7 @@ class Expanded:
     protocol: Protocol
     values: Mapping[str, Any]
     steps: int
-    text: str = field(repr=False)
+    data: dict[str, Any] = field(repr=False)
     folder: Path = field(repr=False)
 
 
@@ -63,8 +63,7 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
                 changed = _under(protocol, data)
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
                 steps = scenario.steps or suite.steps
-                text = yaml.safe_dump(changed, sort_keys=False, allow_unicode=True)
-                made.append(Expanded(full, scenario.name, protocol, values, steps, text, file.parent))
+                made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
         if len(made) > MAX_SCENARIOS * len(suite.protocols):
             raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
     names = [one.name for one in made]
