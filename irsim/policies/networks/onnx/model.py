@@ -23,6 +23,10 @@ _NAMES = """
 """
 OPERATIONS = frozenset(_NAMES.split())
 """Operations of the standard that depend on nothing but their inputs and whose sizes are known before they run."""
+_COUNTS = ("dilations", "group", "hidden_size", "kernel_shape", "num_outputs", "strides")
+"""Attributes that libraries divide by."""
+_FLOATS = (1, 11)
+"""The types float32 and float64."""
 _PRODUCTS = ("Gemm", "MatMul", "Conv", "GRU", "LSTM", "RNN")
 _FIX = "export a plain feed-forward or recurrent network of the standard operations with fixed sizes"
 
@@ -91,7 +95,7 @@ def check_model(content: bytes, source: str, limits: Limits) -> OnnxModel:
     graph = model.graph
     constants = {tensor.name: tuple(tensor.dims) for tensor in graph.initializer}
     sizes = {**constants, **{item.name: _sizes(item) for item in (*graph.input, *graph.value_info, *graph.output)}}
-    problems = list(_unknown_sizes(graph, sizes))
+    problems = [*_unknown_sizes(graph, sizes), *_integer_divisions(graph)]
     work = 0
     if not problems:
         work = sum(_work(node, sizes) for node in graph.node)
@@ -100,9 +104,14 @@ def check_model(content: bytes, source: str, limits: Limits) -> OnnxModel:
         raise PolicyFileError(source, problems, _FIX)
     inputs = {item.name: _tensor(item) for item in graph.input if item.name not in constants}
     outputs = {item.name: _tensor(item) for item in graph.output}
-    metadata = {item.key: item.value for item in model.metadata_props}
+    metadata = {_text(item.key): _text(item.value) for item in model.metadata_props}
     parameters = sum(map(math.prod, constants.values()))
     return OnnxModel(model.SerializeToString(), inputs, outputs, metadata, parameters, work, len(graph.node))
+
+
+def _text(value: str | bytes) -> str:
+    """A text of a model; one that is not valid UTF-8 arrives as bytes."""
+    return value if isinstance(value, str) else value.decode(errors="replace")
 
 
 def _forbidden(model: Any, limits: Limits) -> Iterator[Problem]:
@@ -120,10 +129,19 @@ def _forbidden(model: Any, limits: Limits) -> Iterator[Problem]:
     for tensor in _tensors(graph):
         if tensor.data_location or tensor.external_data:
             yield Problem(clean(tensor.name), "arrays in other files are not read")
+    for node in graph.node:
+        for attribute in node.attribute:
+            if attribute.name in _COUNTS and any(count < 1 for count in (*attribute.ints, *_single(attribute))):
+                yield Problem(clean(node.op_type), f"{attribute.name} must be at least 1")
     unknown = {(node.domain, node.op_type) for node in graph.node
                if node.domain not in ("", "ai.onnx") or node.op_type not in OPERATIONS}  # fmt: skip
     for domain, name in sorted(unknown):
         yield Problem("graph", "this operation is not run", clean(f"{domain}.{name}" if domain else name))
+
+
+def _single(attribute: Any) -> tuple[int, ...]:
+    """The value of an attribute that is one integer."""
+    return () if attribute.ints else (attribute.i,)
 
 
 def _tensors(graph: Any) -> Iterator[Any]:
@@ -160,10 +178,22 @@ def _tensor(item: Any) -> Tensor:
 
 
 def _unknown_sizes(graph: Any, sizes: dict[str, tuple[int, ...] | None]) -> Iterator[Problem]:
-    names = [*(item.name for item in graph.input), *(name for node in graph.node for name in node.output if name)]
+    names = [item.name for item in (*graph.input, *graph.initializer)]
+    names += [name for node in graph.node for name in node.output if name]
     for name in names:
-        if sizes.get(name) is None:
+        known = sizes.get(name)
+        if known is None:
             yield Problem(clean(name), "the size of this tensor is not known before the model runs")
+        elif 0 in known:
+            yield Problem(clean(name), "this tensor is empty")
+
+
+def _integer_divisions(graph: Any) -> Iterator[Problem]:
+    """Divisions of integers, which end the process if they divide by zero."""
+    types = {item.name: item.type.tensor_type.elem_type for item in (*graph.value_info, *graph.output)}
+    for node in graph.node:
+        if node.op_type == "Div" and types.get(node.output[0]) not in _FLOATS:
+            yield Problem(clean(node.output[0]), "only numbers of the types float32 and float64 are divided")
 
 
 def _work(node: Any, sizes: dict[str, tuple[int, ...] | None]) -> int:

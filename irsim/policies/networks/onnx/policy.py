@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from irsim.common.text import clean
+from irsim.policies.networks.errors import PolicyInputError
 from irsim.policies.networks.network_policy import NetworkPolicy
 from irsim.policies.networks.onnx.document import OnnxDocument
 from irsim.policies.networks.onnx.model import OnnxModel
@@ -47,6 +49,15 @@ class OnnxPolicy(NetworkPolicy):
             sizes = {name: int(np.prod(tensor.shape)) for name, tensor in memory.items()}
             self._slots = Slots(sizes, np.dtype(np.float64))
 
+    def try_once(self) -> None:
+        """Run the model once, with zeros.
+
+        Raises:
+            PolicyInputError: It fails.
+        """
+        feed = {name: np.zeros(tensor.shape, tensor.type) for name, tensor in self._model.inputs.items()}
+        self._run([self._document.output.input, *self._document.memory.values()], feed)
+
     def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:
         """(B, F) result of the model, row by row."""
         inputs = self._inputs(observed)
@@ -59,13 +70,25 @@ class OnnxPolicy(NetworkPolicy):
             for before, _ in remembered:
                 tensor = self._model.inputs[before]
                 feed[before] = memory[before][b].reshape(tensor.shape).astype(tensor.type)
-            result, *after = self._session.run(wanted, feed)
+            result, *after = self._run(wanted, feed)
             results.append(result[0])
             for (before, _), state in zip(remembered, after, strict=True):
                 memory[before][b] = state.reshape(-1)
         if self._slots is not None and rows is not None:
             self._slots.store(rows, memory)
         return np.array(results).reshape(len(observations), self._model.outputs[wanted[0]].shape[1])
+
+    def _run(self, wanted: list[str], feed: dict[str, Array]) -> list[Array]:
+        try:
+            results: list[Array] = self._session.run(wanted, feed)
+        except Exception as error:  # onnxruntime has exceptions of its own, and RuntimeError
+            message = f"the model {self.name} failed: {clean(str(error), 200)}"
+            raise PolicyInputError(message, "export a model that accepts all numbers within the bounds") from None
+        for name, result in zip(wanted, results, strict=True):
+            if result.shape != self._model.outputs[name].shape:
+                message = f"the model {self.name} returned {name} of shape {result.shape}"
+                raise PolicyInputError(message, "export a model with fixed sizes")
+        return results
 
     def _inputs(self, observed: Mapping[str, Value]) -> dict[str, Array]:
         """Arrays of all robots by the names of the model's inputs."""

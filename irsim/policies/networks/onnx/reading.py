@@ -54,12 +54,18 @@ def open_onnx(path: Path, content: bytes, facts: Mapping[str, Any], limits: Limi
             raise PolicyFileError(source, [missing], f"write the JSON document to {clean(beside.name)}")
         source, written = clean(str(beside)), read_bytes(beside, limits.document_bytes)
     else:
-        written = text.encode("utf-8", "surrogatepass")
+        written = text.encode()
     document: OnnxDocument = read_document(OnnxDocument, parse_json(written, source, limits), source)
     problems = [*_input_problems(document, model), *_output_problems(document, model)]
     if problems:
         raise PolicyFileError(source, problems, _FIX)
-    return OnnxPolicy(path.stem, document, model, {"format": "onnx", **facts})
+    try:
+        policy = OnnxPolicy(path.stem, document, model, {"format": "onnx", **facts})
+        policy.try_once()
+    except Exception as error:  # onnxruntime has exceptions of its own, and RuntimeError
+        broken = Problem("", f"onnxruntime does not run it ({clean(str(error), 200)})")
+        raise PolicyFileError(source, [broken], _FIX) from None
+    return policy
 
 
 def _input_problems(document: OnnxDocument, model: OnnxModel) -> Iterator[Problem]:
