@@ -25,7 +25,7 @@ from irsim.scenario.limits import Limits
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
-from irsim.simulation.events import first_collisions, first_events
+from irsim.simulation.events import Event, first_collisions, first_events, partner_of
 from irsim.simulation.trace import cut_trace, record
 
 __all__ = ["Job", "Outcome", "Task", "Until", "run_task", "scenario_of"]
@@ -143,8 +143,10 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     simulation = env.simulation
     trace, events, records = record(simulation, horizon), env.events, env.scenario.objects
-    if job.until == "first_collision":
-        last = _first_collision(env)
+    hits = _first_hits(env) if job.until == "first_collision" else {}
+    if hits:
+        last = min(event.step for event in hits.values())
+        hits = {name: event for name, event in hits.items() if event.step == last}
         trace, events = cut_trace(trace, slice(last + 1)), [event for event in events if event.step <= last]
     steps = int(trace.step[-1])
     measured, incidents = episode_metrics(trace, simulation, events, ways=ways), find_incidents(records, events)
@@ -152,7 +154,10 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     env.end(ending_time=0.0)
     robots = measured.robots
     outcome: Outcome = "timeout"
-    if robots and all(robot["success"] for robot in robots):
+    if hits:  # also a collision of robots that had arrived before
+        outcome = "collision"
+        measured.episode.update(success=0.0, collision=1.0, timeout=0.0)
+    elif robots and all(robot["success"] for robot in robots):
         outcome = "success"
     elif any(not robot["success"] and not robot["timeout"] for robot in robots):
         outcome = "collision"
@@ -163,7 +168,7 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         "time_limit": horizon * trace.step_time,
         "robots": len(robots),
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
-        "failures": _failures(measured),
+        "failures": _partners(hits) if hits else _failures(measured),
         "human_contacts": len(incidents.human_contacts),
         "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][
             :_MAX_NAMES
@@ -174,11 +179,15 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     }
 
 
-def _first_collision(env: Env) -> int:
-    """Step of the first collision of a robot; that of the last step without one."""
+def _first_hits(env: Env) -> dict[str, Event]:
+    """First collision of each robot that had one, by its name."""
     robots = {robot.name for robot in env.robot_list}
-    steps = [event.step for name, event in first_collisions(env.simulation, env.events).items() if name in robots]
-    return min([*steps, int(env.simulation.count[0])])
+    return {name: event for name, event in first_collisions(env.simulation, env.events).items() if name in robots}
+
+
+def _partners(hits: Mapping[str, Event]) -> dict[str, str]:
+    """Outcome of the robots that were in the collision that ended an episode, by name."""
+    return {name: f"collision with {partner_of(hits[name], name)!r}" for name in sorted(hits)[:_MAX_FAILURES]}
 
 
 def _pedestrian_delay(task: Task, env: Env, horizon: int) -> float:
