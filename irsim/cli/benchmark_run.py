@@ -78,8 +78,11 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
                 progress=report,
             )  # fmt: skip
-    page = write_report(result, folder)
-    console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
+    written = write_report(result, folder)
+    out = console(stderr=True)
+    out.print(f"episodes, result and report: {written.page}", soft_wrap=True)
+    for note in written.notes:
+        out.print(f"note: {note}", soft_wrap=True)
     return result
 
 
