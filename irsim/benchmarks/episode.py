@@ -69,6 +69,7 @@ class Job:
         limits: Limits of the loader and of the run, as (name, value) pairs.
         until: ``done``, or ``first_collision`` to end the episode when a robot collides.
         perturb: Perturbations of the scenario, as on the command line.
+        name: Name of the scenario in the results.
     """
 
     text: str
@@ -80,6 +81,7 @@ class Job:
     limits: tuple[tuple[str, Any], ...]
     until: Until = "done"
     perturb: tuple[str, ...] = ()
+    name: str = ""
 
 
 @dataclass(frozen=True)

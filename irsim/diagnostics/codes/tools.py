@@ -86,6 +86,9 @@ TOOLS: dict[str, Code] = {
         "The folder holds a benchmark of other scenarios, policies, seeds or version; results do not mix.",
     ),
     "no-benchmark": Code("nothing to resume", "The folder holds no benchmark; start one, or name its folder with -o."),
+    "benchmark-running": Code(
+        "folder in use", "Another process is running the benchmark in this folder; wait for its end, or name another."
+    ),
     "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
     "step-out-of-range": Code(
         "step outside the run",
