@@ -412,6 +412,27 @@ class RandomPlacement:
         attempts: int,
     ) -> None: ...
 
+class CircleCrossing:
+    """Objects of one `circle_crossing` distribution: each start is drawn with its goal, which is opposite."""
+
+    def __init__(
+        self,
+        *,
+        objects: Sequence[int],
+        center: Sequence[float],
+        radius: float,
+        noise: float,
+        clearance: float,
+        attempts: int,
+    ) -> None: ...
+
+class SquareCrossing:
+    """Objects of one `square_crossing` distribution: each start is drawn with its goal, which is on the other side."""
+
+    def __init__(
+        self, *, objects: Sequence[int], center: Sequence[float], width: float, clearance: float, attempts: int
+    ) -> None: ...
+
 class Perturbation:
     """How far start, speeds and departure of an object may differ between scenes: uniform draws within these spreads.
 
@@ -483,7 +504,7 @@ class World:
         collision_mode: int,
         gravity: float,
         objects: Sequence[ObjectSpec],
-        placements: Sequence[RandomPlacement],
+        placements: Sequence[RandomPlacement | CircleCrossing | SquareCrossing],
         copies: int,
         fog: Fog | None = None,
         perturbations: Sequence[Perturbation] = (),
