@@ -29,6 +29,7 @@ class Needs:
         static_neighbors: Whether static objects count as neighbors; each is then seen as its bounding circle.
         scan: Whether it needs the ranges of a lidar; every robot must then carry one, with equal beams.
         map: Whether it needs the grid of static objects.
+        map_resolution: Side of the cells of this grid [m].
     """
 
     neighbors: int = 0
@@ -36,6 +37,7 @@ class Needs:
     static_neighbors: bool = False
     scan: bool = False
     map: bool = False
+    map_resolution: float = 0.1
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,12 @@ class Episode:
     """What a policy learns at the start of an episode.
 
     Attributes:
-        world: Index of the world among those that run together.
+        world: Index of the world among those that run together. Where a policy of controls drives robots with different
+            drives, those of each drive have an index of their own, as if they were in another world.
         robots: Indices of the robots that the policy drives, among the objects of the world.
         step_time: Period of the simulation [s].
         decision_steps: Number of steps between two decisions.
-        drive: Name of the drive of these robots.
+        drive: Name of the drive of these robots; ``mixed`` where robots with different drives follow velocities.
     """
 
     world: int
