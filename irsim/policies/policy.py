@@ -29,7 +29,7 @@ class Needs:
         static_neighbors: Whether static objects count as neighbors; each is then seen as its bounding circle.
         scan: Whether it needs the ranges of a lidar; every robot must then carry one, with equal beams.
         map: Whether it needs the grid of static objects.
-        map_resolution: Side of the cells of this grid [m].
+        map_resolution: Side of the cells of this grid [m]; larger in worlds that have more than 4 million such cells.
     """
 
     neighbors: int = 0

@@ -13,4 +13,5 @@ NB_MODULE(_core, m) {
   irsim::bind_object(m);
   irsim::bind_tools(m);
   irsim::bind_clearance(m);
+  irsim::bind_policies(m);
 }
