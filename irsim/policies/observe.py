@@ -63,7 +63,7 @@ class Observer:
     Args:
         simulation: The simulation.
         needs: What is observed besides the robots themselves.
-        robots: (n,) indices of the robots that may be observed, within a world; all have equal lidars if ``needs.scan``.
+        robots: (n,) indices, within a world, of the robots that may be observed. For scans all have equal lidars.
     """
 
     def __init__(self, simulation: Simulation, needs: Needs, robots: NDArray[np.int64]) -> None:

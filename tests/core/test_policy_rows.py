@@ -18,7 +18,8 @@ def test_rows_follow_velocities_as_single_objects_do(drive: str) -> None:
     core.follow_rows(world, state, rows, velocities)
     for row, velocity in zip(rows.tolist(), velocities, strict=True):
         assert state.command[row].tolist() == list(core.follow(world, state, row, tuple(velocity)))
-    assert not state.command[[0, 2, 3, 5]].any() and not state.given.any()
+    assert not state.command[[0, 2, 3, 5]].any()
+    assert not state.given.any()
 
 
 def test_following_a_velocity_turns_to_the_heading_of_the_goal_as_behaviors_do() -> None:
