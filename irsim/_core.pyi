@@ -46,6 +46,8 @@ class OrcaOptions(_Options):
         timeHorizonObst: float,
         safe_radius: float,
         maxSpeed: float | None,
+        responsibility: float | None,
+        approach_time: float | None,
     ) -> None: ...
 
 class RvoOptions(_Options):
