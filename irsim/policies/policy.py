@@ -77,6 +77,7 @@ class Policy(ABC):
         stochastic: Whether its decisions may differ between seeds where everything else is equal. A benchmark runs a
             deterministic policy only once in a scenario that leaves nothing to chance.
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
+        source: What opens it again in another folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
     """
 
@@ -87,6 +88,7 @@ class Policy(ABC):
     decision_dt: float | None = None
     stochastic: bool = True
     text: str | None = None
+    source: str | None = None
     digest: str | None = None
 
     def reset(self, episode: Episode, rng: np.random.Generator) -> None:  # noqa: B027 - most policies remember nothing
