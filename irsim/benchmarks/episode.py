@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
@@ -84,6 +84,12 @@ class Job:
     perturb: tuple[str, ...] = ()
     name: str = ""
 
+    @staticmethod
+    def of_data(data: dict[str, Any]) -> Job:
+        """The job of its fields as JSON types."""
+        pairs = {"limits": tuple((name, value) for name, value in data["limits"])}
+        return Job(**{**data, **pairs, "imports": tuple(data["imports"]), "perturb": tuple(data["perturb"])})
+
 
 @dataclass(frozen=True)
 class Task:
@@ -91,18 +97,6 @@ class Task:
 
     job: Job
     seed: int
-
-    def as_data(self) -> dict[str, Any]:
-        """The task as JSON types."""
-        return asdict(self)
-
-    @staticmethod
-    def of_data(data: dict[str, Any]) -> Task:
-        """The task of the data that :meth:`as_data` returns."""
-        job = data["job"]
-        job["imports"], job["perturb"] = tuple(job["imports"]), tuple(job["perturb"])
-        job["limits"] = tuple((name, value) for name, value in job["limits"])
-        return Task(Job(**job), data["seed"])
 
 
 @lru_cache(maxsize=8)
