@@ -100,7 +100,7 @@ class Observer:
             world=slot,
             robot=robot,
             first=first,
-            time=simulation.count[world] * step_time,
+            time=simulation.count[world].astype(np.float64) * step_time,
             step_time=step_time,
             pose=simulation.pose[rows],
             steering=np.where(self._steered[robot], simulation.extra[rows, 0], 0.0),
