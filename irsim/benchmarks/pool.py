@@ -8,17 +8,25 @@ import subprocess
 import sys
 import threading
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
 from irsim.benchmarks.episode import Task, run_task
+from irsim.benchmarks.worker import READY
+from irsim.diagnostics.errors import CodedError
 
-__all__ = ["cores", "run_tasks"]
+__all__ = ["MAX_DEATHS", "WorkerError", "cores", "dead_workers", "run_tasks"]
 
 _START_DELAY_S = 0.7
 """Time [s] after which further processes are started; most benchmarks of a few episodes end before."""
+MAX_DEATHS = 3
+"""Number of processes that may die while they run the same episode."""
+
+
+class WorkerError(CodedError, RuntimeError):
+    """Processes that run episodes have died."""
 
 
 def cores() -> int:
@@ -37,7 +45,8 @@ def run_tasks(
 ) -> list[dict[str, Any]]:
     """Run episodes in this process and, if that takes longer than a moment, in further processes.
 
-    A task that a further process cannot run (with a behavior that only this program has registered) is run here.
+    A task that a further process cannot run (with a behavior that only this program has registered) is run here. A
+    process that dies is replaced, and its task is run again.
 
     Args:
         tasks: The tasks.
@@ -50,6 +59,7 @@ def run_tasks(
 
     Raises:
         IrsimError: The first error of an episode, in the order of the tasks.
+        WorkerError: Several processes have died in the same episode.
     """
     shared = _Shared(tasks, kept)
     helpers: list[_Helper] = []
@@ -60,6 +70,7 @@ def run_tasks(
                 shared.wait()
             else:
                 try:
+                    shared.check(index)
                     shared.put(index, run_task(tasks[index]))
                 except Exception:
                     shared.stop(index)
@@ -70,7 +81,9 @@ def run_tasks(
                     shared.leave()
             late = time.monotonic() - begin > _START_DELAY_S
             if late and not helpers and workers > 1 and shared.left() > 1:
-                helpers = [_Helper(shared) for _ in range(min(workers - 1, shared.left()))]
+                number = min(workers - 1, shared.left())
+                shared.join(number)
+                helpers = [_Helper(shared) for _ in range(number)]
             if progress is not None:
                 progress(shared.done(), len(tasks))
     finally:
@@ -87,7 +100,10 @@ class _Shared:
         self.results: dict[int, dict[str, Any]] = {}
         self._open = deque(range(len(tasks)))
         self._mine: deque[int] = deque()  # tasks that only this process can run
+        self._risky: deque[int] = deque()  # tasks in which a process has died: another one tries them, not this one
+        self._helpers = 0
         self._out = 0
+        self._deaths = Counter[int]()
         self._changed = threading.Condition()
 
     def take(self, *, elsewhere: bool = False) -> int | None:
@@ -97,7 +113,8 @@ class _Shared:
             elsewhere: The task is for another process.
         """
         with self._changed:
-            queue = self._mine if self._mine and not elsewhere else self._open
+            first = self._risky if elsewhere else self._mine
+            queue = first or self._open
             if not queue:
                 return None
             self._out += 1
@@ -121,11 +138,39 @@ class _Shared:
                 self._mine = deque(sorted([*self._mine, back]))
             self._changed.notify_all()
 
+    def died(self, index: int) -> None:
+        """Give a task back whose process has died; another one runs it, after several deaths none."""
+        with self._changed:
+            self._deaths[index] += 1
+            if self._deaths[index] < MAX_DEATHS:
+                self._out -= 1
+                self._risky.append(index)
+                return
+        self.leave(back=index)
+
+    def join(self, helpers: int) -> None:
+        """Count further processes, or with a negative number those that have ended; the last one leaves its tasks."""
+        with self._changed:
+            self._helpers += helpers
+            if not self._helpers:
+                self._mine = deque(sorted([*self._mine, *self._risky]))
+                self._risky.clear()
+                self._changed.notify_all()
+
+    def check(self, index: int) -> None:
+        """Refuse a task in which several processes have died.
+
+        Raises:
+            WorkerError: See there.
+        """
+        if self._deaths[index] >= MAX_DEATHS:
+            raise dead_workers(self.tasks[index])
+
     def stop(self, index: int) -> None:
         """Keep only the tasks before one that failed, and then that task again, so that its error is the first."""
         with self._changed:
-            earlier = [one for one in (*self._mine, *self._open) if one < index]
-            self._mine, self._open = deque([*earlier, index]), deque()
+            earlier = [one for one in (*self._mine, *self._risky, *self._open) if one < index]
+            self._mine, self._risky, self._open = deque([*earlier, index]), deque(), deque()
 
     def is_first(self, index: int) -> bool:
         """Whether all tasks before one are done."""
@@ -135,12 +180,12 @@ class _Shared:
     def busy(self) -> bool:
         """Whether a task is being run."""
         with self._changed:
-            return self._out > 0 or bool(self._mine)
+            return self._out > 0 or bool(self._mine or self._risky)
 
     def wait(self) -> None:
         """Wait until a task ends, but not for long."""
         with self._changed:
-            if self._out and not self._mine:
+            if (self._out or self._risky) and not self._mine:
                 self._changed.wait(0.2)
 
     def left(self) -> int:
@@ -151,31 +196,63 @@ class _Shared:
         return len(self.results)
 
 
+def dead_workers(task: Task) -> WorkerError:
+    """The error for an episode in which several processes have died."""
+    return WorkerError(
+        "worker-failed",
+        f"{MAX_DEATHS} processes died while they ran {task.job.name}, seed {task.seed}, with {task.job.behavior}",
+        "check the memory and your own modules, then go on with --resume",
+    )
+
+
 class _Helper:
-    """A further process, and the thread that sends tasks to it."""
+    """A further process, which is replaced when it dies, and the thread that sends tasks to it."""
 
     def __init__(self, shared: _Shared) -> None:
         self._shared = shared
-        isolated = ["-I"] if sys.flags.isolated else []
-        start = f"import sys; sys.path[:] = {sys.path!r}; from irsim.benchmarks.worker import main; main()"
-        self._process = subprocess.Popen(
-            [sys.executable, *isolated, "-X", "utf8", "-c", start],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-        )
-        self._thread = threading.Thread(target=self._feed, daemon=True)
+        self._ended = False
+        self._lock = threading.Lock()
+        self._process = _start()
+        self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
-    def _feed(self) -> None:
-        shared = self._shared
+    def _run(self) -> None:
+        try:
+            if self._is_ready():
+                self._feed(self._shared)
+        finally:
+            self._shared.join(-1)
+
+    def _feed(self, shared: _Shared) -> None:
         while (index := shared.take(elsewhere=True)) is not None:
             answer = self._answer(shared.tasks[index])
-            if answer is None or "result" not in answer:
+            if answer is None:
+                shared.died(index)
+                if not self._replace():
+                    return
+            elif "result" in answer:
+                shared.put(index, answer["result"])
+                shared.leave()
+            else:
                 shared.leave(back=index)
                 return
-            shared.put(index, answer["result"])
-            shared.leave()
+
+    def _replace(self) -> bool:
+        """Start another process in place of one that has died; False if it does not start or is not needed."""
+        with self._lock:
+            if self._ended:
+                return False
+            _close(self._process)
+            self._process = _start()
+        return self._is_ready()
+
+    def _is_ready(self) -> bool:
+        """Wait until the process can run tasks; False if it cannot be started."""
+        assert self._process.stdout is not None
+        try:
+            return bool(self._process.stdout.readline() == READY)
+        except (OSError, ValueError):
+            return False
 
     def _answer(self, task: Task) -> dict[str, Any] | None:
         assert self._process.stdin is not None
@@ -189,9 +266,28 @@ class _Helper:
 
     def end(self) -> None:
         """Stop the process immediately."""
-        self._process.kill()
+        with self._lock:
+            self._ended = True
+            self._process.kill()  # ends the thread's wait for an answer
         self._thread.join()
-        for pipe in (self._process.stdin, self._process.stdout):
-            with suppress(OSError):
-                pipe.close()  # type: ignore[union-attr]
-        self._process.wait()
+        _close(self._process)
+
+
+def _start() -> subprocess.Popen[bytes]:
+    isolated = ["-I"] if sys.flags.isolated else []
+    start = f"import sys; sys.path[:] = {sys.path!r}; from irsim.benchmarks.worker import main; main()"
+    return subprocess.Popen(
+        [sys.executable, *isolated, "-X", "utf8", "-c", start],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
+    )
+
+
+def _close(process: subprocess.Popen[bytes]) -> None:
+    """End a process and close its pipes."""
+    process.kill()
+    for pipe in (process.stdin, process.stdout):
+        with suppress(OSError):
+            pipe.close()  # type: ignore[union-attr]
+    process.wait()

@@ -11,7 +11,10 @@ import queue
 import sys
 import threading
 
-__all__ = ["main"]
+__all__ = ["READY", "main"]
+
+READY = b"ready\n"
+"""The first line, which says that tasks can be sent."""
 
 
 def main() -> None:
@@ -22,6 +25,8 @@ def main() -> None:
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
     from irsim.benchmarks.episode import Task, run_task
 
+    answers.write(READY.decode())
+    answers.flush()
     while True:
         line = lines.get()
         try:

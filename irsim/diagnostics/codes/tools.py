@@ -41,6 +41,15 @@ TOOLS: dict[str, Code] = {
         "library not installed",
         "This needs a library that irsim does not install by itself; the message has the command that installs it.",
     ),
+    "policy-file": Code(
+        "file of a policy not usable",
+        "Networks are read from .npz (format irsim-policy: arrays and one JSON document) and .onnx files within limits "
+        "of size and work. The message names the place, what was given and what is allowed. No code of a file is run.",
+    ),
+    "policy-input": Code(
+        "robots do not observe what a policy needs",
+        "The policy was made for other observations, such as more beams. The message says what is missing.",
+    ),
     "behavior-failed": Code(
         "behavior in Python failed",
         "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
@@ -101,6 +110,9 @@ TOOLS: dict[str, Code] = {
         "The folder holds a benchmark of other scenarios, policies, seeds or version; results do not mix.",
     ),
     "no-benchmark": Code("nothing to resume", "The folder holds no benchmark; start one, or name its folder with -o."),
+    "benchmark-running": Code(
+        "folder in use", "Another process is running the benchmark in this folder; wait for its end, or name another."
+    ),
     "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
     "step-out-of-range": Code(
         "step outside the run",

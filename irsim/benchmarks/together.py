@@ -1,0 +1,89 @@
+"""Runs the episodes of several seeds as worlds that are stepped together, which is faster than one after another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from irsim.benchmarks.episode import Episode, Job, Task, crowded, measure, run_task, scenario_of
+from irsim.diagnostics.errors import PlacementError
+from irsim.env import Env
+from irsim.episodes.episode import horizon_of
+from irsim.metrics.geodesic import Geodesics
+from irsim.scenario.limits import Limits
+from irsim.simulation.events import read_events
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import record_worlds
+
+__all__ = ["run_together", "worlds_at_once"]
+
+_MAX_TRACE_BYTES = 64_000_000
+"""Size of the traces that are held at once."""
+_BYTES_PER_ROW = 75
+"""Size of one object in one row of a trace."""
+
+
+def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) -> list[dict[str, Any]]:
+    """Run one episode for each seed; the results equal those of :func:`irsim.benchmarks.episode.run_task`.
+
+    A scenario in which Python code takes part runs one episode after another.
+
+    Args:
+        job: Scenario and behavior.
+        seeds: The seeds.
+        ways: Shortest paths in a world with the same static objects, if they are known.
+    """
+    scene, horizons = _scene(job, seeds)
+    if scene is None or len(seeds) == 1 or scene.simulation.in_python:
+        return [run_task(Task(job, seed), ways) for seed in seeds]
+    results = {seed: crowded() for seed in seeds if seed not in horizons}
+    size = worlds_at_once(scene.simulation.objects, max(horizons.values()))
+    placed = list(horizons)
+    for first in range(0, len(placed), size):
+        some = placed[first : first + size]
+        simulation = Simulation(scene.scenario, some)
+        traces = record_worlds(simulation, [horizons[seed] for seed in some])
+        for world, (seed, trace) in enumerate(zip(some, traces, strict=True)):
+            events = [event for event in read_events(simulation, world) if event.step <= trace.step[-1]]
+            _draw(scene, seed)
+            episode = Episode(trace, events, horizons[seed], world)
+            results[seed] = measure(Task(job, seed), episode, scene, simulation, ways)
+    scene.end(ending_time=0.0)
+    return [results[seed] for seed in seeds]
+
+
+def worlds_at_once(objects: int, steps: int) -> int:
+    """Number of worlds that are stepped together, so that their traces stay small.
+
+    Args:
+        objects: Number of objects of a world.
+        steps: Largest number of steps.
+    """
+    return max(1, _MAX_TRACE_BYTES // (_BYTES_PER_ROW * max(1, objects) * max(1, steps)))
+
+
+def _scene(job: Job, seeds: Sequence[int]) -> tuple[Env | None, dict[int, int]]:
+    """An environment that shows the scene of one seed after another, and the horizon of each seed that has room."""
+    scenario, limits = scenario_of(job), Limits(**dict(job.limits))
+    scene: Env | None = None
+    horizons: dict[int, int] = {}
+    for seed in seeds:
+        try:
+            if scene is None:
+                scene = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
+            else:
+                _draw(scene, seed)
+        except PlacementError:
+            continue
+        horizons[seed], _ = horizon_of(scene.scenario, scene, job.steps, limits)
+    return scene, horizons
+
+
+def _draw(scene: Env, seed: int) -> None:
+    """Draw the first scene of a seed.
+
+    Raises:
+        PlacementError: The seed leaves no room for an object.
+    """
+    scene.simulation.reseed([seed])
+    scene.simulation.reset()
