@@ -15,7 +15,10 @@ from irsim.scenario.behavior_override import AS_WRITTEN, merged_options, parse_b
 from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 from irsim.scenario.single_object import read_object
 
-__all__ = ["BehaviorPolicy", "with_policy"]
+__all__ = ["TASK_AND_BEHAVIOR", "BehaviorPolicy", "with_policy"]
+
+TASK_AND_BEHAVIOR = ("behavior", "group_behavior", "wander", "loop", "range_low", "range_high", "target_roles")
+"""Fields of an object that may change with its behavior."""
 
 
 class BehaviorPolicy(Policy):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] |
 """What :func:`open_policy` takes."""
 SUFFIXES = (".npz", ".onnx")
 """Suffixes of files that hold policies."""
+_NETWORKS = "irsim.policies.networks"
 MAX_FILE_BYTES = 500_000_000
 """Largest file of a policy."""
 
@@ -67,16 +69,15 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         BenchmarkError: The text is not a policy.
         PolicyError: The policy cannot be made with these options, or its file cannot be used.
     """
-    if isinstance(source, Policy):
-        return source
-    if isinstance(source, os.PathLike):
-        source = os.fspath(source)
-    if not isinstance(source, (str, Mapping)):
-        if callable(source) and root is None:
-            return FunctionPolicy(source)
+    given: Any = os.fspath(source) if isinstance(source, os.PathLike) else source
+    if isinstance(given, Policy):
+        return given
+    if not isinstance(given, (str, Mapping)):
+        if callable(given) and root is None:
+            return FunctionPolicy(given)
         fix = "give a name, a file, a mapping with a name, or a function of observations"
-        raise BenchmarkError(f"a policy cannot be {as_given(source)}", fix)
-    text = behavior_text(source)
+        raise BenchmarkError(f"a policy cannot be {as_given(given)}", fix)
+    text = behavior_text(given)
     plain = text.endswith(SUFFIXES) and not text.startswith("{")
     options = {"name": text} if plain else parse_behavior(text)
     name = AS_WRITTEN if options is None else str(options["name"])
@@ -131,8 +132,6 @@ def _from_file(
     text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
 ) -> Policy:
     """A network from a file."""
-    from irsim.policies.networks import open_network
-
     if root is not None and (why := why_outside(name, Path(root))) is not None:
         raise PolicyError("policy-failed", f"{clean(name)!r} {why}", "name a file of the workspace", where="policy")
     path = Path(root if root is not None else folder or ".", name)
@@ -144,6 +143,7 @@ def _from_file(
     if path.stat().st_size > MAX_FILE_BYTES:
         raise PolicyError("over-limit", f"{clean(name)!r} has more than {MAX_FILE_BYTES:,} bytes", "use a smaller file")
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    open_network = import_module(_NETWORKS).open_network
     policy = _made(name, lambda **given: open_network(path, **given), options)
     if "stochastic" not in vars(type(policy)):
         policy.stochastic = False

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import CodedError, PolicyError
+from irsim.policies.behavior import BehaviorPolicy
 from irsim.policies.fit import check_fit, drive_of
 from irsim.policies.observe import Observer
 from irsim.policies.policy import Episode, Policy
@@ -267,12 +268,13 @@ def attach_policy(simulation: Simulation, policy: Policy | None) -> PolicyDriver
 
     Args:
         simulation: The simulation, with its Python drives attached.
-        policy: The policy; None leaves the robots to the behaviors of the scenario.
+        policy: The policy; None leaves the robots to the behaviors of the scenario, and so does a policy that is a
+            behavior, because it is part of the scenario then (:func:`irsim.policies.behavior.with_policy`).
 
     Raises:
         PolicyError: The policy cannot drive a robot (``policy-mismatch``).
     """
-    driver = None if policy is None else PolicyDriver(simulation, policy)
+    driver = None if policy is None or isinstance(policy, BehaviorPolicy) else PolicyDriver(simulation, policy)
     simulation.decisions[:] = [part for part in simulation.decisions if not isinstance(part, PolicyDriver)]
     if driver is not None:
         simulation.decisions.append(driver)

@@ -34,4 +34,5 @@ class RandomPolicy(Policy):
         high = np.where(np.isfinite(observations.high), observations.high, 1.0)
         worlds, counts = np.unique(observations.world, return_counts=True)  # rows are sorted by world
         parts = [self._rng[w].random((n, 3)) for w, n in zip(worlds.tolist(), counts.tolist(), strict=True)]
-        return low + (high - low) * np.concatenate(parts)
+        drawn: Floats = low + (high - low) * np.concatenate(parts)
+        return drawn

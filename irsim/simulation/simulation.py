@@ -332,7 +332,7 @@ class Simulation:
         if not self.in_python:
             return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
         for done in range(steps):
-            if until_done and self.copies == 1 and self.state.done(0):
+            if until_done and self.done().all():
                 return done
             self.step()
         return steps

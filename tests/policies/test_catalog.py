@@ -95,7 +95,7 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
     [
         ("orka", "unknown-policy: there is no policy 'orka'. Fix: did you mean orca"),
         ("stil", "there is no policy 'stil'. Fix: did you mean still"),
-        ("xyzzy", "Fix: choose one of as-written, dash, .*random.* or a file"),
+        ("xyzzy", r"Fix: choose one of as-written, dash, .*random.* or a file"),
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),
         ("orca dash", "'orca dash' is not a valid behavior"),
         (7, "a policy cannot be 7"),
@@ -124,7 +124,7 @@ def test_registered_names_must_be_free() -> None:
     table.register("own", Still)
     table.register("own", Still)
     for name in ("orca", "random", "a b", "net.npz", ""):
-        with pytest.raises(ValueError, match="built in|cannot name"):
+        with pytest.raises(ValueError, match=r"built in|cannot name"):
             table.register(name, Still)
     with pytest.raises(ValueError, match="registered already"):
         table.register("own", Network)
