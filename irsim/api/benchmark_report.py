@@ -1,8 +1,9 @@
-"""Writes the report of a benchmark beside its result: Markdown, one HTML page, replays of episodes that failed."""
+"""Writes the report of a benchmark beside its result: Markdown, a page, a table, replays of episodes that failed."""
 
 from __future__ import annotations
 
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from irsim.benchmarks.plan import Plan, PlannedScenario
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.names import policy_labels
 from irsim.benchmarks.report.page import Shown, page
+from irsim.benchmarks.report.table import MISSING, TABLE, has_tables, write_table
 from irsim.benchmarks.report.worst import worst_episodes
 from irsim.benchmarks.stored import PLAN
 from irsim.common.files import write_atomically
@@ -20,35 +22,50 @@ from irsim.scenario.limits import DEFAULT_LIMITS
 if TYPE_CHECKING:
     from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 
-__all__ = ["MARKDOWN", "PAGE", "REPLAYS", "write_report"]
+__all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "write_report"]
 
 MARKDOWN, PAGE, REPLAYS = "results.md", "results.html", "replays"
 """Names of the files, and of the folder of the replays."""
 _MOMENTS, _WIDTH_PX = 4, 1400
 
 
-def write_report(result: BenchmarkResult, folder: Path) -> Path:
+@dataclass(frozen=True)
+class Report:
+    """What was written.
+
+    Attributes:
+        page: The page.
+        notes: What could not be written, and how that is changed.
+    """
+
+    page: Path
+    notes: list[str]
+
+
+def write_report(result: BenchmarkResult, folder: Path) -> Report:
     """Write the report of a benchmark into its folder.
+
+    The table of episodes needs pyarrow, of the extra ``records``; without it, a note says so.
 
     Args:
         result: The result.
         folder: Folder in which :func:`irsim.benchmarks.stored.run_plan` has run it.
 
-    Returns:
-        The page.
-
     Raises:
         RunError: The folder cannot be written.
     """
+    notes = [] if has_tables() else [MISSING]
     plan = Plan.model_validate_json((folder / PLAN).read_bytes())
     scenarios = {scenario.name: scenario for scenario in plan.scenarios}
     try:
         shown = [_shown(plan, scenarios[one.scenario], one, result, folder) for one in worst_episodes(result)]
-        write_atomically(folder / MARKDOWN, markdown(result))
+        if not notes:
+            write_table(result, plan.hash, folder / TABLE)
+        write_atomically(folder / MARKDOWN, markdown(result, notes))
         write_atomically(folder / PAGE, page(result, shown))
     except OSError as error:
         raise RunError("not-writable", f"{folder}: {error.strerror}", "make room, then give --resume") from None
-    return folder / PAGE
+    return Report(folder / PAGE, notes)
 
 
 def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: BenchmarkResult, folder: Path) -> Shown:

@@ -145,6 +145,7 @@ def benchmark(
                 limits=tuple(asdict(limits).items()),
                 until=until,
                 perturb=texts,
+                name=name,
             )
             with _naming_behavior(number):
                 chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]

@@ -37,7 +37,7 @@ def suite_plan(
         protocols: Some of its protocols; default: all.
         seeds: Number of seeds, instead of that of the suite.
         full: Run the number of seeds that the suite calls full.
-        scenarios: Names of scenarios, or of their families; default: all.
+        scenarios: Names of scenarios, with or without their protocol, or of their families; default: all.
         perturb: Perturbations instead of those of the suite, as on the command line.
 
     Raises:
@@ -52,8 +52,8 @@ def suite_plan(
     if list(kept) != list(found.protocols):
         words += [word for name in kept for word in ("--protocol", name)]
     if scenarios is not None:
-        names = _chosen("scenario", scenarios, sorted({name for one in made for name in (one.name, one.family)}))
-        made = [one for one in made if one.name in names or one.family in names]
+        names = _chosen("scenario", scenarios, sorted({name for one in made for name in _names(one)}))
+        made = [one for one in made if not _names(one).isdisjoint(names)]
         words += [word for name in names for word in ("--scenario", name)]
     perturbations = read_perturbations(perturb) or tuple(found.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
@@ -69,6 +69,11 @@ def suite_plan(
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
+
+
+def _names(one: Expanded) -> set[str]:
+    """What a scenario may be called: its name, its name under any protocol, the name of its family."""
+    return {one.name, one.name.rsplit("/", 1)[0], one.family}
 
 
 def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]:

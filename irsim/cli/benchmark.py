@@ -271,9 +271,12 @@ def _episodes_note(found: Estimate, episodes: int) -> str:
 
 
 def _labels(files: list[str]) -> dict[str, str]:
-    """Return a short label for each file; full paths without suffix if the file names are not unique."""
+    """Return a short label for each file; full paths without suffix if the file names are not unique.
+
+    Names that are not files, such as those of the scenarios of a suite, are their own labels.
+    """
     stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
-    short = {name: stem.rsplit("/", 1)[-1] for name, stem in stems.items()}
+    short = {name: stem.rsplit("/", 1)[-1] if stem != name else name for name, stem in stems.items()}
     return short if len(set(short.values())) == len(files) else stems
 
 

@@ -42,7 +42,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     Raises:
         ArgumentError: The arguments do not fit together.
     """
-    from irsim.api.benchmark_report import write_report
+    from irsim.api.benchmark_report import Report, write_report
     from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
     from irsim.benchmarks.suite_files import is_suite
     from irsim.cli.findings import limits_for
@@ -55,18 +55,28 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     odd = [name for name, value in of_suite.items() if value and not suites]
     if odd:
         raise ArgumentError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
-    limits = limits_for(wanted.max_objects)
+    limits, reports = limits_for(wanted.max_objects), list[Report]()
+
+    def finish(result: BenchmarkResult, folder: Path) -> None:
+        reports.append(write_report(result, folder))
+
     with progress("simulating") as report:
         if not wanted.files:
             if not wanted.resume:
                 raise ArgumentError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
-            result = resume_benchmark(folder, workers=wanted.workers, progress=report, limits=limits)
+            result = resume_benchmark(folder, workers=wanted.workers, progress=report, limits=limits, finish=finish)
         elif suites or wanted.folder is not None or wanted.resume:
             plan = _suite(suites[0], wanted) if suites else _plan(wanted)
             folder = wanted.folder or default_folder(plan)
             result = run_plan(
-                plan, folder, resume=wanted.resume, workers=wanted.workers, progress=report, limits=limits
+                plan,
+                folder,
+                resume=wanted.resume,
+                workers=wanted.workers,
+                progress=report,
+                limits=limits,
+                finish=finish,
             )
         else:
             from irsim.benchmarks import DEFAULT_SEEDS, benchmark
@@ -78,8 +88,11 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
                 progress=report,
             )  # fmt: skip
-    page = write_report(result, folder)
-    console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
+    out = console(stderr=True)
+    for written in reports:
+        out.print(f"episodes, result and report: {written.page}", soft_wrap=True)
+        for note in written.notes:
+            out.print(f"note: {note}", soft_wrap=True)
     return result
 
 

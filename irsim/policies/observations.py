@@ -17,12 +17,14 @@ __all__ = ["Map", "Neighbors", "Observations", "Scan"]
 class Neighbors:
     """The K nearest other objects of each of B robots, nearest first by the distance of the bounding circles.
 
-    Rows of absent neighbors (``mask`` False) hold zeros.
+    They are the moving objects whose role the robot targets (``target_roles``) and, if the policy asks for them, static
+    objects; unobstructed static ones, the map and the walls round the world are not among them. Rows of absent
+    neighbors (``mask`` False) hold zeros.
 
     Attributes:
         mask: (B, K) whether there is such a neighbor.
         index: (B, K) index of the object in its world; -1 where there is none.
-        position: (B, K, 2) x, y of the center [m], world frame.
+        position: (B, K, 2) x, y of the center of the bounding circle [m], world frame.
         heading: (B, K) [rad], world frame.
         velocity: (B, K, 2) true velocity [m/s], world frame.
         radius: (B, K) radius of the bounding circle [m].

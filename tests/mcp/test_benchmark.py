@@ -142,7 +142,7 @@ async def test_limits(workspace: Path) -> None:
             ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
             ({"scenarios": ["none.yaml"]}, "file-not-found"),
             ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
-            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "bad-argument: there is no behavior"),
+            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "unknown-policy: there is no policy"),
             ({"scenarios": [ROOM.replace("goal", "gaol")]}, "invalid-scenario: 1 error: (text) robot[0].gaol"),
             ({"scenarios": [ROOM], "wait_s": 51}, "bad-argument: 51 is not accepted"),
             ({"scenarios": [ROOM], "seed": 3}, "unknown-argument: there is no argument 'seed'"),
@@ -159,7 +159,7 @@ async def test_limits(workspace: Path) -> None:
         ),
         ("{name: orca, timeHorizon: -5}", "'timeHorizon' must be > 0 [s], got -5 {}. Fix: allowed is > 0 [s]."),
         ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
-        ("orcaa", "there is no behavior 'orcaa' {}. Fix: did you mean orca?"),
+        ("orcaa", "there is no policy 'orcaa' {}. Fix: did you mean orca?"),
         ("{orca", "'{{orca' is not a valid behavior {}. Fix: give a name such as orca, or "),
     ],
 )

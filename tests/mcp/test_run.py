@@ -194,7 +194,7 @@ async def test_another_behavior_for_all_robots(workspace: Path) -> None:
     assert "--behavior dash" in data_of(driven)["reproduce"]
     assert "'rover' arrived at (4.0" in text_of(picture)
     assert data_of(options)["outcome"] == "success"
-    assert error_of(wrong) == "bad-argument: there is no behavior 'dahs' (behavior). Fix: did you mean dash?"
+    assert error_of(wrong) == "unknown-policy: there is no policy 'dahs' (behavior). Fix: did you mean dash?"
 
 
 async def test_no_seed_is_shown_where_it_decides_nothing(workspace: Path) -> None:

@@ -121,5 +121,6 @@ void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_clearance(nb::module_& m);
+void bind_policies(nb::module_& m);
 
 }  // namespace irsim

@@ -54,6 +54,21 @@ TOOLS: dict[str, Code] = {
         "behavior in Python failed",
         "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
     ),
+    "policy-failed": Code(
+        "policy failed",
+        "A policy raised an error, or did not return one row of finite numbers for each robot that decides; the "
+        "message names the robot and what to return.",
+    ),
+    "policy-mismatch": Code(
+        "policy does not fit the robots",
+        "The policy controls other drives than the robots have, or needs something that they lack, such as a lidar "
+        "with as many beams as it was made for.",
+    ),
+    "unknown-policy": Code(
+        "unknown policy",
+        "There is no policy of that name: no behavior, plug-in or file. The message names the nearest ones; irsim "
+        "policies lists all.",
+    ),
     "invalid-input": Code(
         "input not usable",
         "The input is not usable; the message says what is wrong with it.",
@@ -95,6 +110,9 @@ TOOLS: dict[str, Code] = {
         "The folder holds a benchmark of other scenarios, policies, seeds or version; results do not mix.",
     ),
     "no-benchmark": Code("nothing to resume", "The folder holds no benchmark; start one, or name its folder with -o."),
+    "benchmark-running": Code(
+        "folder in use", "Another process is running the benchmark in this folder; wait for its end, or name another."
+    ),
     "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
     "step-out-of-range": Code(
         "step outside the run",
