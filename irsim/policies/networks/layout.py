@@ -51,6 +51,7 @@ def layout_needs(layout: Layout) -> Needs:
         static_neighbors=any(need.static_neighbors for need in needs),
         scan=any(need.scan for need in needs),
         map=any(need.map for need in needs),
+        map_resolution=min((need.map_resolution for need in needs if need.map), default=Needs.map_resolution),
     )
 
 

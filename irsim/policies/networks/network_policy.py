@@ -27,11 +27,15 @@ __all__ = ["LayerPolicy", "NetworkPolicy"]
 class NetworkPolicy(Policy):
     """A network that observes the parts of a layout.
 
+    One that remembers knows robots by world and index, so one object drives one simulation at a time.
+
     Args:
         name: Its name in tables.
         head: What it observes, and what its result means.
         facts: What :meth:`describe` adds: format, size, hash.
     """
+
+    stochastic = False
 
     def __init__(self, name: str, head: PolicyHead, facts: Mapping[str, Any]) -> None:
         self.name, self.head = name, head
@@ -39,6 +43,7 @@ class NetworkPolicy(Policy):
         self.output = head.output.returns
         self.drives = None if head.drives is None else frozenset(head.drives)
         self.decision_dt = head.decision_dt
+        self.digest = facts.get("sha256")
         self._facts = dict(facts)
 
     def act(self, observations: Observations) -> Floats:

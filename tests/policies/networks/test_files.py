@@ -11,6 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 
 from irsim.policies.networks import Limits, Network, PolicyFileError, mlp, open_network, save_network
 from irsim.policies.networks.files import network_bytes, read_network
+from irsim.policies.networks.schema import policy_schema_text
 from tests.effort import examples
 from tests.policies.networks.examples import crowd, filled, go_to_goal
 from tests.policies.networks.observed import observations, same_bits
@@ -62,6 +64,15 @@ def test_a_written_network_is_read_again_with_equal_decisions(tmp_path: Path) ->
     (tmp_path / "other.npz").write_bytes(network_bytes(read))
     seen = observations()
     assert same_bits(open_network(tmp_path / "other.npz").act(seen), policy.act(seen))
+
+
+def test_the_schema_accepts_documents_and_names_wrong_keys() -> None:
+    schema = json.loads(policy_schema_text())
+    data = filled(crowd()).document.model_dump(mode="json")
+    jsonschema.validate(data, schema)
+    data["network"][2]["unit"] = 3
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(data, schema)
 
 
 def test_equal_networks_give_equal_files_that_numpy_opens(tmp_path: Path) -> None:

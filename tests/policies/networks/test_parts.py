@@ -201,6 +201,7 @@ def test_a_layout_declares_what_all_of_its_parts_need() -> None:
     assert (needs.neighbors, needs.neighbor_range, needs.static_neighbors) == (8, 5.0, False)
     assert needs.scan
     assert not needs.map
+    assert layout_needs(layout(map={"cells": 10, "size": 4.0})).map_resolution == 0.2
     assert layout_needs(layout(goal={})) == layout_needs(layout(own={}))
 
 

@@ -45,8 +45,8 @@ class MapPart(PartOptions):
     """Whether everything outside the world counts as occupied."""
 
     def needs(self) -> Needs:
-        """The map."""
-        return Needs(map=True)
+        """The map, with cells half as large as those of the picture."""
+        return Needs(map=True, map_resolution=0.5 * self.size / self.cells)
 
     def channels(self) -> tuple[Channel, ...]:
         """One for each cell."""
