@@ -23,7 +23,15 @@ from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavio
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["SUFFIXES", "PolicySource", "UnknownPolicyError", "behavior_names", "open_policy", "policy_names"]
+__all__ = [
+    "SUFFIXES",
+    "PolicySource",
+    "UnknownPolicyError",
+    "behavior_names",
+    "names_file",
+    "open_policy",
+    "policy_names",
+]
 
 PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] | Mapping[str, Any]
 """What :func:`open_policy` takes."""
@@ -78,10 +86,7 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         fix = "give a name, a file, a mapping with a name, or a function of observations"
         raise BenchmarkError(f"a policy cannot be {as_given(given)}", fix)
     text = behavior_text(given)
-    plain = text.endswith(SUFFIXES) and not text.startswith("{")
-    options = {"name": text} if plain else parse_behavior(text)
-    name = AS_WRITTEN if options is None else str(options["name"])
-    keys = {key: value for key, value in (options or {}).items() if key != "name"}
+    name, keys = _parsed(text)
     if name.endswith(SUFFIXES):
         return _from_file(text, name, keys, folder, root)
     if name in behavior_names():
@@ -94,6 +99,23 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
     if maker is None:
         raise _unknown(name, root)
     return _named(_made(name, maker, keys), text)
+
+
+def names_file(text: str) -> bool:
+    """Whether the text of a policy names a file.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    return _parsed(text)[0].endswith(SUFFIXES)
+
+
+def _parsed(text: str) -> tuple[str, dict[str, Any]]:
+    """Name and options of a policy that is given as text."""
+    plain = text.endswith(SUFFIXES) and not text.startswith("{")
+    options = {"name": text} if plain else parse_behavior(text)
+    name = AS_WRITTEN if options is None else str(options["name"])
+    return name, {key: value for key, value in (options or {}).items() if key != "name"}
 
 
 def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
