@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
@@ -108,6 +108,12 @@ class Job:
     digest: str | None = None
     local: Policy | None = None
 
+    @staticmethod
+    def of_data(data: dict[str, Any]) -> Job:
+        """The job of its fields as JSON types."""
+        pairs = {"limits": tuple((name, value) for name, value in data["limits"])}
+        return Job(**{**data, **pairs, "imports": tuple(data["imports"]), "perturb": tuple(data["perturb"])})
+
 
 @dataclass(frozen=True)
 class Task:
@@ -115,24 +121,6 @@ class Task:
 
     job: Job
     seed: int
-
-    def as_data(self) -> dict[str, Any]:
-        """The task as JSON types.
-
-        Raises:
-            ValueError: Only this process has the policy.
-        """
-        if self.job.local is not None:
-            raise ValueError(f"only this process has the policy {self.job.local.name!r}")
-        return asdict(self)
-
-    @staticmethod
-    def of_data(data: dict[str, Any]) -> Task:
-        """The task of the data that :meth:`as_data` returns."""
-        job = data["job"]
-        job["imports"], job["perturb"] = tuple(job["imports"]), tuple(job["perturb"])
-        job["limits"] = tuple((name, value) for name, value in job["limits"])
-        return Task(Job(**job), data["seed"])
 
 
 @lru_cache(maxsize=8)
@@ -190,8 +178,8 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         ways: Shortest paths in a world with the same static objects, if they are known.
 
     Returns:
-        See :func:`measure`, and ``decisions``: (wall-clock time [s], number of robots) of each decision of a policy in
-        Python, which no result repeats; :func:`crowded` if the seed leaves no room for an object.
+        See :func:`measure`, and for a policy in Python ``decisions``: (wall-clock time [s], number of robots) of each
+        of its decisions, which no result repeats; :func:`crowded` if the seed leaves no room for an object.
     """
     job = task.job
     try:
@@ -200,8 +188,8 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     except PlacementError:
         return crowded()
     trace, driver = record(env.simulation, horizon), driver_of(env.simulation)
-    timed = [] if driver is None else list(zip(driver.seconds, driver.decided, strict=True))
-    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways) | {"decisions": timed}
+    timed = {} if driver is None else {"decisions": list(zip(driver.seconds, driver.decided, strict=True))}
+    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways) | timed
     env.end(ending_time=0.0)
     return result
 

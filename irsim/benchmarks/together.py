@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of, measure, run_task
@@ -13,7 +13,7 @@ from irsim.metrics.geodesic import Geodesics
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events
 from irsim.simulation.simulation import Simulation
-from irsim.simulation.trace import record_worlds
+from irsim.simulation.trace import Trace, record_worlds
 
 __all__ = ["run_together", "worlds_at_once"]
 
@@ -23,7 +23,7 @@ _BYTES_PER_ROW = 75
 """Size of one object in one row of a trace."""
 
 
-def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) -> list[dict[str, Any]]:
+def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) -> Iterator[dict[str, Any]]:
     """Run one episode for each seed; the results equal those of :func:`irsim.benchmarks.episode.run_task`.
 
     A scenario in which Python code takes part runs one episode after another.
@@ -32,24 +32,30 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
         job: Scenario and behavior.
         seeds: The seeds.
         ways: Shortest paths in a world with the same static objects, if they are known.
+
+    Yields:
+        The result of each seed, in order.
     """
     scene, horizons = _scene(job, seeds)
     if scene is None or len(seeds) == 1 or scene.simulation.in_python:
-        return [run_task(Task(job, seed), ways) for seed in seeds]
-    results = {seed: crowded() for seed in seeds if seed not in horizons}
+        yield from (run_task(Task(job, seed), ways) for seed in seeds)
+        return
     size = worlds_at_once(scene.simulation.objects, max(horizons.values()))
-    placed = list(horizons)
-    for first in range(0, len(placed), size):
-        some = placed[first : first + size]
-        simulation = Simulation(scene.scenario, some)
-        traces = record_worlds(simulation, [horizons[seed] for seed in some])
-        for world, (seed, trace) in enumerate(zip(some, traces, strict=True)):
-            events = [event for event in read_events(simulation, world) if event.step <= trace.step[-1]]
-            _draw(scene, seed)
-            episode = Episode(trace, events, horizons[seed], world)
-            results[seed] = measure(Task(job, seed), episode, scene, simulation, ways)
+    ran: dict[int, tuple[Simulation, int, Trace]] = {}
+    for place, seed in enumerate(seeds):
+        if seed not in horizons:
+            yield crowded()
+            continue
+        if seed not in ran:
+            some = [one for one in seeds[place:] if one in horizons][:size]
+            simulation = Simulation(scene.scenario, some)
+            traces = record_worlds(simulation, [horizons[one] for one in some])
+            ran = {one: (simulation, world, trace) for world, (one, trace) in enumerate(zip(some, traces, strict=True))}
+        simulation, world, trace = ran[seed]
+        events = [event for event in read_events(simulation, world) if event.step <= trace.step[-1]]
+        _draw(scene, seed)
+        yield measure(Task(job, seed), Episode(trace, events, horizons[seed], world), scene, simulation, ways)
     scene.end(ending_time=0.0)
-    return [results[seed] for seed in seeds]
 
 
 def worlds_at_once(objects: int, steps: int) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -65,6 +66,11 @@ class Value:
     def flags(self) -> NDArray[np.uint8] | None:
         """The mask as the core takes it."""
         return None if self.mask is None else np.ascontiguousarray(self.mask).view(np.uint8)
+
+    def flat(self) -> Array:
+        """(B, F) or (B, K F) features of all members one after the other, with zeros for absent ones."""
+        rows, *sides = self.array.shape
+        return self.present().reshape(rows, math.prod(sides))
 
     def present(self) -> Array:
         """The array with zeros for absent members."""

@@ -29,4 +29,4 @@ class Flatten(LayerOptions):
 def flatten(options: Flatten, inputs: Sequence[Value], arrays: Arrays, memory: Array | None) -> Value:
     """(B, K F) of (B, K, F)."""
     (value,) = inputs
-    return Value(value.present().reshape(len(value.array), -1))
+    return Value(value.flat())

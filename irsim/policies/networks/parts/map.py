@@ -100,7 +100,7 @@ def _look(seen: Map, center: Floats, axis: Floats, options: MapPart) -> Floats:
     world_y = center[:, 1, None, None] + (x * s + y * c)
     taken = _occupied(seen, world_x, world_y, options.outside_occupied)
     cells = taken.reshape(len(center), options.cells, samples, options.cells, samples).any(axis=(2, 4))
-    return cells.reshape(len(center), -1).astype(np.float64)
+    return cells.reshape(len(center), options.cells * options.cells).astype(np.float64)
 
 
 def _occupied(seen: Map, x: Floats, y: Floats, outside: bool) -> NDArray[np.bool_]:

@@ -100,7 +100,8 @@ def own(observations: Observations, options: Own) -> Value:
         "low": clip_to(low, options.limit_max, clip),
         "high": clip_to(high, options.limit_max, clip),
     }
-    return Value(np.concatenate([columns[name].reshape(len(observations), -1) for name in options.features], axis=1))
+    chosen = [columns[name] for name in options.features]
+    return Value(np.concatenate([values if values.ndim == 2 else values[:, None] for values in chosen], axis=1))
 
 
 def _share(control: Floats, low: Floats, high: Floats) -> Floats:
