@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
 
+from irsim.benchmarks.policies import open_again
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
@@ -19,6 +21,8 @@ from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
+from irsim.policies.driver import driver_of
+from irsim.policies.policy import Policy
 from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
@@ -29,7 +33,20 @@ from irsim.simulation.events import Event, first_collisions, first_events, partn
 from irsim.simulation.simulation import Simulation
 from irsim.simulation.trace import Trace, cut_trace, record
 
-__all__ = ["Episode", "Job", "Outcome", "Task", "Until", "crowded", "measure", "run_task", "scenario_of"]
+__all__ = [
+    "Episode",
+    "Job",
+    "Outcome",
+    "Task",
+    "Until",
+    "check_policy",
+    "crowded",
+    "environment_of",
+    "measure",
+    "policy_of",
+    "run_task",
+    "scenario_of",
+]
 
 Outcome = Literal["success", "collision", "timeout"]
 Until = Literal["done", "first_collision"]
@@ -58,12 +75,13 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Job:
-    """One scenario under one behavior.
+    """One scenario under one policy.
 
     Attributes:
         text: Text of the scenario.
         path: Its file, relative to which it names other files; None for a text.
-        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`.
+        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`; ``as-written``
+            under a policy in Python.
         steps: Horizon in steps; None: that of the scenario.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
@@ -71,6 +89,9 @@ class Job:
         until: ``done``, or ``first_collision`` to end the episode when a robot collides.
         perturb: Perturbations of the scenario, as on the command line.
         name: Name of the scenario in the results.
+        policy: Text that opens the policy in Python that drives the robots, in any folder; None: behaviors do.
+        digest: SHA-256 of its file; None without one.
+        local: The policy itself, if only this process has it.
     """
 
     text: str
@@ -83,6 +104,9 @@ class Job:
     until: Until = "done"
     perturb: tuple[str, ...] = ()
     name: str = ""
+    policy: str | None = None
+    digest: str | None = None
+    local: Policy | None = None
 
     @staticmethod
     def of_data(data: dict[str, Any]) -> Job:
@@ -113,6 +137,39 @@ def scenario_of(job: Job) -> ResolvedScenario:
     return perturbed(scenario, read_perturbations(job.perturb))
 
 
+def policy_of(job: Job) -> Policy | None:
+    """The policy in Python that drives the robots of a job; None: behaviors do.
+
+    Raises:
+        PolicyError: It cannot be opened, or its file has changed.
+    """
+    return job.local if job.policy is None else open_again(job.policy, job.digest)
+
+
+def check_policy(job: Job) -> None:
+    """Refuse a policy in Python that cannot drive the robots of a scenario, before any episode is run.
+
+    Raises:
+        PolicyError: It cannot drive them, or cannot be opened.
+    """
+    policy = policy_of(job)
+    if policy is None:
+        return
+    with suppress(PlacementError):
+        environment_of(job, 0).end(ending_time=0.0)
+
+
+def environment_of(job: Job, seed: int) -> Env:
+    """An environment at the start of an episode, which the caller must end.
+
+    Raises:
+        PlacementError: The seed leaves no room for an object.
+        PolicyError: The policy cannot drive the robots.
+    """
+    scenario = scenario_of(job)
+    return Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR", policy=policy_of(job))
+
+
 def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
     """Run an episode until every robot has arrived or stopped, or the horizon is reached, and measure it.
 
@@ -121,16 +178,18 @@ def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
         ways: Shortest paths in a world with the same static objects, if they are known.
 
     Returns:
-        See :func:`measure`; :func:`crowded` if the seed leaves no room for an object.
+        See :func:`measure`, and for a policy in Python ``decisions``: (wall-clock time [s], number of robots) of each
+        of its decisions, which no result repeats; :func:`crowded` if the seed leaves no room for an object.
     """
     job = task.job
     try:
-        env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
+        env = environment_of(job, task.seed)
         horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
     except PlacementError:
         return crowded()
-    trace = record(env.simulation, horizon)
-    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways)
+    trace, driver = record(env.simulation, horizon), driver_of(env.simulation)
+    timed = {} if driver is None else {"decisions": list(zip(driver.seconds, driver.decided, strict=True))}
+    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways) | timed
     env.end(ending_time=0.0)
     return result
 

@@ -127,8 +127,9 @@ class _Shared:
     def __init__(self, tasks: Sequence[Task], kept: Callable[[int, dict[str, Any]], None] | None, workers: int) -> None:
         self.tasks, self._kept, self._workers = tasks, kept, workers
         self.results: dict[int, dict[str, Any]] = {}
-        self._open = deque(range(len(tasks)))
-        self._mine: deque[int] = deque()  # tasks that only this process can run
+        own = [index for index, task in enumerate(tasks) if task.job.local is not None]
+        self._open = deque(index for index, task in enumerate(tasks) if task.job.local is None)
+        self._mine: deque[int] = deque(own)  # tasks that only this process can run
         self._risky: deque[int] = deque()  # tasks in which a process has died: another one tries them, not this one
         self._helpers = 0
         self._out = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from irsim.benchmarks.episode import Episode, Job, Task, crowded, measure, run_task, scenario_of
+from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of, measure, run_task
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
@@ -70,13 +70,13 @@ def worlds_at_once(objects: int, steps: int) -> int:
 
 def _scene(job: Job, seeds: Sequence[int]) -> tuple[Env | None, dict[int, int]]:
     """An environment that shows the scene of one seed after another, and the horizon of each seed that has room."""
-    scenario, limits = scenario_of(job), Limits(**dict(job.limits))
+    limits = Limits(**dict(job.limits))
     scene: Env | None = None
     horizons: dict[int, int] = {}
     for seed in seeds:
         try:
             if scene is None:
-                scene = Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR")
+                scene = environment_of(job, seed)
             else:
                 _draw(scene, seed)
         except PlacementError:

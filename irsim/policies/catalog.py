@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +22,20 @@ from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavio
 from irsim.scenario.path_confinement import why_outside
 from irsim.scenario.yaml.rewrite import yaml_flow
 
-__all__ = ["SUFFIXES", "PolicySource", "UnknownPolicyError", "behavior_names", "open_policy", "policy_names"]
+__all__ = [
+    "SUFFIXES",
+    "PolicySource",
+    "UnknownPolicyError",
+    "behavior_names",
+    "names_file",
+    "open_policy",
+    "policy_names",
+]
 
 PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] | Mapping[str, Any]
 """What :func:`open_policy` takes."""
 SUFFIXES = (".npz", ".onnx")
 """Suffixes of files that hold policies."""
-_NETWORKS = "irsim.policies.networks"
 MAX_FILE_BYTES = 500_000_000
 """Largest file of a policy."""
 
@@ -78,10 +84,7 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
         fix = "give a name, a file, a mapping with a name, or a function of observations"
         raise BenchmarkError(f"a policy cannot be {as_given(given)}", fix)
     text = behavior_text(given)
-    plain = text.endswith(SUFFIXES) and not text.startswith("{")
-    options = {"name": text} if plain else parse_behavior(text)
-    name = AS_WRITTEN if options is None else str(options["name"])
-    keys = {key: value for key, value in (options or {}).items() if key != "name"}
+    name, keys = _parsed(text)
     if name.endswith(SUFFIXES):
         return _from_file(text, name, keys, folder, root)
     if name in behavior_names():
@@ -94,6 +97,23 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
     if maker is None:
         raise _unknown(name, root)
     return _named(_made(name, maker, keys), text)
+
+
+def names_file(text: str) -> bool:
+    """Whether the text of a policy names a file.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    return _parsed(text)[0].endswith(SUFFIXES)
+
+
+def _parsed(text: str) -> tuple[str, dict[str, Any]]:
+    """Name and options of a policy that is given as text."""
+    plain = text.endswith(SUFFIXES) and not text.startswith("{")
+    options = {"name": text} if plain else parse_behavior(text)
+    name = AS_WRITTEN if options is None else str(options["name"])
+    return name, {key: value for key, value in (options or {}).items() if key != "name"}
 
 
 def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
@@ -128,10 +148,16 @@ def _named(policy: Policy, text: str) -> Policy:
     return policy
 
 
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
 def _from_file(
     text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
 ) -> Policy:
     """A network from a file."""
+    from irsim.policies.networks import open_network
+
     if root is not None and (why := why_outside(name, Path(root))) is not None:
         raise PolicyError("policy-failed", f"{clean(name)!r} {why}", "name a file of the workspace", where="policy")
     path = Path(root if root is not None else folder or ".", name)
@@ -142,12 +168,16 @@ def _from_file(
         raise UnknownPolicyError(f"there is no file {clean(name)!r}", fix)
     if path.stat().st_size > MAX_FILE_BYTES:
         raise PolicyError("over-limit", f"{clean(name)!r} has more than {MAX_FILE_BYTES:,} bytes", "use a smaller file")
-    digest = hashlib.sha256(path.read_bytes()).hexdigest()
-    open_network = import_module(_NETWORKS).open_network
-    policy = _made(name, lambda **given: open_network(path, **given), options)
-    if "stochastic" not in vars(type(policy)):
-        policy.stochastic = False
-    policy.text, policy.digest = text, digest
+    period = options.get("decision_dt")
+    unknown = [key for key in options if key != "decision_dt"]
+    if unknown or (period is not None and not (_is_number(period) and period > 0)):
+        what = f"{clean(unknown[0])!r} is no option of a file" if unknown else "decision_dt must be a time [s] above 0"
+        raise PolicyError("policy-failed", f"{clean(name)!r}: {what}", "the only option is decision_dt", where="policy")
+    policy = open_network(path)
+    if period is not None:
+        policy.decision_dt = float(period)
+    policy.stochastic = False
+    policy.text, policy.digest = text, hashlib.sha256(path.read_bytes()).hexdigest()
     whole = str(path.resolve())
     policy.source = yaml_flow({"name": whole, **options}) if options else whole
     return policy

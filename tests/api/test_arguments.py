@@ -41,7 +41,7 @@ _NOT_A_BEHAVIOR = r"(is not a valid behavior|a policy cannot be .+)"
 def test_what_is_no_behavior_is_told(behaviors: Any) -> None:
     with pytest.raises(BenchmarkError, match=rf"{_NOT_A_BEHAVIOR}\. Fix: give a name") as told:
         irsim.benchmark(TEXT, behaviors, 1)
-    assert told.value.where == "behaviors[0]"
+    assert told.value.where == "policies[0]"
     with pytest.raises(BenchmarkError, match=_NOT_A_BEHAVIOR):
         irsim.run(text=TEXT, behavior=behaviors)
 

@@ -84,7 +84,8 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
     made = open_policy("my net.npz", folder=tmp_path)
     assert (made.text, made.name, made.stochastic) == ("my net.npz", "my net", False)
     assert made.digest == hashlib.sha256(b"weights").hexdigest()
-    again = open_policy({"name": str(tmp_path / "my net.npz"), "speed": 2})
+    again = open_policy({"name": str(tmp_path / "my net.npz"), "decision_dt": 0.5})
+    assert again.decision_dt == 0.5
     assert made.source is not None
     assert again.source is not None
     assert open_policy(made.source).digest == open_policy(again.source).digest == made.digest
@@ -99,6 +100,8 @@ def test_files_have_a_digest_and_are_found_from_their_folder(tmp_path: Path) -> 
         ("nett.npz", "there is no file 'nett.npz'. Fix: did you mean net.npz"),
         ("orca dash", "'orca dash' is not a valid behavior"),
         (7, "a policy cannot be 7"),
+        ("{name: net.npz, sped: 1}", "'sped' is no option of a file"),
+        ("{name: net.npz, decision_dt: -1}", "decision_dt must be a time"),
         ("{name: still, sped: 1}", "policy-failed: policy 'still' cannot be made: .*sped"),
         ("{name: random, decision_dt: soon}", "policy 'random' cannot be made"),
     ],
