@@ -18,7 +18,7 @@ from typing import Any
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_policies, naming, opened_policies
-from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
 from irsim.benchmarks.timing import timing_report
 from irsim.common.arguments import as_given, check_whole_number
@@ -46,8 +46,9 @@ __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged
 
 DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
-_SEEDS_PER_TURN = 5
-"""Number of seeds that one policy runs before the next one: so an interrupted benchmark can be compared, too."""
+_SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
+"""Number of seeds that one policy runs before the next one, so that an interrupted benchmark can be compared, too: few,
+or where policies are networks as many as are run together."""
 _COPIED = (
     *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
     *("human_contacts", "left", "jumped", "zones"),
@@ -164,7 +165,8 @@ def benchmark(
         for seed in (every if chances[name] else every[:1])
     ]
 
-    rank = {seed: position // _SEEDS_PER_TURN for position, seed in enumerate(chosen)}
+    turn = _SEEDS_PER_TURN[any(policy.batch_invariant for policy in opened)]
+    rank = {seed: position // turn for position, seed in enumerate(chosen)}
     turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
     head = BenchmarkResult(
         scenarios=names,
@@ -240,8 +242,8 @@ def _timing(
     }
     for number, result in found.items():
         own = times[labels[number]]
-        if own is not None:
-            own[str(number)] = result.get("decisions", [])
+        if own is not None and "decisions" in result:
+            own[str(number)] = result["decisions"]
     return timing_report(times, {name: labels.count(name) for name in times})
 
 

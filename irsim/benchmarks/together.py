@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of, measure, run_task
+from irsim.benchmarks.episode import Episode, Job, Task, crowded, environment_of, measure, policy_of, run_task
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of
 from irsim.metrics.geodesic import Geodesics
+from irsim.policies.driver import PolicyDriver, attach_policy, driver_of
 from irsim.scenario.limits import Limits
 from irsim.simulation.events import read_events
 from irsim.simulation.simulation import Simulation
@@ -26,7 +27,8 @@ _BYTES_PER_ROW = 75
 def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) -> Iterator[dict[str, Any]]:
     """Run one episode for each seed; the results equal those of :func:`irsim.benchmarks.episode.run_task`.
 
-    A scenario in which Python code takes part runs one episode after another.
+    A scenario in which Python code takes part runs one episode after another, unless that is a policy which decides in
+    a batch as it does for single robots. Its first episode then runs alone, to time its decisions.
 
     Args:
         job: Scenario and behavior.
@@ -37,8 +39,12 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
         The result of each seed, in order.
     """
     scene, horizons = _scene(job, seeds)
-    if scene is None or len(seeds) == 1 or scene.simulation.in_python:
-        yield from (run_task(Task(job, seed), ways) for seed in seeds)
+    alone = list(seeds)
+    if scene is not None and _fit_together(scene.simulation):
+        alone = alone[:1] if len(seeds) == 1 or driver_of(scene.simulation) else []
+    yield from (run_task(Task(job, seed), ways) for seed in alone)
+    seeds = seeds[len(alone) :]
+    if not seeds or scene is None:
         return
     size = worlds_at_once(scene.simulation.objects, max(horizons.values()))
     ran: dict[int, tuple[Simulation, int, Trace]] = {}
@@ -49,6 +55,7 @@ def run_together(job: Job, seeds: Sequence[int], ways: Geodesics | None = None) 
         if seed not in ran:
             some = [one for one in seeds[place:] if one in horizons][:size]
             simulation = Simulation(scene.scenario, some)
+            attach_policy(simulation, policy_of(job))
             traces = record_worlds(simulation, [horizons[one] for one in some])
             ran = {one: (simulation, world, trace) for world, (one, trace) in enumerate(zip(some, traces, strict=True))}
         simulation, world, trace = ran[seed]
@@ -83,6 +90,13 @@ def _scene(job: Job, seeds: Sequence[int]) -> tuple[Env | None, dict[int, int]]:
             continue
         horizons[seed], _ = horizon_of(scene.scenario, scene, job.steps, limits)
     return scene, horizons
+
+
+def _fit_together(simulation: Simulation) -> bool:
+    """Whether worlds of a scenario that are stepped together do what they do alone, and gain by it."""
+    others = simulation.measurements or simulation.drives is not None or simulation.hooks is not None
+    policies = [part.policy for part in simulation.decisions if isinstance(part, PolicyDriver)]
+    return not others and len(policies) == len(simulation.decisions) and all(one.batch_invariant for one in policies)
 
 
 def _draw(scene: Env, seed: int) -> None:

@@ -76,6 +76,8 @@ class Policy(ABC):
             keeps its control (or follows its velocity) in between.
         stochastic: Whether its decisions may differ between seeds where everything else is equal. A benchmark runs a
             deterministic policy only once in a scenario that leaves nothing to chance.
+        batch_invariant: Whether its decision for a robot has the same bits whatever other robots a call decides for.
+            Benchmarks then step many worlds at once; else one after another.
         text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
         source: What opens it again in another folder, with the full path of its file; None as for ``text``.
         digest: SHA-256 of the file that it was read from; None without one.
@@ -87,6 +89,7 @@ class Policy(ABC):
     drives: frozenset[str] | None = None
     decision_dt: float | None = None
     stochastic: bool = True
+    batch_invariant: bool = False
     text: str | None = None
     source: str | None = None
     digest: str | None = None

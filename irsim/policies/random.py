@@ -19,6 +19,8 @@ class RandomPolicy(Policy):
         decision_dt: Time for which a control is kept [s].
     """
 
+    batch_invariant = True
+
     def __init__(self, decision_dt: float | None = None) -> None:
         self.name = RANDOM
         self.decision_dt = None if decision_dt is None else float(decision_dt)

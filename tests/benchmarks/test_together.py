@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -10,6 +12,9 @@ from irsim.benchmarks import together
 from irsim.benchmarks.episode import Job, Task, run_task
 from irsim.benchmarks.together import run_together, worlds_at_once
 from irsim.diagnostics.errors import OverLimitError
+from irsim.policies.catalog import open_policy
+from irsim.policies.networks import save_network
+from tests.policies.networks.examples import crowd, filled
 
 CROWD = """
 world: {width: 8, height: 8, step_time: 0.1, time_limit: 12}
@@ -76,3 +81,19 @@ def test_limits_hold_for_every_episode() -> None:
     limited = Job(CROWD.replace("PEOPLE", "2"), None, "orca", 100, False, (), (("steps", 50),))
     with pytest.raises(OverLimitError):
         list(run_together(limited, [1, 2]))
+
+
+@pytest.mark.parametrize("policy", ["random", "network"])
+def test_policies_in_python_decide_for_many_worlds_as_they_do_for_one(policy: str, tmp_path: Path) -> None:
+    source = policy
+    if policy == "network":
+        source = str(tmp_path / "net.npz")
+        save_network(source, filled(crowd()))
+    opened = open_policy(source)
+    made = replace(job(behavior="as-written"), policy=opened.source, digest=opened.digest)
+    alone = [run_task(Task(made, seed)) for seed in range(5)]
+    decided = [len(result.pop("decisions")) for result in alone]
+    found = list(run_together(made, list(range(5))))
+    assert ["decisions" in result for result in found] == [True, False, False, False, False], "one alone, to be timed"
+    assert len(found[0].pop("decisions")) == decided[0]
+    assert [json.dumps(result) for result in found] == [json.dumps(result) for result in alone]

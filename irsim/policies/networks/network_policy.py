@@ -36,6 +36,7 @@ class NetworkPolicy(Policy):
     """
 
     stochastic = False
+    batch_invariant = True
 
     def __init__(self, name: str, head: PolicyHead, facts: Mapping[str, Any]) -> None:
         self.name, self.head = name, head
