@@ -15,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from irsim.benchmarks.cluster import run_on_cluster
 from irsim.benchmarks.episode import Job, Task, Until, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.pool import cores, run_tasks
@@ -66,6 +67,7 @@ def benchmark(
     strict: bool = False,
     imports: Sequence[str] = (),
     workers: int | None = None,
+    cluster: str | None = None,
     limits: Limits | None = None,
     most_episodes: int | None = None,
     progress: Progress | None = None,
@@ -75,7 +77,8 @@ def benchmark(
 ) -> BenchmarkResult:
     """Run every scenario under every behavior with every seed, and compare.
 
-    Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per behavior.
+    Results depend neither on the number of workers nor on the cluster. A scenario that leaves nothing to chance is run
+    once per behavior.
     An episode whose seed leaves no room for an object has the outcome ``placement-crowded`` and counts in no mean.
 
     Args:
@@ -92,7 +95,10 @@ def benchmark(
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first, for behaviors that they register.
-        workers: Greatest number of processes; default: the number of cores of this machine.
+        workers: Greatest number of processes; default: the number of cores of this machine, or of the cluster.
+        cluster: Address of a Ray cluster that runs the episodes: ``auto`` (the one of RAY_ADDRESS or of this machine,
+            started if there is none), ``ray://host:port``, or ``host:port`` on a machine of the cluster. Its machines
+            need this version of irsim, and the modules of ``imports``; scenarios and maps are sent to them.
         limits: Limits of the loader and of each run.
         most_episodes: Greatest number of episodes; more are refused.
         progress: Callback ``(episodes_done, episodes_total)``.
@@ -109,6 +115,8 @@ def benchmark(
         BenchmarkError: A behavior, the seeds or a perturbation are invalid.
         ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
+        ExtraError: Ray is not installed; ClusterError: no cluster answers, or it has another irsim or lacks a module.
+        WorkerError: Several processes have died in the same episode.
     """
     names, given = _named_sources(files)
     wanted = _behavior_texts(behaviors)
@@ -146,6 +154,7 @@ def benchmark(
                 until=until,
                 perturb=texts,
                 name=name,
+                maps=() if cluster is None else tuple(scenario.map_files.items()),
             )
             with _naming_behavior(number):
                 chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
@@ -188,12 +197,11 @@ def benchmark(
                 book.add(turns[number], row(turns[number], result))
 
         turns = [number for number in turns if number not in known]
-        found = run_tasks(
-            [plan[number][2] for number in turns],
-            workers=workers or cores(),
-            progress=_after(progress, len(known)),
-            kept=keep,
-        )
+        ordered, report = [plan[number][2] for number in turns], _after(progress, len(known))
+        if cluster is None:
+            found = run_tasks(ordered, workers=workers or cores(), progress=report, kept=keep)
+        else:
+            found = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
     episodes = known | {number: row(number, result) for number, result in zip(turns, found, strict=True)}
     return with_episodes(head, [episodes[number] for number in range(len(plan))])
 

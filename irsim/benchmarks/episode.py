@@ -70,6 +70,7 @@ class Job:
         until: ``done``, or ``first_collision`` to end the episode when a robot collides.
         perturb: Perturbations of the scenario, as on the command line.
         name: Name of the scenario in the results.
+        maps: Name of a map in the scenario → file that holds it now; empty to find the files as the scenario does.
     """
 
     text: str
@@ -82,6 +83,7 @@ class Job:
     until: Until = "done"
     perturb: tuple[str, ...] = ()
     name: str = ""
+    maps: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,8 @@ class Task:
         """The task of the data that :meth:`as_data` returns."""
         job = data["job"]
         job["imports"], job["perturb"] = tuple(job["imports"]), tuple(job["perturb"])
-        job["limits"] = tuple((name, value) for name, value in job["limits"])
+        for key in ("limits", "maps"):
+            job[key] = tuple((name, value) for name, value in job.get(key, ()))
         return Task(Job(**job), data["seed"])
 
 
@@ -114,6 +117,7 @@ def scenario_of(job: Job) -> ResolvedScenario:
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
+    document.maps = dict(job.maps)
     scenario = with_behavior(document, parse_behavior(job.behavior), strict=job.strict)
     return perturbed(scenario, read_perturbations(job.perturb))
 
