@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from irsim.benchmarks.episode import Task, run_task, scenario_of
+from irsim.scenario.behavior_override import check_behavior_name
 
 __all__ = ["check_jobs", "run_chunk"]
 
@@ -44,6 +45,7 @@ def check_jobs(shared: Mapping[str, Any], numbers: Sequence[int], fetch: Fetch) 
             job = _with_maps(shared, number, Path(folder), fetch)
             try:
                 scenario_of(Task.of_data({"job": job, "seed": 0}).job)
+                check_behavior_name(job["behavior"])
             except Exception as error:
                 return _text_of(error)
     return None

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -26,6 +26,8 @@ _CONNECT_S = 10.0
 """Time within which the port of a cluster must answer [s]."""
 _JOIN_S = 40.0
 """Time within which a process must have joined the cluster [s]."""
+_CLIENT_ATTEMPTS = 2
+"""Attempts to connect from outside; Ray gives up each after 30 s, which a busy cluster may need to start a process."""
 _NO_CLUSTER = 3
 """Exit status of the probe where Ray knows of no cluster."""
 _PROBE = f"""
@@ -92,10 +94,16 @@ def _join(ray: Any, address: str, cpus: int) -> None:
             }  # fmt: skip
         elif address != AUTO:
             _probe(address)
-    try:
-        ray.init(**options, log_to_driver=False, configure_logging=False, logging_level=logging.CRITICAL)
-    except Exception as error:  # Ray has no common class for these
-        raise _refused(address, str(error)) from None
+    attempts = _CLIENT_ATTEMPTS if address.startswith(_CLIENT) else 1
+    for left in reversed(range(attempts)):
+        try:
+            ray.init(**options, log_to_driver=False, configure_logging=False, logging_level=logging.CRITICAL)
+            return
+        except Exception as error:  # Ray has no common class for these
+            with suppress(Exception):
+                ray.shutdown()  # of a connection that is half made
+            if not left:
+                raise _refused(address, str(error) or type(error).__name__) from None
 
 
 def _probe(address: str) -> int:

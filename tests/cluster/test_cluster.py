@@ -145,15 +145,15 @@ def test_the_first_error_of_an_episode_is_that_of_a_local_run(folder: Path, clus
 from irsim.plugins import register_behavior
 
 @register_behavior("diff", "breaks")
-def breaks(words, objects, reach_angle=0, **options):
-    raise ValueError("on purpose")
+def breaks(ego_object, external_objects, **options):
+    raise ValueError(f"on purpose at {ego_object.state[0, 0]}")
 """,
         encoding="utf-8",
     )
     sys.modules.pop("breaks", None)
     messages = []
     for address in (None, cluster.address):
-        with pytest.raises(irsim.IrsimError) as error:
+        with pytest.raises(ValueError, match="on purpose") as error:
             irsim.benchmark("scene.yaml", "breaks", 6, cluster=address, imports=["breaks"])
         messages.append(f"{type(error.value)} {error.value}")
     assert messages[0] == messages[1]
