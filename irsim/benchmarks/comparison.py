@@ -15,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from irsim.benchmarks.cluster import run_on_cluster
 from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_policies, naming, opened_policies
@@ -67,6 +68,7 @@ def benchmark(
     strict: bool = False,
     imports: Sequence[str] = (),
     workers: int | None = None,
+    cluster: str | None = None,
     limits: Limits | None = None,
     most_episodes: int | None = None,
     progress: Progress | None = None,
@@ -77,7 +79,8 @@ def benchmark(
 ) -> BenchmarkResult:
     """Run every scenario under every policy with every seed, and compare.
 
-    Results do not depend on the number of workers. A scenario that leaves nothing to chance is run once per policy.
+    Results depend neither on the number of workers nor on the cluster. A scenario that leaves nothing to chance is run
+    once per policy.
     An episode whose seed leaves no room for an object has the outcome ``placement-crowded`` and counts in no mean.
 
     Args:
@@ -96,7 +99,10 @@ def benchmark(
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules to import first, for behaviors that they register.
-        workers: Greatest number of processes; default: the number of cores of this machine.
+        workers: Greatest number of processes; default: the number of cores of this machine, or of the cluster.
+        cluster: Address of a Ray cluster that runs the episodes: ``auto`` (the one of RAY_ADDRESS or of this machine,
+            started if there is none), ``ray://host:port``, or ``host:port`` on a machine of the cluster. Its machines
+            need this version of irsim, and the modules of ``imports``; scenarios and maps are sent to them.
         limits: Limits of the loader and of each run.
         most_episodes: Greatest number of episodes; more are refused.
         progress: Callback ``(episodes_done, episodes_total)``.
@@ -115,6 +121,8 @@ def benchmark(
         PolicyError: A policy cannot drive the robots of a scenario, or failed.
         ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
+        ExtraError: Ray is not installed; ClusterError: no cluster answers, or it has another irsim or lacks a module.
+        WorkerError: Several processes have died in the same episode.
     """
     names, given = _named_sources(files)
     listed, where = listed_policies(policies, behaviors)
@@ -153,6 +161,7 @@ def benchmark(
                 until=until,
                 perturb=texts,
                 name=name,
+                maps=() if cluster is None else tuple(scenario.map_files.items()),
                 **job_keys(policy),
             )
             with naming(where, number):
@@ -199,12 +208,11 @@ def benchmark(
                 book.add(turns[number], row(turns[number], result))
 
         turns = [number for number in turns if number not in known]
-        found = run_tasks(
-            [plan[number][2] for number in turns],
-            workers=workers or cores(),
-            progress=_after(progress, len(known)),
-            kept=keep,
-        )
+        ordered, report = [plan[number][2] for number in turns], _after(progress, len(known))
+        if cluster is None:
+            found = run_tasks(ordered, workers=workers or cores(), progress=report, kept=keep)
+        else:
+            found = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
     if timing is not None:
         timing.update(_timing(opened, plan, dict(zip(turns, found, strict=True))))
     episodes = known | {number: row(number, result) for number, result in zip(turns, found, strict=True)}

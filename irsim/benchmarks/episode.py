@@ -92,6 +92,7 @@ class Job:
         policy: Text that opens the policy in Python that drives the robots, in any folder; None: behaviors do.
         digest: SHA-256 of its file; None without one.
         local: The policy itself, if only this process has it.
+        maps: Name of a map in the scenario → file that holds it now; empty to find the files as the scenario does.
     """
 
     text: str
@@ -107,11 +108,12 @@ class Job:
     policy: str | None = None
     digest: str | None = None
     local: Policy | None = None
+    maps: tuple[tuple[str, str], ...] = ()
 
     @staticmethod
     def of_data(data: dict[str, Any]) -> Job:
         """The job of its fields as JSON types."""
-        pairs = {"limits": tuple((name, value) for name, value in data["limits"])}
+        pairs = {key: tuple((name, value) for name, value in data[key]) for key in ("limits", "maps")}
         return Job(**{**data, **pairs, "imports": tuple(data["imports"]), "perturb": tuple(data["perturb"])})
 
 
@@ -133,6 +135,7 @@ def scenario_of(job: Job) -> ResolvedScenario:
     """
     import_modules(job.imports)
     document = load_text(job.text, name=job.path, path=job.path, limits=Limits(**dict(job.limits)))
+    document.maps = dict(job.maps)
     scenario = with_behavior(document, parse_behavior(job.behavior), strict=job.strict)
     return perturbed(scenario, read_perturbations(job.perturb))
 

@@ -57,6 +57,7 @@ def run_plan(
     *,
     resume: bool = False,
     workers: int | None = None,
+    cluster: str | None = None,
     progress: Progress | None = None,
     limits: Limits | None = None,
     finish: Callable[[BenchmarkResult, Path], object] | None = None,
@@ -68,6 +69,7 @@ def run_plan(
         folder: The folder, which is made.
         resume: Go on with what an interrupted run of the same plan has left there.
         workers: Greatest number of processes; the files do not depend on it.
+        cluster: Address of a Ray cluster, as of :func:`irsim.benchmark`; the files do not depend on it either.
         progress: Callback ``(episodes_done, episodes_total)``.
         limits: Limits of the loader and of each run.
         finish: Called with the result and the folder before another process may work there, to write a report.
@@ -93,6 +95,7 @@ def run_plan(
             strict=plan.strict,
             imports=plan.imports,
             workers=workers,
+            cluster=cluster,
             limits=limits,
             progress=progress,
             log=folder / EPISODES,
@@ -113,6 +116,7 @@ def resume_benchmark(
     folder: Path,
     *,
     workers: int | None = None,
+    cluster: str | None = None,
     progress: Progress | None = None,
     limits: Limits | None = None,
     finish: Callable[[BenchmarkResult, Path], object] | None = None,
@@ -141,7 +145,9 @@ def resume_benchmark(
                 f"{name} of the scenario {scenario.name} has changed since {folder} was started",
                 "restore the file, or start again in another folder",
             )
-    return run_plan(plan, folder, resume=True, workers=workers, progress=progress, limits=limits, finish=finish)
+    return run_plan(
+        plan, folder, resume=True, workers=workers, cluster=cluster, progress=progress, limits=limits, finish=finish
+    )
 
 
 def _make(folder: Path) -> None:
@@ -184,7 +190,7 @@ def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
         RunError: See :func:`run_plan`.
     """
     text, known = plan.model_dump_json(indent=1) + "\n", folder / PLAN
-    if (folder / EPISODES).exists() and not resume:
+    if not resume and _has_episodes(folder / EPISODES):
         raise RunError("results-exist", f"{folder} holds episodes already", "give --resume, or another folder with -o")
     if known.exists() and known.read_text(encoding="utf-8") != text:
         raise RunError("other-benchmark", f"{folder} holds another benchmark", "give another folder with -o")
@@ -193,6 +199,14 @@ def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
     for leftover in (*folder.glob(f"{TEMPORARY}*"), *folder.glob(f"*/{TEMPORARY}*")):
         with suppress(OSError):
             leftover.unlink()
+
+
+def _has_episodes(log: Path) -> bool:
+    """Whether a log holds more than its head, which is all that a run without a cluster to run on has written."""
+    try:
+        return log.read_bytes().count(b"\n") > 1
+    except FileNotFoundError:
+        return False
 
 
 def _write(path: Path, text: str) -> None:

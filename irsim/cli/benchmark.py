@@ -80,6 +80,15 @@ def benchmark(
             min=1, help="Number of processes, which does not affect results. Default: all cores.", show_default=False
         ),
     ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            show_default=False,
+            help="Run on a Ray cluster, which does not affect results: auto, ray://host:port, or host:port from one of "
+            "its machines. Needs the extra `cluster`.",
+        ),
+    ] = None,
     max_objects: MaxObjects = None,
     output: Annotated[
         Path | None,
@@ -131,8 +140,8 @@ def benchmark(
     import_user_modules(imports)
     wanted = Wanted(
         files=files or [], policies=policies, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
-        imports=imports or [], workers=workers, max_objects=max_objects, folder=output, resume=resume, full=full,
-        protocols=protocols or [], scenarios=scenarios or [],
+        imports=imports or [], workers=workers, cluster=cluster, max_objects=max_objects, folder=output, resume=resume,
+        full=full, protocols=protocols or [], scenarios=scenarios or [],
     )  # fmt: skip
     result = run_benchmark(wanted)
     if json_output:

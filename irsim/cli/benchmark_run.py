@@ -28,6 +28,7 @@ class Wanted:
     strict: bool
     imports: Sequence[str]
     workers: int | None
+    cluster: str | None
     max_objects: int | None
     folder: Path | None
     resume: bool
@@ -65,7 +66,14 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
             if not wanted.resume:
                 raise ArgumentError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
-            result = resume_benchmark(folder, workers=wanted.workers, progress=report, limits=limits, finish=finish)
+            result = resume_benchmark(
+                folder,
+                workers=wanted.workers,
+                cluster=wanted.cluster,
+                progress=report,
+                limits=limits,
+                finish=finish,
+            )
         elif suites or wanted.folder is not None or wanted.resume:
             plan = _suite(suites[0], wanted) if suites else _plan(wanted)
             folder = wanted.folder or default_folder(plan)
@@ -74,6 +82,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
                 folder,
                 resume=wanted.resume,
                 workers=wanted.workers,
+                cluster=wanted.cluster,
                 progress=report,
                 limits=limits,
                 finish=finish,
@@ -85,8 +94,8 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
             policies = [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies)
             return benchmark(
                 list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
-                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
-                progress=report,
+                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers,
+                cluster=wanted.cluster, limits=limits, progress=report,
             )  # fmt: skip
     out = console(stderr=True)
     for written in reports:

@@ -27,9 +27,12 @@ __all__ = [
     "PolicySource",
     "UnknownPolicyError",
     "behavior_names",
+    "file_of",
+    "files_beside",
     "names_file",
     "open_policy",
     "policy_names",
+    "with_file",
 ]
 
 PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] | Mapping[str, Any]
@@ -105,7 +108,28 @@ def names_file(text: str) -> bool:
     Raises:
         BenchmarkError: The text is not a policy.
     """
-    return _parsed(text)[0].endswith(SUFFIXES)
+    return file_of(text) is not None
+
+
+def file_of(text: str) -> Path | None:
+    """The file that the text of a policy names; None if it names none.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    name = _parsed(text)[0]
+    return Path(name) if name.endswith(SUFFIXES) else None
+
+
+def files_beside(path: Path) -> list[Path]:
+    """The files that a policy may have beside its own: the document of an ONNX model."""
+    return [path.with_suffix(".json")] if path.suffix == ".onnx" else []
+
+
+def with_file(text: str, path: Path) -> str:
+    """The text of a policy that is a file, with another path and the same options."""
+    options = _parsed(text)[1]
+    return yaml_flow({"name": str(path), **options}) if options else str(path)
 
 
 def _parsed(text: str) -> tuple[str, dict[str, Any]]:
@@ -148,6 +172,15 @@ def _named(policy: Policy, text: str) -> Policy:
     return policy
 
 
+def _digest(path: Path) -> str:
+    """SHA-256 of a file, and of those beside it that belong to it."""
+    found = hashlib.sha256(path.read_bytes())
+    for other in files_beside(path):
+        if other.is_file():
+            found.update(other.read_bytes())
+    return found.hexdigest()
+
+
 def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
@@ -177,7 +210,6 @@ def _from_file(
     if period is not None:
         policy.decision_dt = float(period)
     policy.stochastic = False
-    policy.text, policy.digest = text, hashlib.sha256(path.read_bytes()).hexdigest()
-    whole = str(path.resolve())
-    policy.source = yaml_flow({"name": whole, **options}) if options else whole
+    policy.text, policy.digest = text, _digest(path)
+    policy.source = with_file(text, path.resolve())
     return policy

@@ -114,6 +114,15 @@ TOOLS: dict[str, Code] = {
         "folder in use", "Another process is running the benchmark in this folder; wait for its end, or name another."
     ),
     "not-writable": Code("folder cannot be written", "The result could not be written; make room, then give --resume."),
+    "no-cluster": Code(
+        "no cluster answers",
+        "No Ray cluster can be used at that address; the message has the reason. Without --cluster, benchmarks run "
+        "on this machine.",
+    ),
+    "cluster-differs": Code(
+        "cluster cannot run this",
+        "The machines of the cluster have another version of irsim, or lack a module; results would differ or fail.",
+    ),
     "step-out-of-range": Code(
         "step outside the run",
         "The recorded run has no such step; the message has the range of its steps.",
