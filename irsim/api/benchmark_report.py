@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,8 @@ __all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "write_report"]
 MARKDOWN, PAGE, REPLAYS = "results.md", "results.html", "replays"
 """Names of the files, and of the folder of the replays."""
 _MOMENTS, _WIDTH_PX = 4, 1400
+MAX_NAME = 120
+"""Number of characters of the name of a replay that tell the scenario and the policy."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,8 @@ def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: Bench
     png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX)
     env.end(ending_time=0.0)
     label = policy_labels(result)[one.behavior]
-    name = f"{one.scenario.replace('/', '-')}-{label.replace(' ', '-')}-{one.seed}.html"
+    words = re.sub(r"[^\w.-]+", "-", f"{one.scenario}-{label}").strip("-.")  # a policy may be the path of a file
+    name = f"{words[-MAX_NAME:]}-{one.seed}.html"
     failed = ", ".join(f"{robot}: {how}" for robot, how in list(one.failures.items())[:3])
     caption = f"{one.scenario}, {label}, seed {one.seed}: {one.outcome} after {one.sim_time:.1f} s ({failed})"
     replayed = document.path is None and _replay(scenario.text, one, plan, policy, folder / REPLAYS / name)

@@ -173,8 +173,12 @@ def test_reports_show_episodes_of_policies() -> None:
     from irsim.api.benchmark_report import write_report
 
     Path("net.npz").write_text("0.01")
-    result = run_plan(file_plan(["scene.yaml"], ["net.npz"], "1"), Path("out"), workers=1)
+    Path("of mine").mkdir()
+    Path("of mine/net.npz").write_text("0.02")
+    policies = [str(Path("of mine/net.npz").resolve()), "net.npz"]
+    result = run_plan(file_plan(["scene.yaml"], policies, "1"), Path("out"), workers=1)
     assert "net.npz" in write_report(result, Path("out")).page.read_text()
+    assert len(list(Path("out/replays").glob("*net.npz-0.html"))) == 2
 
 
 def test_results_do_not_depend_on_the_number_of_processes() -> None:
