@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["LayerPolicy", "NetworkPolicy"]
 
+_NUMBERS_AT_ONCE = 500_000
+"""Results of layers that are computed together: as many robots as fit the caches, and never much memory."""
+
 
 class NetworkPolicy(Policy):
     """A network that observes the parts of a layout.
@@ -102,15 +105,21 @@ class LayerPolicy(NetworkPolicy):
         super().__init__(name, document, {**(facts or {}), **size, "precision": document.precision, "layers": layers})
         self._network, self._arrays = network, network.by_layer()
         self._dtype = np.dtype(document.precision)
+        self._rows = max(1, _NUMBERS_AT_ONCE // max(1, plan.numbers))
         self._slots = Slots(plan.memory, self._dtype) if plan.memory else None
 
     def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:
         """(B, F) result of the layers."""
         values = {label: Value(value.array.astype(self._dtype), value.mask) for label, value in observed.items()}
         rows, memory = (None, {}) if self._slots is None else self._slots.recall(observations)
-        document = self._network.document
+        results = []
         with np.errstate(all="ignore"):  # what is not finite is reported where the result is used
-            result = run_graph(document.network, self._arrays, values, memory, document.output.input)
+            for first in range(0, max(len(observations), 1), self._rows):
+                some = slice(first, first + self._rows)
+                seen = {label: value.rows(some) for label, value in values.items()}
+                kept = {label: state[some] for label, state in memory.items()}  # views, which layers write
+                document = self._network.document
+                results.append(run_graph(document.network, self._arrays, seen, kept, document.output.input).array)
         if self._slots is not None and rows is not None:
             self._slots.store(rows, memory)
-        return result.array
+        return np.concatenate(results)

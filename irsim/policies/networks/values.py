@@ -63,6 +63,10 @@ class Value:
         """Its shape without the rows of robots."""
         return Shape(self.array.shape[-1], None if self.mask is None else self.array.shape[1])
 
+    def rows(self, some: slice) -> Value:
+        """The value of some of the robots."""
+        return Value(self.array[some], None if self.mask is None else self.mask[some])
+
     def flags(self) -> NDArray[np.uint8] | None:
         """The mask as the core takes it."""
         return None if self.mask is None else np.ascontiguousarray(self.mask).view(np.uint8)

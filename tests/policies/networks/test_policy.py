@@ -11,7 +11,15 @@ import pytest
 
 import irsim
 from irsim.policies import Observations
-from irsim.policies.networks import Network, NetworkPolicy, PolicyInputError, mlp, open_network, save_network
+from irsim.policies.networks import (
+    Network,
+    NetworkPolicy,
+    PolicyInputError,
+    mlp,
+    network_policy,
+    open_network,
+    save_network,
+)
 from tests.policies.networks.examples import crowd, filled, go_to_goal
 from tests.policies.networks.observed import observations, rows, same_bits
 
@@ -54,6 +62,16 @@ def test_a_decision_is_the_same_alone_and_in_any_batch(opened: Any, precision: s
             assert same_bits(shuffled.act(rows(seen, order)), controls[order])
             for k in range(count):
                 assert same_bits(apart[k].act(rows(seen, [k])), controls[k : k + 1])
+
+
+def test_many_robots_are_computed_in_portions(opened: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    network, seen = filled(crowd()), [observations(50), observations(50, 1)]
+    whole = opened(network)
+    expected = [whole.act(one) for one in seen]
+    monkeypatch.setattr(network_policy, "_NUMBERS_AT_ONCE", 3000)
+    portions = opened(network)
+    assert 1 < portions._rows < 50
+    assert all(same_bits(portions.act(one), result) for one, result in zip(seen, expected, strict=True))
 
 
 def test_a_perceptron_computes_what_plain_numpy_computes(opened: Any) -> None:
