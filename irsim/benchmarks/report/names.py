@@ -19,7 +19,8 @@ def policy_labels(result: BenchmarkResult) -> dict[str, str]:
     if isinstance(result, SuiteResult):
         labels = {text: name for name, text in result.policies.items()}
     else:
-        labels = labels_of(result.behaviors)
+        files = {text: text for text in result.behaviors if text.endswith(SUFFIXES)}
+        labels = labels_of(result.behaviors) | files
     for parts in (1, 2):
         short = {text: _shortened(label, parts) for text, label in labels.items()}
         if len(set(short.values())) == len(labels):
