@@ -26,6 +26,7 @@ from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.validation.validate import diff, fix, validate
@@ -100,9 +101,13 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    driver, behavior_text = _opened(policy, behavior)
+    driver, behavior_text = _opened(policy, behavior, limits)
     perturbations = read_perturbations(perturb)
-    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+    try:
+        scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+    except BenchmarkError as error:
+        error.where = "behavior" if policy is None else "policy"
+        raise
     scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
     chosen = seed_of(scenario, seed)
     hidden = save is None and not show
@@ -142,7 +147,7 @@ def run(
     return result
 
 
-def _opened(policy: Any, behavior: Any) -> tuple[Policy | None, str | None]:
+def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy | None, str | None]:
     """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
 
     Raises:
@@ -150,7 +155,6 @@ def _opened(policy: Any, behavior: Any) -> tuple[Policy | None, str | None]:
     """
     from irsim.policies.behavior import BehaviorPolicy
     from irsim.policies.catalog import open_policy
-    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 
     if policy is not None and behavior is not None:
         raise ArgumentError("policy and behavior are two names of one argument", "give only policy")
@@ -158,7 +162,7 @@ def _opened(policy: Any, behavior: Any) -> tuple[Policy | None, str | None]:
     if chosen is None:
         return None, None
     try:
-        opened = open_policy(chosen)
+        opened = open_policy(chosen, root=None if limits is None else limits.root)
     except BenchmarkError as error:
         error.where = where
         raise

@@ -135,7 +135,7 @@ def benchmark(
     limits = limits or DEFAULT_LIMITS
     _check_size(names, listed, chosen, most_episodes)
     import_modules(imports)
-    opened = opened_policies(listed, where)
+    opened = opened_policies(listed, where, limits.root)
     wanted = [label_of(policy) for policy in opened]
     _check_names(names, wanted)
     warnings: dict[str, list[Finding]] = {}

@@ -42,8 +42,13 @@ def listed_policies(policies: Any, behaviors: Any) -> tuple[list[Any], str]:
     return [given] if one else list(given), where
 
 
-def opened_policies(given: Sequence[Any], where: str, folder: str | Path | None = None) -> list[Policy]:
+def opened_policies(given: Sequence[Any], where: str, root: str | None = None) -> list[Policy]:
     """Open the policies of a list.
+
+    Args:
+        given: The policies.
+        where: Name of the argument that has them.
+        root: Folder that files must lie in, see :func:`irsim.open_policy`.
 
     Raises:
         BenchmarkError: One of them is not a policy; the error names its place.
@@ -51,7 +56,7 @@ def opened_policies(given: Sequence[Any], where: str, folder: str | Path | None 
     found = []
     for number, policy in enumerate(given):
         with naming(where, number):
-            found.append(open_policy(policy, folder=folder))
+            found.append(open_policy(policy, root=root))
     return found
 
 

@@ -192,7 +192,8 @@ def _from_file(
     from irsim.policies.networks import open_network
 
     if root is not None and (why := why_outside(name, Path(root))) is not None:
-        raise PolicyError("policy-failed", f"{clean(name)!r} {why}", "name a file of the workspace", where="policy")
+        fix = "put the file into the workspace and name it relative to that"
+        raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
     path = Path(root if root is not None else folder or ".", name)
     if not path.is_file():
         beside = [one.name for one in sorted(path.parent.glob("*")) if one.suffix in SUFFIXES][:1000]
