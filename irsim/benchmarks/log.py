@@ -24,12 +24,13 @@ _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O
 
 
 class Log:
-    """An open log file; a write error ends the log, not the benchmark.
+    """An open log file.
+
+    A write error does not end the benchmark: what does not fit is kept and written as soon as there is room again.
 
     Args:
         file: The file, which is replaced if it exists.
         head: The result without episodes.
-
         known: Episodes that an earlier log of the same benchmark holds, by their places.
 
     Raises:
@@ -38,7 +39,7 @@ class Log:
 
     def __init__(self, file: str | Path, head: BenchmarkResult, known: Mapping[int, EpisodeRow] | None = None) -> None:
         self._lock, self._open = threading.Lock(), True
-        self.complete = True
+        self._waiting = b""
         lines = [head.model_dump_json(), *(_line(number, row) for number, row in sorted((known or {}).items()))]
         try:
             write_atomically(Path(file), "".join(f"{line}\n" for line in lines))
@@ -71,7 +72,11 @@ class Log:
             number: Place of the episode in the order.
             episode: The episode.
         """
-        self._add(_line(number, episode))
+        line = _line(number, episode).encode() + b"\n"
+        with self._lock:
+            if self._open:
+                self._waiting += line
+                self._write()
 
     def __enter__(self) -> Log:
         """Return the log."""
@@ -80,18 +85,16 @@ class Log:
     def __exit__(self, *error: object) -> None:
         """Close the file."""
         with self._lock:
+            self._write()
             self._open = False
             with suppress(OSError):
                 os.close(self._descriptor)
 
-    def _add(self, text: str) -> None:
-        line = text.encode() + b"\n"
-        with self._lock:
-            try:
-                self._open = self._open and os.write(self._descriptor, line) == len(line)
-            except OSError:
-                self._open = False
-            self.complete = self.complete and self._open
+    def _write(self) -> None:
+        """Write what is waiting, from the byte on at which the last attempt has ended."""
+        with suppress(OSError):
+            while self._waiting:
+                self._waiting = self._waiting[os.write(self._descriptor, self._waiting) :]
 
 
 def logged(file: str | Path) -> BenchmarkResult:

@@ -6,7 +6,10 @@ again in their order: the files of a run that was interrupted and resumed equal 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +17,8 @@ from pydantic import ValidationError
 
 from irsim.benchmarks.comparison import benchmark
 from irsim.benchmarks.log import as_log
-from irsim.benchmarks.plan import Plan
-from irsim.common.files import write_atomically
+from irsim.benchmarks.plan import Plan, map_hashes
+from irsim.common.files import TEMPORARY, write_atomically
 from irsim.common.version import version
 from irsim.episodes.episode import Progress
 from irsim.results.benchmark import BenchmarkResult
@@ -23,10 +26,11 @@ from irsim.results.suite import SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError
 from irsim.scenario.limits import Limits
 
-__all__ = ["EPISODES", "PLAN", "RESULTS", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
+__all__ = ["EPISODES", "PLAN", "RESULTS", "TIMING", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
 
-EPISODES, PLAN, RESULTS = "episodes.jsonl", "plan.json", "results.json"
-"""Files in the folder of a benchmark: its episodes, everything that decides its numbers, and its result."""
+EPISODES, PLAN, RESULTS, TIMING = "episodes.jsonl", "plan.json", "results.json", "timing.json"
+"""Files in the folder of a benchmark: its episodes, everything that decides its numbers, its result, and how long
+policies took to decide, which is the only file that differs between two runs of a plan."""
 _FOLDER = Path(".irsim") / "benchmarks"
 
 
@@ -53,8 +57,10 @@ def run_plan(
     *,
     resume: bool = False,
     workers: int | None = None,
+    cluster: str | None = None,
     progress: Progress | None = None,
     limits: Limits | None = None,
+    finish: Callable[[BenchmarkResult, Path], object] | None = None,
 ) -> BenchmarkResult:
     """Run a plan, and write its episodes and its result into a folder.
 
@@ -63,46 +69,62 @@ def run_plan(
         folder: The folder, which is made.
         resume: Go on with what an interrupted run of the same plan has left there.
         workers: Greatest number of processes; the files do not depend on it.
+        cluster: Address of a Ray cluster, as of :func:`irsim.benchmark`; the files do not depend on it either.
         progress: Callback ``(episodes_done, episodes_total)``.
         limits: Limits of the loader and of each run.
+        finish: Called with the result and the folder before another process may work there, to write a report.
 
     Returns:
         The result; a :class:`irsim.results.suite.SuiteResult` of a suite.
 
     Raises:
         RunError: The folder holds episodes already and ``resume`` is not given, or those of another plan; or it cannot
-            be written.
+            be written, or another process is running a benchmark there.
         Others: as :func:`irsim.benchmark`.
     """
-    _prepare(plan, folder, resume)
-    found = benchmark(
-        {scenario.name: scenario.document() for scenario in plan.scenarios},
-        list(plan.policies.values()),
-        plan.seeds,
-        perturb=plan.perturb,
-        steps=plan.steps,
-        strict=plan.strict,
-        imports=plan.imports,
-        workers=workers,
-        limits=limits,
-        progress=progress,
-        log=folder / EPISODES,
-        resume=resume,
-        until=plan.until,
-    )
-    result = _result(plan, found)
-    _write(folder / EPISODES, as_log(found))
-    _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
+    _make(folder)
+    with _alone_in(folder):
+        _prepare(plan, folder, resume)
+        timing: dict[str, Any] = {}
+        found = benchmark(
+            {scenario.name: scenario.document() for scenario in plan.scenarios},
+            plan.opened(),
+            plan.seeds,
+            perturb=plan.perturb,
+            steps=plan.steps,
+            strict=plan.strict,
+            imports=plan.imports,
+            workers=workers,
+            cluster=cluster,
+            limits=limits,
+            progress=progress,
+            log=folder / EPISODES,
+            resume=resume,
+            until=plan.until,
+            timing=timing,
+        )
+        _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
+        result = _result(plan, found)
+        _write(folder / EPISODES, as_log(found))
+        _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
+        if finish is not None:
+            finish(result, folder)
     return result
 
 
 def resume_benchmark(
-    folder: Path, *, workers: int | None = None, progress: Progress | None = None, limits: Limits | None = None
+    folder: Path,
+    *,
+    workers: int | None = None,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+    limits: Limits | None = None,
+    finish: Callable[[BenchmarkResult, Path], object] | None = None,
 ) -> BenchmarkResult:
     """Go on with an interrupted benchmark, with nothing but what its folder holds; see :func:`run_plan`.
 
     Raises:
-        RunError: The folder holds no plan, or one of another version.
+        RunError: The folder holds no plan, or one of another version; or a map file has changed since.
     """
     try:
         plan = Plan.model_validate_json((folder / PLAN).read_bytes())
@@ -114,26 +136,77 @@ def resume_benchmark(
             f"{folder} was started by irsim {plan.version}, and this is irsim {version()}",
             "start it again in another folder: results of different versions do not mix",
         )
-    return run_plan(plan, folder, resume=True, workers=workers, progress=progress, limits=limits)
+    changed = map_hashes([scenario.document() for scenario in plan.scenarios])
+    for scenario, maps in zip(plan.scenarios, changed, strict=True):
+        if maps != scenario.maps:
+            name = next((name for name in scenario.maps if maps.get(name) != scenario.maps[name]), "a map")
+            raise RunError(
+                "other-benchmark",
+                f"{name} of the scenario {scenario.name} has changed since {folder} was started",
+                "restore the file, or start again in another folder",
+            )
+    return run_plan(
+        plan, folder, resume=True, workers=workers, cluster=cluster, progress=progress, limits=limits, finish=finish
+    )
+
+
+def _make(folder: Path) -> None:
+    """Make the folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RunError("not-writable", f"{folder}: {error.strerror}", "give another folder with -o") from None
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """Keep other processes from running a benchmark in the folder; the lock ends with this process, however it ends.
+
+    There is no protection on systems and file systems without locks.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            what = f"another process is running the benchmark in {folder}"
+            raise RunError("benchmark-running", what, "wait for its end, or give another folder with -o") from None
+        except OSError:
+            pass
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def _prepare(plan: Plan, folder: Path, resume: bool) -> None:
-    """Make the folder and write the plan.
+    """Write the plan, and delete what a killed process has left half written.
 
     Raises:
         RunError: See :func:`run_plan`.
     """
     text, known = plan.model_dump_json(indent=1) + "\n", folder / PLAN
-    if (folder / EPISODES).exists() and not resume:
+    if not resume and _has_episodes(folder / EPISODES):
         raise RunError("results-exist", f"{folder} holds episodes already", "give --resume, or another folder with -o")
     if known.exists() and known.read_text(encoding="utf-8") != text:
         raise RunError("other-benchmark", f"{folder} holds another benchmark", "give another folder with -o")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError("not-writable", f"{folder}: {error.strerror}", "give another folder with -o") from None
     if not known.exists():
         _write(known, text)
+    for leftover in (*folder.glob(f"{TEMPORARY}*"), *folder.glob(f"*/{TEMPORARY}*")):
+        with suppress(OSError):
+            leftover.unlink()
+
+
+def _has_episodes(log: Path) -> bool:
+    """Whether a log holds more than its head, which is all that a run without a cluster to run on has written."""
+    try:
+        return log.read_bytes().count(b"\n") > 1
+    except FileNotFoundError:
+        return False
 
 
 def _write(path: Path, text: str) -> None:

@@ -13,7 +13,7 @@ from irsim.diagnostics.diagnostic import format_path, nearest, suggestion
 from irsim.diagnostics.errors import CodedError
 from irsim.scenario.yaml.document import load_path
 
-__all__ = ["SuiteError", "is_suite", "load_suite", "read_suite", "suite_names", "suite_notes"]
+__all__ = ["SuiteError", "is_suite", "load_suite", "read_suite", "suite_names"]
 
 _FOLDER = Path(__file__).with_name("suites")
 
@@ -28,12 +28,6 @@ class SuiteError(CodedError, ValueError):
 def suite_names() -> list[str]:
     """Names of the bundled suites, sorted."""
     return sorted(path.stem for path in _FOLDER.glob("*.yaml"))
-
-
-def suite_notes(name: str) -> str | None:
-    """The page about results of a bundled suite, as Markdown with a title; None if it has none."""
-    path = _FOLDER / f"{name}.md"
-    return path.read_text(encoding="utf-8") if path.is_file() else None
 
 
 def is_suite(word: str) -> bool:

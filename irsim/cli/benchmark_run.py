@@ -21,13 +21,14 @@ class Wanted:
     """The arguments of the command; see there."""
 
     files: Sequence[str]
-    behaviors: str | None
+    policies: str | None
     seeds: str
     perturb: Sequence[str]
     steps: int | None
     strict: bool
     imports: Sequence[str]
     workers: int | None
+    cluster: str | None
     max_objects: int | None
     folder: Path | None
     resume: bool
@@ -42,7 +43,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     Raises:
         ArgumentError: The arguments do not fit together.
     """
-    from irsim.api.benchmark_report import write_report
+    from irsim.api.benchmark_report import Report, write_report
     from irsim.benchmarks.stored import default_folder, last_folder, resume_benchmark, run_plan
     from irsim.benchmarks.suite_files import is_suite
     from irsim.cli.findings import limits_for
@@ -55,31 +56,52 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
     odd = [name for name, value in of_suite.items() if value and not suites]
     if odd:
         raise ArgumentError(f"{odd[0]} belongs to a suite", "name a suite; irsim suites lists them")
-    limits = limits_for(wanted.max_objects)
+    limits, reports = limits_for(wanted.max_objects), list[Report]()
+
+    def finish(result: BenchmarkResult, folder: Path) -> None:
+        reports.append(write_report(result, folder))
+
     with progress("simulating") as report:
         if not wanted.files:
             if not wanted.resume:
                 raise ArgumentError("there is nothing to run", "give scenario files, a suite, or --resume")
             folder = wanted.folder or last_folder()
-            result = resume_benchmark(folder, workers=wanted.workers, progress=report, limits=limits)
+            result = resume_benchmark(
+                folder,
+                workers=wanted.workers,
+                cluster=wanted.cluster,
+                progress=report,
+                limits=limits,
+                finish=finish,
+            )
         elif suites or wanted.folder is not None or wanted.resume:
             plan = _suite(suites[0], wanted) if suites else _plan(wanted)
             folder = wanted.folder or default_folder(plan)
             result = run_plan(
-                plan, folder, resume=wanted.resume, workers=wanted.workers, progress=report, limits=limits
+                plan,
+                folder,
+                resume=wanted.resume,
+                workers=wanted.workers,
+                cluster=wanted.cluster,
+                progress=report,
+                limits=limits,
+                finish=finish,
             )
         else:
             from irsim.benchmarks import DEFAULT_SEEDS, benchmark
             from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
-            policies = [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors)
+            policies = [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies)
             return benchmark(
                 list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
-                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers, limits=limits,
-                progress=report,
+                steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers,
+                cluster=wanted.cluster, limits=limits, progress=report,
             )  # fmt: skip
-    page = write_report(result, folder)
-    console(stderr=True).print(f"episodes, result and report: {page}", soft_wrap=True)
+    out = console(stderr=True)
+    for written in reports:
+        out.print(f"episodes, result and report: {written.page}", soft_wrap=True)
+        for note in written.notes:
+            out.print(f"note: {note}", soft_wrap=True)
     return result
 
 
@@ -99,7 +121,7 @@ def _suite(name: str, wanted: Wanted) -> Plan:
         raise ArgumentError(f"--seeds of a suite is their number, got {wanted.seeds}", "give a number such as 20")
     return suite_plan(
         name,
-        policies=None if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        policies=None if wanted.policies is None else split_behaviors(wanted.policies),
         protocols=wanted.protocols or None,  # type: ignore[arg-type]
         seeds=int(wanted.seeds) if wanted.seeds else None,
         full=wanted.full,
@@ -115,7 +137,7 @@ def _plan(wanted: Wanted) -> Plan:
 
     return file_plan(
         wanted.files,
-        [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies),
         wanted.seeds,
         steps=wanted.steps,
         strict=wanted.strict,

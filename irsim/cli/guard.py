@@ -58,6 +58,8 @@ def handle_errors(command: Callable[P, R]) -> Callable[P, R]:
     return call
 
 
+_FAILURES = frozenset({"file-access", "no-cluster", "not-writable", "worker-failed"})
+"""Codes of errors that are not about the input: the same command may succeed later."""
 _HANDLED_BY_TYPER = (typer.Exit, typer.Abort, typer.BadParameter)
 
 
@@ -98,7 +100,7 @@ def _describe(error: BaseException) -> tuple[str, str, int]:
         text = str(error)
         if not code:
             return "invalid-input", text, INVALID
-        return str(code), text.removeprefix(f"{code}: "), FAILED if code == "file-access" else INVALID
+        return str(code), text.removeprefix(f"{code}: "), FAILED if code in _FAILURES else INVALID
     if isinstance(error, MemoryError):
         return "out-of-memory", "not enough memory.", FAILED
     if isinstance(error, OSError):

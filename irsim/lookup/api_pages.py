@@ -78,7 +78,6 @@ def runner() -> Pages:
 
 def comparisons() -> Pages:
     """Return the pages of the skill ``irsim-benchmark``."""
-    from irsim.benchmarks.suite_files import suite_names, suite_notes
     from irsim.results import benchmark
 
     canonical = [metric for metric in METRICS if metric.canonical]
@@ -116,7 +115,6 @@ def comparisons() -> Pages:
                 )
             ),
         ),
-        **{name: make_page(*_titled(notes)) for name in suite_names() if (notes := suite_notes(name)) is not None},
     }
 
 
@@ -149,12 +147,6 @@ PACKS: dict[str, Callable[[], Pages]] = {
     "irsim-dev": contributing,
 }
 """Skill -> function that returns its pages; those of ``irsim-scenario`` are made from the schema of the language."""
-
-
-def _titled(page: str) -> tuple[str, str]:
-    """Title and text of a page."""
-    title, _, text = page.removeprefix("# ").partition("\n")
-    return title, text
 
 
 def _find(name: str) -> tuple[str, Any]:

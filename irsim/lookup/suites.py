@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from irsim.benchmarks.suite import Seeds, Suite, SuiteScenario
-from irsim.benchmarks.suite_files import load_suite, suite_names, suite_notes
+from irsim.benchmarks.suite_files import load_suite, suite_names
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.lookup.answer import Answer, Key
 
@@ -32,19 +32,13 @@ def suites_answer() -> Answer:
 def suite_answer(name: str) -> Answer:
     """Describe a bundled suite."""
     suite, plan = load_suite(name)[0], suite_plan(name)
-    notes = suite_notes(name)
-    results = (
-        f"\n\nResults: the page {name} of the references of the skill irsim-benchmark, {_title(notes)}."
-        if notes
-        else ""
-    )
     full = f" ({suite.seeds.full} with --full)" if suite.seeds.full else ""
     return Answer(
         topic=name,
         kind="suite",
         title=f"suite {name}: {suite.title}",
         text=f"{suite.about} Seeds {plan.seeds[0]} to {plan.seeds[-1]}{full}, at most {suite.steps} steps; protocols: "
-        f"{', '.join(suite.protocols)}.{results}",
+        f"{', '.join(suite.protocols)}.",
         groups={
             "scenarios": [Key(name=one.name) for one in plan.scenarios if one.protocol == suite.protocols[0]],
             "policies": [Key(name=label, text=text) for label, text in plan.policies.items()],
@@ -53,10 +47,6 @@ def suite_answer(name: str) -> Answer:
         example=f"irsim benchmark {name} --seeds 5",
         see=["suites"],
     )
-
-
-def _title(page: str) -> str:
-    return page.removeprefix("# ").partition("\n")[0]
 
 
 def _keys(model: type[Suite | SuiteScenario | Seeds]) -> list[Key]:

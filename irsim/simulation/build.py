@@ -32,7 +32,15 @@ if TYPE_CHECKING:
 
     from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
 
-__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded", "speed_controls"]
+__all__ = [
+    "COLLISION_MODES",
+    "PLACEMENT_ATTEMPTS",
+    "build_world",
+    "group_behaviors",
+    "padded",
+    "speed_controls",
+    "static_shapes_are_random",
+]
 
 AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
@@ -255,3 +263,17 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
     return world
+
+
+def static_shapes_are_random(scenario: ResolvedScenario) -> bool:
+    """Return whether the shape of a static object is drawn for each scene."""
+    return any(_is_drawn(record.shape) for record in scenario.objects if record.static)
+
+
+def _is_drawn(shape: Any) -> bool:
+    if isinstance(shape, (MapCells, Walls)):
+        parts = shape.parts()
+    else:
+        function = feature_of(SHAPES, shape).function
+        parts = [] if function is None else function(shape)
+    return any(isinstance(part, (core.RandomCircle, core.RandomPolygon, core.PerlinCells)) for part in parts)

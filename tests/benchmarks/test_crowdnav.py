@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 import yaml
 
 from irsim.benchmarks.suite_files import load_suite
 from irsim.benchmarks.suite_plan import suite_plan
-from tests.benchmarks.reference.write import FILE, rows
+from tests.benchmarks.crowdnav.write import FILE, rows
 
 LINES = FILE.read_text(encoding="utf-8").splitlines()[1:]
 SUITE = "crowdnav_circle_v1"
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def recorded(seeds: range) -> list[str]:
@@ -30,6 +33,14 @@ def test_the_record_has_every_outcome() -> None:
     """So that the test above notices changes in each of them."""
     outcomes = {line.split(",")[2] for line in LINES}
     assert outcomes == {"success", "collision", "timeout", "placement-crowded"}
+
+
+def test_the_page_of_results_is_about_this_suite() -> None:
+    page = ROOT / "skills" / "irsim-benchmark" / "results" / "crowdnav.md"
+    text = page.read_text(encoding="utf-8")
+    plan = suite_plan(SUITE, full=True)
+    assert f"hash {plan.hash} " in text
+    assert [name.name for name in plan.scenarios if f"| {name.name} | " not in text] == []
 
 
 def test_its_scenes_are_those_of_crowdnav() -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
+import irsim
+import irsim.benchmarks
+from irsim.benchmarks.file_plan import file_plan
 from irsim.benchmarks.plan import Plan
 from irsim.benchmarks.stored import EPISODES, PLAN, RESULTS, default_folder, resume_benchmark, run_plan
 from irsim.benchmarks.suite_plan import suite_plan
@@ -38,10 +38,14 @@ policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
 """
 
 
+SCENE = "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.1}, distribution: {name: random}}\n"
+
+
 @pytest.fixture(scope="module")
 def suite(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("suite") / "small.yaml"
     path.write_text(SUITE, encoding="utf-8")
+    path.with_name("scene.yaml").write_text(SCENE, encoding="utf-8")
     return path
 
 
@@ -56,22 +60,6 @@ def contents(folder: Path) -> dict[str, str]:
     """Hash of each file of the benchmark, without those of its report."""
     kept = (EPISODES, PLAN, RESULTS)
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in kept}
-
-
-def test_a_run_that_is_killed_at_any_moment_goes_on_as_if_nothing_had_happened(
-    suite: Path, undisturbed: dict[str, str], tmp_path: Path
-) -> None:
-    command = [sys.executable, "-m", "irsim", "benchmark", str(suite), "-o", str(tmp_path / "run"), "--workers", "2"]
-    for delay in (0.4, 0.7, 0.9):
-        process = subprocess.Popen(
-            [*command, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
-        )
-        time.sleep(delay)
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    done = subprocess.run([*command, "--resume"], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert contents(tmp_path / "run") == undisturbed
 
 
 @pytest.mark.parametrize("cut", [0.1, 0.5, 0.9])
@@ -110,22 +98,47 @@ def test_a_folder_holds_one_benchmark(suite: Path, tmp_path: Path) -> None:
         resume_benchmark(tmp_path / "run")
 
 
-def test_a_log_that_does_not_fit_on_the_disk_costs_no_episode(
-    suite: Path, undisturbed: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_log_that_does_not_fit_on_the_disk_for_a_while_is_complete_afterwards(
+    suite: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    written = 0
-    plain = os.write
+    plain, calls = os.write, 0
 
-    def full(descriptor: int, data: bytes) -> int:
-        nonlocal written
-        written += len(data)
-        if written > 5000:
+    def full_for_a_while(descriptor: int, data: bytes) -> int:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            return plain(descriptor, data[: len(data) // 2])
+        if 3 < calls < 8:
             raise OSError(28, "No space left on device")
         return plain(descriptor, data)
 
-    monkeypatch.setattr("irsim.benchmarks.log.os.write", full)
-    run_plan(suite_plan(str(suite)), tmp_path / "run", workers=1)
-    assert contents(tmp_path / "run") == undisturbed
+    monkeypatch.setattr("irsim.benchmarks.log.os.write", full_for_a_while)
+    result = irsim.benchmark(str(suite.with_name("scene.yaml")), ["dash"], 12, workers=1, log=tmp_path / "log")
+    assert calls > 8
+    assert irsim.benchmarks.logged(tmp_path / "log") == result
+
+
+def test_a_folder_is_used_by_one_process_at_a_time(suite: Path, tmp_path: Path) -> None:
+    pytest.importorskip("fcntl")
+    plan = suite_plan(str(suite), seeds=1)
+
+    def finish(result: object, folder: Path) -> None:
+        with pytest.raises(RunError, match="another process is running the benchmark"):
+            run_plan(plan, folder, resume=True)
+
+    run_plan(plan, tmp_path / "run", finish=finish)
+    run_plan(plan, tmp_path / "run", resume=True)
+
+
+def test_a_run_does_not_go_on_with_another_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Image.new("L", (20, 20), "white").save("floor.png")
+    Path("scene.yaml").write_text(SCENE + "world: {obstacle_map: floor.png, width: 4, height: 4}\n", encoding="utf-8")
+    run_plan(file_plan(["scene.yaml"], ["dash"], "2", steps=3), Path("run"))
+    resume_benchmark(Path("run"))
+    Image.new("L", (20, 20), "lightgray").save("floor.png")
+    with pytest.raises(RunError, match=r"floor\.png of the scenario scene\.yaml has changed"):
+        resume_benchmark(Path("run"))
 
 
 def test_the_folder_has_the_hash_of_what_decides_the_numbers(suite: Path, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
+from irsim.testing import check_turned_world
 from tests.core import oracle
 from tests.core.worlds import (
     DRIVES,
@@ -340,3 +341,8 @@ def test_a_car_that_faces_a_wall_backs_off_if_it_can_reverse(drive: str) -> None
             reversed_once |= bool(state.control[0, 0] < 0)
             assert not state.collided[0]
         assert reversed_once == moves
+
+
+def test_a_robot_that_heads_along_a_line_through_zero_keeps_its_speed() -> None:
+    """Rounding must not decide between full speed and a dead stop, so a turned world has the same motion."""
+    check_turned_world(steps=30, drive="diff", behavior="{name: orca}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from irsim.benchmarks.report.names import policy_labels
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow, Estimate, Proportion
 from irsim.results.suite import SuiteResult
@@ -15,8 +17,13 @@ COLUMNS = (
 """(key, heading) of the columns of the table."""
 
 
-def markdown(result: BenchmarkResult) -> str:
-    """The file: what was run, the table with 95 % intervals, and how to run it again."""
+def markdown(result: BenchmarkResult, notes: Sequence[str] = ()) -> str:
+    """The file: what was run, the table with 95 % intervals, and how to run it again.
+
+    Args:
+        result: The result.
+        notes: Notes on the report itself.
+    """
     labels = policy_labels(result)
     lines = [f"# {title_of(result)}", "", *(f"{line}  " for line in facts_of(result)), ""]
     lines += ["| scenario | policy | n | " + " | ".join(heading for _, heading in COLUMNS) + " |"]
@@ -26,7 +33,7 @@ def markdown(result: BenchmarkResult) -> str:
         for row in result.rows
     ]
     lines += ["", "Policies:", "", *(f"- {label}: `{text}`" for text, label in labels.items())]
-    lines += ["", *(f"Note: {note}  " for note in result.notes)]
+    lines += ["", *(f"Note: {note}  " for note in (*result.notes, *notes))]
     lines += [
         "", "Intervals are 95 %: Wilson's for shares, bootstrap for means. Times are those of robots that arrived.", "",
         f"Reproduce: `{result.reproduce}` with irsim {result.version}",
@@ -48,6 +55,8 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     lines = [f"{size}; {len(result.episodes):,} episodes."]
     if isinstance(result, SuiteResult):
         lines.append(f"Suite version {result.suite_version}, content hash {result.hash}, irsim {result.version}.")
+    if result.incidents:
+        lines.append(f"Besides outcomes: {'; '.join(result.incidents)}.")
     return lines
 
 

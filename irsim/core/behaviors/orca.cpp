@@ -18,6 +18,7 @@ constexpr double kStuckShare = 0.1;          // a car below this share of its wa
 constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
 constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
 constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kParallel = 1e-9;    // a smaller sine of the angle between a heading and a line is a rounding error
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
 double top_speed(const OrcaOptions& options, const World& world, const State& state, int row, int object) {
@@ -88,7 +89,7 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
   double most = kInfinity;
   for (int k = 0; k < count; ++k) {
     const double rate = cross(planes[k].direction, direction);
-    if (rate < 0.0) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
+    if (rate < -kParallel) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
   }
   return most;
 }

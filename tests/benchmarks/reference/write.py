@@ -1,45 +1,59 @@
-"""Writes episodes of a bundled suite, for the tests to repeat: ``python -m tests.benchmarks.reference.write``."""
+"""Keeps the result of a suite: ``python -m tests.benchmarks.reference.write SUITE`` (about 1 minute on 2 cores).
+
+It writes the episodes (``SUITE.csv``) and the table with intervals (``skills/irsim-benchmark/results/SUITE.md``).
+"""
 
 from __future__ import annotations
 
 import csv
 import io
-import math
+import sys
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from irsim.benchmarks.episode import Job, Task, run_task
+from irsim.benchmarks.report.markdown import markdown
+from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
+from irsim.results.benchmark import EpisodeRow
+from irsim.results.suite import SuiteResult
 
-NAME = "crowdnav_circle_v1"
-FILE = Path(__file__).with_name(f"{NAME}.csv")
-POLICY = "orca"
-SEEDS = 10
-"""Number of seeds of each scenario, from the first one of the suite."""
-METRICS = ("time_to_goal", "path_length", "distance_to_human_min", "discomfort_ratio", "crowdnav_reward")
-HEADER = ("scenario", "seed", "outcome", "steps", *METRICS)
+__all__ = ["FOLDER", "PAGES", "lines_of", "main"]
 
-
-def rows(seeds: int = SEEDS, scenarios: Sequence[str] | None = None) -> list[str]:
-    """The lines of the first seeds of each scenario, without the header. Numbers have 9 digits."""
-    plan = suite_plan(NAME, policies=[POLICY], scenarios=scenarios)
-    lines = []
-    for one in plan.scenarios:
-        job = Job(one.text, None, plan.policies[POLICY], None, True, (), (), plan.until)
-        for seed in plan.seeds[:seeds]:
-            found = run_task(Task(job, seed))
-            values = [found["metrics"][key] for key in METRICS]
-            text = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
-            lines.append(_line([one.name, str(seed), found["outcome"], str(found["steps"]), *text]))
-    return lines
+FOLDER = Path(__file__).parent
+PAGES = FOLDER.parents[2] / "skills" / "irsim-benchmark" / "results"
+_METRICS = ("time_to_goal", "velocity_avg", "path_length", "min_clearance")
 
 
-def _line(cells: Sequence[str]) -> str:
-    buffer = io.StringIO()
-    csv.writer(buffer, lineterminator="").writerow(cells)
-    return buffer.getvalue()
+def lines_of(episodes: Sequence[EpisodeRow], labels: dict[str, str]) -> list[str]:
+    """One line per episode, numbers in full precision.
+
+    Args:
+        episodes: The episodes.
+        labels: Behavior as text → name of the policy.
+    """
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    for episode in episodes:
+        values = [episode.metrics[key] for key in _METRICS]
+        shown = ["" if value is None else repr(value) for value in values]
+        rows.writerow(
+            [episode.scenario, labels[episode.behavior], episode.seed, episode.outcome, episode.steps, *shown]
+        )
+    return text.getvalue().splitlines()
+
+
+def main(suite: str) -> None:
+    """Run a suite and keep its result."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = run_plan(suite_plan(suite), Path(folder))
+    assert isinstance(result, SuiteResult)
+    labels = {text: name for name, text in result.policies.items()}
+    head = ",".join(("scenario", "policy", "seed", "outcome", "steps", *_METRICS))
+    lines = "\n".join([head, *lines_of(result.episodes, labels)])
+    (FOLDER / f"{suite}.csv").write_text(lines + "\n", encoding="utf-8")
+    (PAGES / f"{suite}.md").write_text(markdown(result), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    FILE.write_text("\n".join([_line(HEADER), *rows()]) + "\n", encoding="utf-8")
-    print(f"wrote {FILE}")
+    main(sys.argv[1])
