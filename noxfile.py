@@ -13,6 +13,7 @@
 - ``evals``: models as agents, with inspect_ai and a stand-in of a model's service; without network.
 - ``cluster``: benchmarks on Ray clusters of several processes, one of which is killed.
 - ``records``: exports of recorded runs, opened by the tools they are for: pandas, DuckDB, mcap-ros2-support, Minari.
+- ``onnx``: policies from ONNX models, with onnxruntime.
 - ``browser``: the page of ``irsim replay`` in Chromium. ``peers``: checks of others on server, skills and manifests.
 
 All quick tests together run in ``check``, and on the newest Python in the README's own test command, with which
@@ -38,7 +39,7 @@ PLAYWRIGHT, CHROMIUM, NODE = "playwright>=1.50,<2", "@sparticuz/chromium@147.0.0
 UV = "uv>=0.9"
 TOOLS = ("pandas>=2.2", "duckdb>=1.1", "mcap-ros2-support>=0.5")
 """What opens exported runs in tests, and is no dependency."""
-FULL = ("newest", "lowest", "sanitize", "evals", "records", "cluster")
+FULL = ("newest", "lowest", "sanitize", "evals", "records", "onnx", "cluster")
 BINDINGS = ("test_interface.py", "test_batch.py", "test_log.py")
 """Tests of the core that are about Python and NumPy rather than arithmetic."""
 ARITHMETIC = (
@@ -247,6 +248,13 @@ def records(session: nox.Session) -> None:
     """Exports of recorded runs, opened by the tools they are for; heavy libraries that other tests do without."""
     install(session, "-e", ".[test,records]", *TOOLS)
     timed(session, "tests of exports", "pytest", "-m", "records", "-n", "2", "tests/records", *session.posargs)
+
+
+@nox.session(reuse_venv=True, python=find_python(NEWEST))
+def onnx(session: nox.Session) -> None:
+    """Policies from ONNX models, with onnxruntime, which other tests do without."""
+    install(session, "-e", ".[test,onnx]")
+    timed(session, "tests of ONNX models", "pytest", "-m", "onnx", "tests/policies/onnx", *session.posargs)
 
 
 @nox.session(reuse_venv=True, python=find_python(NEWEST))

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from irsim.env import Env, EnvBase, EnvBase3D, make
     from irsim.env.batch import Batch, batch
     from irsim.objects.handlers.registration import register_behavior
+    from irsim.policies import Policy, open_policy
     from irsim.runs.comparison import diff_runs
     from irsim.runs.export.export import export_run
     from irsim.runs.replay.export import replay
@@ -45,6 +46,7 @@ __all__ = [
     "IrsimError",
     "NotSimulatedError",
     "PlacementError",
+    "Policy",
     "ScenarioError",
     "ScenarioNotFoundError",
     "__version__",
@@ -55,6 +57,7 @@ __all__ = [
     "export_run",
     "fix",
     "make",
+    "open_policy",
     "register_behavior",
     "render",
     "replay",

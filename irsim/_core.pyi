@@ -5,13 +5,14 @@ properties are writable views of the memory of the core (no copies), of type flo
 """
 
 from collections.abc import Sequence
-from typing import ClassVar, overload
+from typing import ClassVar, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.uint8]
+Real = TypeVar("Real", np.float32, np.float64)
 
 class _Options:
     """Base of every options class: its constructor requires all fields as keywords; `fields` lists them in order."""
@@ -45,6 +46,8 @@ class OrcaOptions(_Options):
         timeHorizonObst: float,
         safe_radius: float,
         maxSpeed: float | None,
+        responsibility: float | None,
+        approach_time: float | None,
     ) -> None: ...
 
 class RvoOptions(_Options):
@@ -412,6 +415,27 @@ class RandomPlacement:
         attempts: int,
     ) -> None: ...
 
+class CircleCrossing:
+    """Objects of one `circle_crossing` distribution: each start is drawn with its goal, which is opposite."""
+
+    def __init__(
+        self,
+        *,
+        objects: Sequence[int],
+        center: Sequence[float],
+        radius: float,
+        noise: float,
+        clearance: float,
+        attempts: int,
+    ) -> None: ...
+
+class SquareCrossing:
+    """Objects of one `square_crossing` distribution: each start is drawn with its goal, which is on the other side."""
+
+    def __init__(
+        self, *, objects: Sequence[int], center: Sequence[float], width: float, clearance: float, attempts: int
+    ) -> None: ...
+
 class Perturbation:
     """How far start, speeds and departure of an object may differ between scenes: uniform draws within these spreads.
 
@@ -483,7 +507,7 @@ class World:
         collision_mode: int,
         gravity: float,
         objects: Sequence[ObjectSpec],
-        placements: Sequence[RandomPlacement],
+        placements: Sequence[RandomPlacement | CircleCrossing | SquareCrossing],
         copies: int,
         fog: Fog | None = None,
         perturbations: Sequence[Perturbation] = (),
@@ -750,6 +774,26 @@ def finish(world: World, state: State) -> None:
 def follow(world: World, state: State, row: int, velocity: tuple[float, float]) -> tuple[float, float, float]:
     """Controls with which the drive of a row realises a world-frame velocity [m/s]; without a drive, the velocity."""
 
+# Used by policies, which decide for many rows at once
+def follow_rows(world: World, state: State, rows: NDArray[np.int64], velocities: Floats) -> None:
+    """Fill `command` of (B,) rows so that they follow (B, 2) world-frame velocities [m/s], as behaviors would.
+
+    A row with a drive in Python gets the velocity as its command.
+    """
+
+def bounding_circles(world: World, state: State) -> Floats:
+    """(R, 3) x, y of the centre and radius of the minimum bounding circle of each row at its present pose [m]."""
+
+def nearest_objects(
+    world: World, state: State, rows: NDArray[np.int64], most: int, reach: float, statics: bool
+) -> NDArray[np.int32]:
+    """(B, most) indices of the nearest other objects of the world of each row; -1 where there are fewer.
+
+    They are sorted by the distance between bounding circles, which is at most `reach` [m], then by index. Objects count
+    whose role the row targets; static ones only with `statics`, and neither unobstructed ones, maps nor the walls round
+    a world.
+    """
+
 # The phases for a single object; they depend neither on `given` of others nor on the clock
 def renew_row(world: World, state: State, row: int) -> None:
     """Give a wandering object its next random goal and a looping one its goals again; others do not change."""
@@ -876,6 +920,27 @@ def nearest_points(
 def random_bits(seed: int, scene: int, noise: int, stream: int, object: int, draw: int) -> tuple[int, int, int, int]:
     """The Philox4x64-10 block of key (seed, scene << 32 | noise) and counter (draw, object, stream, 0)."""
 
+# layers of neural networks (core/networks/): a row has the same bits alone, among others, and on every processor
+def dense(x: NDArray[Real], w: NDArray[Real], b: NDArray[Real]) -> NDArray[Real]:
+    """Return (B, O) `x w + b` of x (B, I), w (I, O), b (O,); products are added in the order of the inputs."""
+
+def elementwise(name: str, x: NDArray[Real]) -> NDArray[Real]:
+    """Return (n,) values of relu, tanh, sigmoid, elu, gelu, gelu_tanh, silu, exp, sin or cos, computed in double."""
+
+def normalize(x: NDArray[Real], epsilon: float) -> NDArray[Real]:
+    """Return (B, I) rows shifted to mean 0 and divided by sqrt(variance + epsilon)."""
+
+def softmax(x: NDArray[Real], mask: Flags | None = None) -> NDArray[Real]:
+    """Return (B, K) weights over the columns whose mask is 1; zeros elsewhere, and in rows without any."""
+
+def attention(
+    query: NDArray[Real], key: NDArray[Real], value: NDArray[Real], mask: Flags | None = None, heads: int = 1
+) -> NDArray[Real]:
+    """Scaled dot-product attention: query (B, Q, D), key (B, K, D), value (B, K, V), mask (B, K).
+
+    Returns (B, Q, V); zeros where no key is present. The heads are equal slices of D and V.
+    """
+
 STREAMS: dict[
     str, int
-]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation
+]  # name → number: placement, shape, goal, motion, sensor, behavior, planner, map, user, perturbation, policy

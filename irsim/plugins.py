@@ -5,7 +5,8 @@ from irsim.plugins import SENSORS, Meters, SensorOptions
 ```
 
 An installed package offers its component through an entry point of the group ``irsim.<kind>``, such as
-``irsim.sensors``. The names below stay where they are when the rest of irsim is rearranged.
+``irsim.sensors``. A policy, which is no part of a scenario, has the group ``irsim.policies``. The names below stay
+where they are when the rest of irsim is rearranged.
 """
 
 from __future__ import annotations
@@ -46,6 +47,7 @@ from irsim.options.units import (
     unit,
 )
 from irsim.options.vectors import Point, Pose, vector
+from irsim.policies import Episode, Map, Needs, Neighbors, Observations, Policy, Scan, register_policy
 
 __all__ = [
     "BEHAVIORS",
@@ -60,25 +62,32 @@ __all__ = [
     "Count",
     "Degrees",
     "DistributionOptions",
+    "Episode",
     "Fraction",
     "Hertz",
     "Integer",
     "Kilograms",
     "KinematicsHandler",
     "KinematicsOptions",
+    "Map",
     "MapOptions",
     "Meters",
     "MetersPerSecond",
     "MetersPerSecondSquared",
+    "Needs",
+    "Neighbors",
     "Number",
+    "Observations",
     "Options",
     "Pixels",
     "PlannerOptions",
     "Point",
     "Points",
+    "Policy",
     "Pose",
     "Radians",
     "RadiansPerSecond",
+    "Scan",
     "Seconds",
     "SensorOptions",
     "ShapeOptions",
@@ -87,6 +96,7 @@ __all__ = [
     "register_group_behavior",
     "register_group_behavior_class",
     "register_kinematics",
+    "register_policy",
     "unit",
     "vector",
 ]

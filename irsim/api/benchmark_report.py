@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from irsim.benchmarks.episode import Job, scenario_of
+from irsim.benchmarks.episode import Job, environment_of
 from irsim.benchmarks.plan import Plan, PlannedScenario
+from irsim.benchmarks.policies import job_keys, label_of
 from irsim.benchmarks.report.markdown import markdown
 from irsim.benchmarks.report.names import policy_labels
 from irsim.benchmarks.report.page import Shown, page
@@ -20,6 +22,7 @@ from irsim.runs.files import RunError
 from irsim.scenario.limits import DEFAULT_LIMITS
 
 if TYPE_CHECKING:
+    from irsim.policies.policy import Policy
     from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 
 __all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "write_report"]
@@ -27,6 +30,8 @@ __all__ = ["MARKDOWN", "PAGE", "REPLAYS", "TABLE", "Report", "write_report"]
 MARKDOWN, PAGE, REPLAYS = "results.md", "results.html", "replays"
 """Names of the files, and of the folder of the replays."""
 _MOMENTS, _WIDTH_PX = 4, 1400
+MAX_NAME = 120
+"""Number of characters of the name of a replay that tell the scenario and the policy."""
 
 
 @dataclass(frozen=True)
@@ -71,25 +76,26 @@ def write_report(result: BenchmarkResult, folder: Path) -> Report:
 def _shown(plan: Plan, scenario: PlannedScenario, one: EpisodeRow, result: BenchmarkResult, folder: Path) -> Shown:
     """An episode as a picture, and its replay."""
     from irsim.api.film_strip import draw_strip, moments_of
-    from irsim.env import Env
 
     document = scenario.document()
+    policy = next(policy for policy in plan.opened() if label_of(policy) == one.behavior)
     job = Job(
-        text=scenario.text, path=document.path, behavior=one.behavior, steps=plan.steps, strict=plan.strict,
-        imports=tuple(plan.imports), limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb),
+        text=scenario.text, path=document.path, steps=plan.steps, strict=plan.strict, imports=tuple(plan.imports),
+        limits=tuple(vars(DEFAULT_LIMITS).items()), perturb=tuple(plan.perturb), **job_keys(policy),
     )  # fmt: skip
-    env = Env(scenario_of(job), seed=one.seed, display=False, headless=True, log_level="ERROR")
+    env = environment_of(job, one.seed)
     png = draw_strip(env, moments_of(max(one.steps, 1), _MOMENTS), size=_WIDTH_PX)
     env.end(ending_time=0.0)
     label = policy_labels(result)[one.behavior]
-    name = f"{one.scenario.replace('/', '-')}-{label.replace(' ', '-')}-{one.seed}.html"
+    words = re.sub(r"[^\w.-]+", "-", f"{one.scenario}-{label}").strip("-.")  # a policy may be the path of a file
+    name = f"{words[-MAX_NAME:]}-{one.seed}.html"
     failed = ", ".join(f"{robot}: {how}" for robot, how in list(one.failures.items())[:3])
     caption = f"{one.scenario}, {label}, seed {one.seed}: {one.outcome} after {one.sim_time:.1f} s ({failed})"
-    replayed = document.path is None and _replay(scenario.text, one, plan, folder / REPLAYS / name)
+    replayed = document.path is None and _replay(scenario.text, one, plan, policy, folder / REPLAYS / name)
     return Shown(caption, png, f"{REPLAYS}/{name}" if replayed else "")
 
 
-def _replay(text: str, one: EpisodeRow, plan: Plan, target: Path) -> bool:
+def _replay(text: str, one: EpisodeRow, plan: Plan, policy: Policy, target: Path) -> bool:
     """Run an episode again, and write its replay."""
     from irsim.api.run_scenario import run
     from irsim.runs.replay.export import replay
@@ -99,7 +105,7 @@ def _replay(text: str, one: EpisodeRow, plan: Plan, target: Path) -> bool:
         record = Path(place) / "run"
         run(
             text=text, seed=one.seed, steps=one.steps, strict=plan.strict, imports=plan.imports, record=record,
-            behavior=None if one.behavior == "as-written" else one.behavior, perturb=plan.perturb or None,
+            policy=policy, perturb=plan.perturb or None,
         )  # fmt: skip
         replay(record, target)
     return True

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
+from irsim.diagnostics.errors import ArgumentError
 from irsim.env import Env
 from irsim.episodes.episode import (
     Progress,
@@ -25,9 +26,14 @@ from irsim.graphics.encoding.picture_files import MOVING_SUFFIXES
 from irsim.results.picture import RenderResult, SnapshotResult
 from irsim.results.run import RunResult
 from irsim.runs.recorder import Recorder, recording
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import Perturbations, perturbation_text, perturbed, read_perturbations
 from irsim.validation.validate import diff, fix, validate
+
+if TYPE_CHECKING:
+    from irsim.policies.catalog import PolicySource
+    from irsim.policies.policy import Policy
 
 __all__ = [
     "default_time_limit",
@@ -49,6 +55,7 @@ def run(
     seed: int | None = None,
     steps: int | None = None,
     strict: bool = False,
+    policy: PolicySource | None = None,
     behavior: str | Mapping[str, Any] | None = None,
     perturb: Perturbations | None = None,
     imports: Sequence[str] = (),
@@ -67,8 +74,10 @@ def run(
         seed: Overrides the file's seed. Without either, a random seed is drawn and reported (0 if nothing is random).
         steps: Horizon in steps, which overrides ``world.time_limit``.
         strict: Refuse what IR-SIM would ignore.
-        behavior: Behavior of every robot instead of its own: a name, or a mapping with options (in Python or as YAML
-            text, such as ``{name: orca, timeHorizon: 5}``).
+        policy: What drives every robot instead of its own behavior, see :func:`irsim.open_policy`: the name of a
+            behavior or a plug-in, with options as a mapping (in Python or as YAML text, such as ``{name: orca,
+            timeHorizon: 5}``), a file (``model.npz``), a function of observations, or a policy.
+        behavior: Another name of ``policy``.
         perturb: Starts, speeds and delays that differ from the scenario, as the seed draws them: see
             :func:`irsim.benchmark`.
         imports: Modules to import first, for behaviors that they register.
@@ -85,22 +94,30 @@ def run(
         ScenarioError: The scenario has errors; ScenarioNotFoundError: there is no such file.
         OverLimitError: ``steps`` exceeds the limits.
         PlacementError: There is no room for an object that is placed at random or perturbed.
-        BenchmarkError: ``behavior`` is not a valid behavior, or ``perturb`` not a valid perturbation.
-        ArgumentError: ``steps`` is not a whole number.
+        BenchmarkError: There is no such policy, or ``perturb`` is not a valid perturbation.
+        PolicyError: The policy cannot drive these robots, or failed.
+        ArgumentError: ``steps`` is not a whole number, or both ``policy`` and ``behavior`` are given.
         RunError: The folder to record to is not empty.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
-    behavior_text, perturbations = _as_text(behavior), read_perturbations(perturb)
-    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+    driver, behavior_text = _opened(policy, behavior, limits)
+    perturbations = read_perturbations(perturb)
+    try:
+        scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+    except BenchmarkError as error:
+        error.where = "behavior" if policy is None else "policy"
+        raise
     scenario, perturb_texts = perturbed(scenario, perturbations), [perturbation_text(item) for item in perturbations]
     chosen = seed_of(scenario, seed)
-    env = Env(scenario, seed=chosen, display=show, headless=save is None and not show, log_level="ERROR")
+    hidden = save is None and not show
+    env = Env(scenario, seed=chosen, display=show, headless=hidden, log_level="ERROR", policy=driver)
     horizon, source = horizon_of(scenario, env, steps, limits or DEFAULT_LIMITS)
     options = {
         "strict": strict,
         "imports": list(imports),
         **({} if behavior_text is None else {"behavior": behavior_text}),
+        **({} if driver is None else {"policy": driver.text or driver.name, "policy_digest": driver.digest}),
         **({"perturb": perturb_texts} if perturb_texts else {}),
     }
     with recording(env, path, record, horizon=horizon, options=options) as recorder:
@@ -121,6 +138,7 @@ def run(
             imports=imports,
             strict=strict,
             behavior=behavior_text,
+            policy=driver,
             perturb=perturb_texts,
         )
         if recorder is not None:
@@ -129,18 +147,28 @@ def run(
     return result
 
 
-def _as_text(behavior: str | Mapping[str, Any] | None) -> str | None:
-    """A behavior for all robots as text, as the command line takes it; None for their own."""
-    if behavior is None:
-        return None
-    from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text
+def _opened(policy: Any, behavior: Any, limits: Limits | None) -> tuple[Policy | None, str | None]:
+    """What drives the robots: a policy in Python, or the text of a behavior that runs in the engine, or neither.
 
+    Raises:
+        BenchmarkError: There is no such policy.
+    """
+    from irsim.policies.behavior import BehaviorPolicy
+    from irsim.policies.catalog import open_policy
+
+    if policy is not None and behavior is not None:
+        raise ArgumentError("policy and behavior are two names of one argument", "give only policy")
+    chosen, where = (behavior, "behavior") if policy is None else (policy, "policy")
+    if chosen is None:
+        return None, None
     try:
-        text = behavior_text(behavior)
+        opened = open_policy(chosen, root=None if limits is None else limits.root)
     except BenchmarkError as error:
-        error.where = "behavior"
+        error.where = where
         raise
-    return None if text == AS_WRITTEN else text
+    if isinstance(opened, BehaviorPolicy):
+        return None, None if opened.text == AS_WRITTEN else opened.text
+    return opened, None
 
 
 def render(

@@ -21,6 +21,7 @@ from irsim.benchmarks.pool import MAX_DEATHS, cores, dead_workers
 from irsim.benchmarks.ray_connection import ClusterError, connected
 from irsim.common.text import clean
 from irsim.common.version import version
+from irsim.policies.catalog import file_of, files_beside
 
 __all__ = ["ClusterError", "run_on_cluster"]
 
@@ -199,18 +200,31 @@ class _Size:
 
 
 def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
-    """What all chunks need: the jobs as data, and the contents of their maps, each sent once."""
+    """What all chunks need: the jobs as data, and the contents of their maps and networks, each sent once."""
     files: dict[str, Any] = {}
     found = []
+
+    def sent(path: Path) -> str:
+        content = path.read_bytes()
+        key = f"{hashlib.sha256(content).hexdigest()}{path.suffix}"
+        if key not in files:
+            files[key] = ray.put(content)
+        return key
+
     for job in jobs:
-        maps = []
-        for name, path in job.maps:
-            content = Path(path).read_bytes()
-            key = f"{hashlib.sha256(content).hexdigest()}{Path(path).suffix}"
-            if key not in files:
-                files[key] = ray.put(content)
-            maps.append((name, key))
-        found.append({**asdict(job), "maps": maps})
+        if job.local is not None:
+            what = f"policy {job.local.name!r} exists only in this program, so a cluster cannot run it"
+            raise ClusterError("cluster-failed", what, "make it a plug-in or a file, or run without the cluster")
+        network = None if job.policy is None else file_of(job.policy)
+        beside = [] if network is None else [path for path in files_beside(network) if path.is_file()]
+        found.append(
+            asdict(job)
+            | {
+                "maps": [(name, sent(Path(path))) for name, path in job.maps],
+                "network": None if network is None else sent(network),
+                "beside": [(path.suffix, sent(path)) for path in beside],
+            }
+        )
     return {"jobs": found, "files": files}
 
 

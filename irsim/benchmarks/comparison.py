@@ -1,6 +1,6 @@
-"""``irsim.benchmark``: compare behaviors over scenarios and seeds, on all cores, with metrics and intervals.
+"""``irsim.benchmark``: compare policies over scenarios and seeds, on all cores, with metrics and intervals.
 
-The comparison is fair: every behavior runs the same scenarios with the same seeds and horizons, and differences are
+The comparison is fair: every policy runs the same scenarios with the same seeds and horizons, and differences are
 computed episode by episode.
 """
 
@@ -9,30 +9,29 @@ from __future__ import annotations
 import itertools
 import math
 import shlex
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from irsim.benchmarks.cluster import run_on_cluster
-from irsim.benchmarks.episode import Job, Task, Until, scenario_of
+from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
-from irsim.benchmarks.pool import cores, run_tasks
+from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_policies, naming, opened_policies
+from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
 from irsim.benchmarks.seeds import seeds_from
+from irsim.benchmarks.timing import timing_report
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
 from irsim.diagnostics.errors import ArgumentError, OverLimitError
 from irsim.episodes.episode import Progress, import_modules, read_document, source_of
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.catalog import PolicySource
+from irsim.policies.policy import Policy
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.results.findings import Finding
-from irsim.scenario.behavior_override import (
-    AS_WRITTEN,
-    BenchmarkError,
-    behavior_text,
-    check_behavior_name,
-    parse_behavior,
-)
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError
 from irsim.scenario.limits import DEFAULT_LIMITS, Limits
 from irsim.scenario.perturbation import (
     Perturbations,
@@ -48,8 +47,9 @@ __all__ = ["AS_WRITTEN", "DEFAULT_SEEDS", "BenchmarkError", "benchmark", "logged
 
 DEFAULT_SEEDS = 10
 """Number of seeds if none are given."""
-_SEEDS_PER_TURN = 5
-"""Number of seeds that one behavior runs before the next one: so an interrupted benchmark can be compared, too."""
+_SEEDS_PER_TURN = {False: 5, True: MAX_GROUP}
+"""Number of seeds that one policy runs before the next one, so that an interrupted benchmark can be compared, too: few,
+or where policies are networks as many as are run together."""
 _COPIED = (
     *("outcome", "steps", "sim_time", "time_limit", "unreachable", "failures"),
     *("human_contacts", "left", "jumped", "zones"),
@@ -59,9 +59,10 @@ _COPIED = (
 
 def benchmark(
     files: str | Path | Sequence[str | Path] | Mapping[str, str | Path | Document],
-    behaviors: str | Mapping[str, Any] | Sequence[str | Mapping[str, Any]] = (AS_WRITTEN,),
+    policies: PolicySource | Sequence[PolicySource] | None = None,
     seeds: int | str | Iterable[int] = DEFAULT_SEEDS,
     *,
+    behaviors: PolicySource | Sequence[PolicySource] | None = None,
     perturb: Perturbations | None = None,
     steps: int | None = None,
     strict: bool = False,
@@ -74,19 +75,22 @@ def benchmark(
     log: str | Path | None = None,
     resume: bool = False,
     until: Until = "done",
+    timing: dict[str, Any] | None = None,
 ) -> BenchmarkResult:
-    """Run every scenario under every behavior with every seed, and compare.
+    """Run every scenario under every policy with every seed, and compare.
 
     Results depend neither on the number of workers nor on the cluster. A scenario that leaves nothing to chance is run
-    once per behavior.
+    once per policy.
     An episode whose seed leaves no room for an object has the outcome ``placement-crowded`` and counts in no mean.
 
     Args:
         files: Scenario files; a string with a line break is the text of a scenario, called ``(text)`` in the result. A
             mapping gives them other names in the result.
-        behaviors: Behaviors for all robots: names (``orca``), mappings with options, in Python or as YAML text
-            (``{name: orca, timeHorizon: 5}``), or ``as-written`` for those of the scenario. Differences are to the
-            first one.
+        policies: What drives all robots, as :func:`irsim.open_policy` takes it: names of behaviors (``orca``) or of
+            plug-ins, with options as mappings in Python or as YAML text (``{name: orca, timeHorizon: 5}``), files
+            (``model.npz``), functions, policies, or ``as-written`` for the behaviors of the scenario (default).
+            Differences are to the first one.
+        behaviors: Another name of ``policies``.
         seeds: The number of seeds (0, 1, 2, …), or the seeds: a list, or text such as ``5-9`` or ``1,4,7``.
         perturb: What each seed changes, to see whether a scenario still works when things start slightly differently:
             one or several of a mapping such as ``{"position": 0.1, "heading": 0.2, "speed": 0.1, "delay": 2}``, text
@@ -107,31 +111,33 @@ def benchmark(
         resume: Go on with the log of an interrupted benchmark: its episodes are not run again.
         until: ``done`` ends an episode when every robot has arrived or stopped, ``first_collision`` also when one
             collides.
+        timing: Receives the wall-clock times of decisions, see :func:`irsim.benchmarks.timing.timing_report`.
 
     Raises:
-        ScenarioError: A scenario has errors, perhaps only with one of the behaviors; ScenarioNotFoundError: there is no
+        ScenarioError: A scenario has errors, perhaps only with one of the policies; ScenarioNotFoundError: there is no
             such file.
         OverLimitError: More episodes or steps are requested than the limits allow.
-        BenchmarkError: A behavior, the seeds or a perturbation are invalid.
+        BenchmarkError: There is no such policy, or the seeds or a perturbation are invalid.
+        PolicyError: A policy cannot drive the robots of a scenario, or failed.
         ArgumentError: Another argument is invalid.
         RunError: The log cannot be written.
         ExtraError: Ray is not installed; ClusterError: no cluster answers, or it has another irsim or lacks a module.
         WorkerError: Several processes have died in the same episode.
     """
     names, given = _named_sources(files)
-    wanted = _behavior_texts(behaviors)
+    listed, where = listed_policies(policies, behaviors)
     chosen, perturbations = seeds_from(seeds), read_perturbations(perturb)
     texts = tuple(perturbation_text(item) for item in perturbations)
     if steps is not None:
         steps = check_whole_number("steps", steps)
     if workers is not None:
         workers = check_whole_number("workers", workers, 1)
-    _check(names, wanted, chosen, most_episodes)
     limits = limits or DEFAULT_LIMITS
+    _check_size(names, listed, chosen, most_episodes)
     import_modules(imports)
-    for number, behavior in enumerate(wanted):
-        with _naming_behavior(number):
-            check_behavior_name(behavior)
+    opened = opened_policies(listed, where, limits.root)
+    wanted = [label_of(policy) for policy in opened]
+    _check_names(names, wanted)
     warnings: dict[str, list[Finding]] = {}
     jobs: list[tuple[str, str, Job, Sequence[int]]] = []
     periods, chances, changes = dict[str, float](), dict[str, list[str]](), dict[str, list[str]]()
@@ -142,11 +148,12 @@ def benchmark(
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:
             changes[name] = perturbed_message(scenario)
-        for number, behavior in enumerate(wanted):
+        for number, (policy, behavior) in enumerate(zip(opened, wanted, strict=True)):
+            if policy.stochastic and "policy" not in chances[name]:
+                chances[name].append("policy")
             job = Job(
                 text=str(document.text),
                 path=document.path,
-                behavior=behavior,
                 steps=steps,
                 strict=strict,
                 imports=tuple(imports),
@@ -155,8 +162,10 @@ def benchmark(
                 perturb=texts,
                 name=name,
                 maps=() if cluster is None else tuple(scenario.map_files.items()),
+                **job_keys(policy),
             )
-            with _naming_behavior(number):
+            with naming(where, number):
+                check_policy(job)
                 chances[name] += [part for part in random_parts(scenario_of(job)) if part not in chances[name]]
             jobs.append((name, behavior, job, chosen))
     plan = [
@@ -165,11 +174,13 @@ def benchmark(
         for seed in (every if chances[name] else every[:1])
     ]
 
-    rank = {seed: position // _SEEDS_PER_TURN for position, seed in enumerate(chosen)}
+    turn = _SEEDS_PER_TURN[any(policy.batch_invariant for policy in opened)]
+    rank = {seed: position // turn for position, seed in enumerate(chosen)}
     turns = sorted(range(len(plan)), key=lambda number: (names.index(plan[number][0]), rank[plan[number][2].seed]))
     head = BenchmarkResult(
         scenarios=names,
         behaviors=wanted,
+        digests=digests_of(opened),
         seeds=chosen,
         step_time=periods,
         perturb=list(texts),
@@ -202,6 +213,8 @@ def benchmark(
             found = run_tasks(ordered, workers=workers or cores(), progress=report, kept=keep)
         else:
             found = run_on_cluster(ordered, address=cluster, workers=workers, progress=report, kept=keep)
+    if timing is not None:
+        timing.update(_timing(opened, plan, dict(zip(turns, found, strict=True))))
     episodes = known | {number: row(number, result) for number, result in zip(turns, found, strict=True)}
     return with_episodes(head, [episodes[number] for number in range(len(plan))])
 
@@ -227,14 +240,19 @@ def _sources(files: Any) -> list[str]:
     return [str(source) for source in listed]
 
 
-def _behavior_texts(behaviors: Any) -> list[str]:
-    """The behaviors as text, as the command line takes them."""
-    one = isinstance(behaviors, (str, Mapping)) or not isinstance(behaviors, Iterable)
-    found = []
-    for number, behavior in enumerate([behaviors] if one else behaviors):
-        with _naming_behavior(number):
-            found.append(behavior if isinstance(behavior, str) else behavior_text(behavior))
-    return found
+def _timing(
+    opened: Sequence[Policy], plan: Sequence[tuple[str, str, Task]], found: Mapping[int, Mapping[str, Any]]
+) -> dict[str, Any]:
+    """The times of decisions in the episodes that were run now."""
+    labels = [behavior for _, behavior, _ in plan]
+    times: dict[str, dict[str, Any] | None] = {
+        label_of(policy): None if isinstance(policy, BehaviorPolicy) else {} for policy in opened
+    }
+    for number, result in found.items():
+        own = times[labels[number]]
+        if own is not None and "decisions" in result:
+            own[str(number)] = result["decisions"]
+    return timing_report(times, {name: labels.count(name) for name in times})
 
 
 def _named_sources(files: Any) -> tuple[list[str], list[str | Document]]:
@@ -266,33 +284,23 @@ def _document(source: str | Document, limits: Limits) -> Document:
     return found if isinstance(found, Document) else load_path(found, limits)
 
 
-def _check(names: list[str], behaviors: list[str], seeds: list[int], most: int | None) -> None:
-    for what, given in (("scenarios", names), ("behaviors", behaviors)):
+def _check_names(names: list[str], policies: list[str]) -> None:
+    for what, listed in (("scenario", names), ("policy", policies)):
+        twice = next((name for name in listed if listed.count(name) > 1), None)
+        if twice is not None:
+            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
+
+
+def _check_size(names: list[str], policies: Sequence[Any], seeds: list[int], most: int | None) -> None:
+    for what, given in (("scenarios", names), ("policies", policies)):
         if not given:
             raise BenchmarkError(
                 f"there must be at least one of the {what}, got none", f"give at least one of the {what}"
             )
-    for what, listed in (("scenario", names), ("behavior", behaviors)):
-        twice = next((name for name in listed if listed.count(name) > 1), None)
-        if twice is not None:
-            raise BenchmarkError(f"the {what} {twice!r} is given twice", "give each once")
-    for number, behavior in enumerate(behaviors):
-        with _naming_behavior(number):
-            parse_behavior(behavior)
-    total = len(names) * len(behaviors) * len(seeds)
+    total = len(names) * len(policies) * len(seeds)
     if most is not None and total > most:
-        product = f"{len(names)} scenarios x {len(behaviors)} behaviors x {len(seeds)} seeds = {total:,} episodes"
+        product = f"{len(names)} scenarios x {len(policies)} policies x {len(seeds)} seeds = {total:,} episodes"
         raise OverLimitError(f"{product}; at most {most:,} are run at once", f"ask for at most {most:,}")
-
-
-@contextmanager
-def _naming_behavior(number: int) -> Iterator[None]:
-    """Context in which errors name one of the behaviors as their cause."""
-    try:
-        yield
-    except BenchmarkError as error:
-        error.where = f"behaviors[{number}]"
-        raise
 
 
 def _command(
@@ -309,7 +317,7 @@ def _command(
     ]
     words: list[Any] = ["irsim", "benchmark", *files]
     if behaviors != [AS_WRITTEN]:
-        words += ["--behaviors", ",".join(behaviors)]
+        words += ["--policies", ",".join(behaviors)]
     words += ["--seeds", _seeds_text(seeds)]
     for text in perturb:
         words += ["--perturb", text]

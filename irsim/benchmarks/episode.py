@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass
+from contextlib import suppress
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, Literal
 
+from irsim.benchmarks.policies import open_again
 from irsim.diagnostics.errors import PlacementError
 from irsim.env import Env
 from irsim.episodes.episode import horizon_of, import_modules
@@ -19,16 +21,32 @@ from irsim.metrics.episode import EpisodeMetrics, episode_metrics
 from irsim.metrics.geodesic import Geodesics
 from irsim.metrics.progress import UNREACHABLE
 from irsim.metrics.roles import travelling_humans
+from irsim.policies.driver import driver_of
+from irsim.policies.policy import Policy
 from irsim.results.labels import CROWDED
 from irsim.scenario.behavior_override import parse_behavior, with_behavior
 from irsim.scenario.limits import Limits
 from irsim.scenario.perturbation import perturbed, read_perturbations
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.scenario.yaml.document import load_text
-from irsim.simulation.events import first_collisions, first_events
-from irsim.simulation.trace import cut_trace, record
+from irsim.simulation.events import Event, first_collisions, first_events, partner_of, read_events
+from irsim.simulation.simulation import Simulation
+from irsim.simulation.trace import Trace, cut_trace, record
 
-__all__ = ["Job", "Outcome", "Task", "Until", "run_task", "scenario_of"]
+__all__ = [
+    "Episode",
+    "Job",
+    "Outcome",
+    "Task",
+    "Until",
+    "check_policy",
+    "crowded",
+    "environment_of",
+    "measure",
+    "policy_of",
+    "run_task",
+    "scenario_of",
+]
 
 Outcome = Literal["success", "collision", "timeout"]
 Until = Literal["done", "first_collision"]
@@ -57,12 +75,13 @@ _NOTHING: Mapping[str, Any] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Job:
-    """One scenario under one behavior.
+    """One scenario under one policy.
 
     Attributes:
         text: Text of the scenario.
         path: Its file, relative to which it names other files; None for a text.
-        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`.
+        behavior: Behavior of all robots, see :func:`irsim.scenario.behavior_override.parse_behavior`; ``as-written``
+            under a policy in Python.
         steps: Horizon in steps; None: that of the scenario.
         strict: Refuse what IR-SIM would ignore.
         imports: Modules of the user that register behaviors.
@@ -70,6 +89,9 @@ class Job:
         until: ``done``, or ``first_collision`` to end the episode when a robot collides.
         perturb: Perturbations of the scenario, as on the command line.
         name: Name of the scenario in the results.
+        policy: Text that opens the policy in Python that drives the robots, in any folder; None: behaviors do.
+        digest: SHA-256 of its file; None without one.
+        local: The policy itself, if only this process has it.
         maps: Name of a map in the scenario → file that holds it now; empty to find the files as the scenario does.
     """
 
@@ -83,7 +105,16 @@ class Job:
     until: Until = "done"
     perturb: tuple[str, ...] = ()
     name: str = ""
+    policy: str | None = None
+    digest: str | None = None
+    local: Policy | None = None
     maps: tuple[tuple[str, str], ...] = ()
+
+    @staticmethod
+    def of_data(data: dict[str, Any]) -> Job:
+        """The job of its fields as JSON types."""
+        pairs = {key: tuple((name, value) for name, value in data[key]) for key in ("limits", "maps")}
+        return Job(**{**data, **pairs, "imports": tuple(data["imports"]), "perturb": tuple(data["perturb"])})
 
 
 @dataclass(frozen=True)
@@ -92,19 +123,6 @@ class Task:
 
     job: Job
     seed: int
-
-    def as_data(self) -> dict[str, Any]:
-        """The task as JSON types."""
-        return asdict(self)
-
-    @staticmethod
-    def of_data(data: dict[str, Any]) -> Task:
-        """The task of the data that :meth:`as_data` returns."""
-        job = data["job"]
-        job["imports"], job["perturb"] = tuple(job["imports"]), tuple(job["perturb"])
-        for key in ("limits", "maps"):
-            job[key] = tuple((name, value) for name, value in job.get(key, ()))
-        return Task(Job(**job), data["seed"])
 
 
 @lru_cache(maxsize=8)
@@ -122,20 +140,96 @@ def scenario_of(job: Job) -> ResolvedScenario:
     return perturbed(scenario, read_perturbations(job.perturb))
 
 
+def policy_of(job: Job) -> Policy | None:
+    """The policy in Python that drives the robots of a job; None: behaviors do.
+
+    Raises:
+        PolicyError: It cannot be opened, or its file has changed.
+    """
+    return job.local if job.policy is None else open_again(job.policy, job.digest)
+
+
+def check_policy(job: Job) -> None:
+    """Refuse a policy in Python that cannot drive the robots of a scenario, before any episode is run.
+
+    Raises:
+        PolicyError: It cannot drive them, or cannot be opened.
+    """
+    policy = policy_of(job)
+    if policy is None:
+        return
+    with suppress(PlacementError):
+        environment_of(job, 0).end(ending_time=0.0)
+
+
+def environment_of(job: Job, seed: int) -> Env:
+    """An environment at the start of an episode, which the caller must end.
+
+    Raises:
+        PlacementError: The seed leaves no room for an object.
+        PolicyError: The policy cannot drive the robots.
+    """
+    scenario = scenario_of(job)
+    return Env(scenario, seed=seed, display=False, headless=True, log_level="ERROR", policy=policy_of(job))
+
+
 def run_task(task: Task, ways: Geodesics | None = None) -> dict[str, Any]:
-    """Run an episode, see :func:`_run`; a seed without room for an object is the outcome ``placement-crowded``."""
-    try:
-        return _run(task, ways)
-    except PlacementError:
-        metrics = {metric.key: math.nan for metric in (*METRICS, *EPISODE_METRICS)}
-        return {**_NOTHING, "outcome": CROWDED, "metrics": metrics}
-
-
-def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     """Run an episode until every robot has arrived or stopped, or the horizon is reached, and measure it.
 
     Args:
         task: The episode.
+        ways: Shortest paths in a world with the same static objects, if they are known.
+
+    Returns:
+        See :func:`measure`, and for a policy in Python ``decisions``: (wall-clock time [s], number of robots) of each
+        of its decisions, which no result repeats; :func:`crowded` if the seed leaves no room for an object.
+    """
+    job = task.job
+    try:
+        env = environment_of(job, task.seed)
+        horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
+    except PlacementError:
+        return crowded()
+    trace, driver = record(env.simulation, horizon), driver_of(env.simulation)
+    timed = {} if driver is None else {"decisions": list(zip(driver.seconds, driver.decided, strict=True))}
+    result = measure(task, Episode(trace, env.events, horizon), env, env.simulation, ways) | timed
+    env.end(ending_time=0.0)
+    return result
+
+
+def crowded() -> dict[str, Any]:
+    """Result of an episode that does not take place, as its seed leaves no room: ``placement-crowded``."""
+    metrics = {metric.key: math.nan for metric in (*METRICS, *EPISODE_METRICS)}
+    return {**_NOTHING, "outcome": CROWDED, "metrics": metrics}
+
+
+@dataclass(frozen=True)
+class Episode:
+    """An episode that was run.
+
+    Attributes:
+        trace: Its trace, from the start.
+        events: Its events.
+        horizon: Its horizon in steps.
+        world: Index of its world in the simulation that ran it.
+    """
+
+    trace: Trace
+    events: list[Event]
+    horizon: int
+    world: int = 0
+
+
+def measure(
+    task: Task, episode: Episode, scene: Env, simulation: Simulation, ways: Geodesics | None = None
+) -> dict[str, Any]:
+    """Measure an episode.
+
+    Args:
+        task: What was run.
+        episode: What happened.
+        scene: An environment with the scene of the episode.
+        simulation: The simulation that ran it, and can go on.
         ways: Shortest paths in a world with the same static objects, if they are known.
 
     Returns:
@@ -144,21 +238,21 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         contacts between people), ``left`` and ``jumped`` (objects that left the world or jumped over their goal), and
         ``metrics`` of the episode by key (NaN where undefined), and ``zones``: metrics of each zone by its name.
     """
-    job = task.job
-    env = Env(scenario_of(job), seed=task.seed, display=False, headless=True, log_level="ERROR")
-    horizon, _ = horizon_of(env.scenario, env, job.steps, Limits(**dict(job.limits)))
-    simulation = env.simulation
-    trace, events, records = record(simulation, horizon), env.events, env.scenario.objects
-    if job.until == "first_collision":
-        last = _first_collision(env)
+    trace, events, horizon, records = episode.trace, episode.events, episode.horizon, scene.scenario.objects
+    hits = _first_hits(scene, events) if task.job.until == "first_collision" else {}
+    if hits:
+        last = min(event.step for event in hits.values())
+        hits = {name: event for name, event in hits.items() if event.step == last}
         trace, events = cut_trace(trace, slice(last + 1)), [event for event in events if event.step <= last]
     steps = int(trace.step[-1])
-    measured, incidents = episode_metrics(trace, simulation, events, ways=ways), find_incidents(records, events)
-    measured.episode["pedestrian_delay"] = _pedestrian_delay(task, env, horizon)
-    env.end(ending_time=0.0)
+    measured, incidents = episode_metrics(trace, scene.simulation, events, ways=ways), find_incidents(records, events)
+    measured.episode["pedestrian_delay"] = _pedestrian_delay(task, episode, scene, simulation)
     robots = measured.robots
     outcome: Outcome = "timeout"
-    if robots and all(robot["success"] for robot in robots):
+    if hits:  # also a collision of robots that had arrived before
+        outcome = "collision"
+        measured.episode.update(success=0.0, collision=1.0, timeout=0.0)
+    elif robots and all(robot["success"] for robot in robots):
         outcome = "success"
     elif any(not robot["success"] and not robot["timeout"] for robot in robots):
         outcome = "collision"
@@ -169,9 +263,9 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
         "time_limit": horizon * trace.step_time,
         "robots": len(robots),
         "unreachable": sum(UNREACHABLE in flags for flags in measured.flags),
-        "failures": _failures(measured),
+        "failures": _partners(hits) if hits else _failures(measured),
         "human_contacts": len(incidents.human_contacts),
-        "left": [item.name for item in find_exits(env.scenario, lambda row: trace.pose[:, row, :2], steps)][
+        "left": [item.name for item in find_exits(scene.scenario, lambda row: trace.pose[:, row, :2], steps)][
             :_MAX_NAMES
         ],
         "jumped": list(incidents.jumps)[:_MAX_NAMES],
@@ -180,39 +274,47 @@ def _run(task: Task, ways: Geodesics | None) -> dict[str, Any]:
     }
 
 
-def _first_collision(env: Env) -> int:
-    """Step of the first collision of a robot; that of the last step without one."""
-    robots = {robot.name for robot in env.robot_list}
-    steps = [event.step for name, event in first_collisions(env.simulation, env.events).items() if name in robots]
-    return min([*steps, int(env.simulation.count[0])])
+def _first_hits(scene: Env, events: list[Event]) -> dict[str, Event]:
+    """First collision of each robot that had one, by its name."""
+    robots = {robot.name for robot in scene.robot_list}
+    return {name: event for name, event in first_collisions(scene.simulation, events).items() if name in robots}
 
 
-def _pedestrian_delay(task: Task, env: Env, horizon: int) -> float:
-    """``pedestrian_delay`` [s]; advances the environment until all humans have arrived, at most to the horizon."""
-    people = travelling_humans(env.scenario.objects)
-    if not people or not env.robot_list:
+def _partners(hits: Mapping[str, Event]) -> dict[str, str]:
+    """Outcome of the robots that were in the collision that ended an episode, by name."""
+    return {name: f"collision with {partner_of(hits[name], name)!r}" for name in sorted(hits)[:_MAX_FAILURES]}
+
+
+def _pedestrian_delay(task: Task, episode: Episode, scene: Env, simulation: Simulation) -> float:
+    """``pedestrian_delay`` [s]; advances the simulation until all humans have arrived, at most to the horizon."""
+    people = travelling_humans(scene.scenario.objects)
+    if not people or not scene.robot_list:
         return math.nan
-    with_robots: dict[str, float] = {}
-    while True:
-        with_robots = _arrival_times(env, people)
-        left = horizon - int(env.simulation.count[0])
-        if len(with_robots) == len(people) or left <= 0:
-            break
-        env.simulation.advance(min(left, _STRIDE))
+    world, horizon = episode.world, episode.horizon
+    done = int(episode.trace.step[-1])
+    with_robots = _arrivals(simulation, world, people, horizon)
+    while len(with_robots) < len(people) and int(simulation.count[world]) < horizon:
+        simulation.advance(min(horizon - int(simulation.count[world]), _STRIDE))
+        with_robots = _arrivals(simulation, world, people, horizon)
     if not with_robots:
         return math.nan
+    last = horizon
+    if len(with_robots) == len(people):
+        needed = max(0, max(event.step for event in with_robots.values()) - done)
+        last = min(horizon, done + _STRIDE * math.ceil(needed / _STRIDE))
     alone = Env(scenario_of(task.job), seed=task.seed, display=False, headless=True, log_level="ERROR")
     alone.delete_objects([robot.id for robot in alone.robot_list])
-    alone.simulation.advance(int(env.simulation.count[0]))
-    without = _arrival_times(alone, people)
+    alone.simulation.advance(last)
+    without = _arrivals(alone.simulation, 0, people, last)
     alone.end(ending_time=0.0)
-    delays = [with_robots[name] - without[name] for name in with_robots if name in without]
+    delays = [with_robots[name].time - without[name].time for name in with_robots if name in without]
     return math.fsum(delays) / len(delays) if delays else math.nan
 
 
-def _arrival_times(env: Env, names: Collection[str]) -> dict[str, float]:
-    """Time of the first arrival of each of some objects [s]; objects that have not arrived are left out."""
-    return {name: event.time for name, event in first_events(env.events, "arrival").items() if name in names}
+def _arrivals(simulation: Simulation, world: int, names: Collection[str], last: int) -> dict[str, Event]:
+    """First arrival of each of some objects, up to a step; objects that have not arrived are left out."""
+    first = first_events(read_events(simulation, world), "arrival")
+    return {name: event for name, event in first.items() if name in names and event.step <= last}
 
 
 def _failures(measured: EpisodeMetrics) -> dict[str, str]:

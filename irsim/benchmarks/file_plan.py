@@ -7,8 +7,9 @@ from pathlib import Path
 
 from irsim.benchmarks.comparison import DEFAULT_SEEDS
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
+from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.seeds import seeds_from
-from irsim.episodes.episode import source_of
+from irsim.episodes.episode import import_modules, source_of
 from irsim.scenario.perturbation import perturbation_text, read_perturbations
 from irsim.scenario.yaml.document import Document, load_path
 
@@ -29,7 +30,7 @@ def file_plan(
 
     Raises:
         ScenarioNotFoundError: A file does not exist.
-        BenchmarkError: The seeds are invalid.
+        BenchmarkError: The seeds are invalid, or the file of a policy does not exist.
     """
     documents = [_document(file) for file in files]
     scenarios = [
@@ -39,10 +40,15 @@ def file_plan(
         )
         for file, document, maps in zip(files, documents, map_hashes(documents), strict=True)
     ]  # fmt: skip
+    import_modules(imports)
+    texts = {text: text for text in policies}
+    sources, digests = files_of(texts, {})
     return Plan(
         name="benchmark",
         scenarios=scenarios,
-        policies={text: text for text in policies},
+        policies=texts,
+        sources=sources,
+        digests=digests,
         seeds=seeds_from(seeds or DEFAULT_SEEDS),
         steps=steps,
         strict=strict,

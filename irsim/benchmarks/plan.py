@@ -10,8 +10,11 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict
 
 from irsim.benchmarks.episode import Until
+from irsim.benchmarks.policies import open_planned
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.common.version import version as this_version
+from irsim.episodes.episode import import_modules
+from irsim.policies.policy import Policy
 from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_text
@@ -56,7 +59,9 @@ class Plan(BaseModel):
         version: Version of irsim that runs it.
         suite: The suite; None for a benchmark of files.
         scenarios: The scenarios in order.
-        policies: Name in the results → behavior as text.
+        policies: Name in the results → policy as text.
+        sources: Name → text that opens a policy that is a file, with its full path.
+        digests: Name → SHA-256 of such a file.
         seeds: The seeds.
         steps: Horizon in steps; None where each scenario has its own.
         perturb: Perturbations of the scenarios, as on the command line.
@@ -73,6 +78,8 @@ class Plan(BaseModel):
     suite: Suite | None = None
     scenarios: list[PlannedScenario]
     policies: dict[str, str]
+    sources: dict[str, str] = {}
+    digests: dict[str, str] = {}
     seeds: list[int]
     steps: int | None = None
     perturb: list[str] = []
@@ -81,10 +88,20 @@ class Plan(BaseModel):
     imports: list[str] = []
     reproduce: str = ""
 
+    def opened(self) -> list[Policy]:
+        """The policies, opened.
+
+        Raises:
+            PolicyError: The file of one has changed since the benchmark was started.
+        """
+        import_modules(self.imports)
+        return open_planned(self.policies, self.sources, self.digests)
+
     @property
     def hash(self) -> str:
         """Hash of everything that decides the numbers; folders and the command do not."""
-        where = {"reproduce": True, "scenarios": {"__all__": {"folder"}}}
+        where = {"reproduce": True, "sources": True, "scenarios": {"__all__": {"folder"}}}
+        where |= {} if self.digests else {"digests": True}
         text = self.model_dump_json(exclude=where)  # type: ignore[arg-type]
         return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
 

@@ -11,9 +11,11 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any
 
-from irsim.benchmarks.episode import Task, run_task
+from irsim.benchmarks.episode import Job, Task
+from irsim.benchmarks.together import run_together
 from irsim.benchmarks.worker import READY
 from irsim.diagnostics.errors import CodedError
 
@@ -23,6 +25,8 @@ _START_DELAY_S = 0.7
 """Time [s] after which further processes are started; most benchmarks of a few episodes end before."""
 MAX_DEATHS = 3
 """Number of processes that may die while they run the same episode."""
+MAX_GROUP = 25
+"""Number of episodes of one job that a process takes at once."""
 
 
 class WorkerError(CodedError, RuntimeError):
@@ -45,8 +49,9 @@ def run_tasks(
 ) -> list[dict[str, Any]]:
     """Run episodes in this process and, if that takes longer than a moment, in further processes.
 
-    A task that a further process cannot run (with a behavior that only this program has registered) is run here. A
-    process that dies is replaced, and its task is run again.
+    Each process takes a few tasks with the same job and runs them together. A task that a further process cannot run
+    (with a behavior that only this program has registered) is run here. A process that dies is replaced, and its tasks
+    are run again.
 
     Args:
         tasks: The tasks.
@@ -61,64 +66,97 @@ def run_tasks(
         IrsimError: The first error of an episode, in the order of the tasks.
         WorkerError: Several processes have died in the same episode.
     """
-    shared = _Shared(tasks, kept)
+    shared = _Shared(tasks, kept, workers)
     helpers: list[_Helper] = []
     begin = time.monotonic()
+
+    def done_here(index: int, result: dict[str, Any]) -> None:
+        nonlocal helpers
+        shared.put(index, result)
+        late = time.monotonic() - begin > _START_DELAY_S
+        if late and not helpers and workers > 1 and shared.left() > 1:
+            number = min(workers - 1, shared.left())
+            shared.join(number)
+            helpers = [_Helper(shared) for _ in range(number)]
+        if progress is not None:
+            progress(shared.done(), len(tasks))
+
     try:
-        while (index := shared.take()) is not None or shared.busy():
-            if index is None:
-                shared.wait()
+        while (group := shared.take()) or shared.busy():
+            if group:
+                _run_here(shared, group, done_here)
             else:
-                try:
-                    shared.check(index)
-                    shared.put(index, run_task(tasks[index]))
-                except Exception:
-                    shared.stop(index)
-                    if shared.is_first(index):
-                        raise
-                    continue
-                finally:
-                    shared.leave()
-            late = time.monotonic() - begin > _START_DELAY_S
-            if late and not helpers and workers > 1 and shared.left() > 1:
-                number = min(workers - 1, shared.left())
-                shared.join(number)
-                helpers = [_Helper(shared) for _ in range(number)]
-            if progress is not None:
-                progress(shared.done(), len(tasks))
+                shared.wait()
+                if progress is not None:
+                    progress(shared.done(), len(tasks))
     finally:
         for helper in helpers:
             helper.end()
     return [shared.results[index] for index in range(len(tasks))]
 
 
+def _run_here(shared: _Shared, group: list[int], done: Callable[[int, dict[str, Any]], None]) -> None:
+    """Run a group in this process. If it fails, its remaining tasks are run one by one, which shows the one at fault.
+
+    Raises:
+        IrsimError: The group is a single task, the first one that fails.
+    """
+    rest = list(group)
+    found = run_together(shared.tasks[group[0]].job, [shared.tasks[index].seed for index in group])
+    try:
+        while rest:
+            try:
+                shared.check(group[0])
+                result = next(found)
+            except Exception:
+                if len(group) > 1:
+                    shared.back(rest)
+                    return
+                shared.stop(group[0])
+                if shared.is_first(group[0]):
+                    raise
+                return
+            done(rest.pop(0), result)
+    finally:
+        shared.leave()
+
+
 class _Shared:
     """The remaining tasks and the results, shared by the threads."""
 
-    def __init__(self, tasks: Sequence[Task], kept: Callable[[int, dict[str, Any]], None] | None) -> None:
-        self.tasks, self._kept = tasks, kept
+    def __init__(self, tasks: Sequence[Task], kept: Callable[[int, dict[str, Any]], None] | None, workers: int) -> None:
+        self.tasks, self._kept, self._workers = tasks, kept, workers
         self.results: dict[int, dict[str, Any]] = {}
-        self._open = deque(range(len(tasks)))
-        self._mine: deque[int] = deque()  # tasks that only this process can run
+        own = [index for index, task in enumerate(tasks) if task.job.local is not None]
+        self._open = deque(index for index, task in enumerate(tasks) if task.job.local is None)
+        self._mine: deque[int] = deque(own)  # tasks that only this process can run
         self._risky: deque[int] = deque()  # tasks in which a process has died: another one tries them, not this one
         self._helpers = 0
         self._out = 0
         self._deaths = Counter[int]()
         self._changed = threading.Condition()
 
-    def take(self, *, elsewhere: bool = False) -> int | None:
-        """Take the next task; None if there is none at present.
+    def take(self, *, elsewhere: bool = False) -> list[int]:
+        """Take the next tasks, all with the same job; empty if there are none at present.
 
         Args:
-            elsewhere: The task is for another process.
+            elsewhere: The tasks are for another process.
         """
         with self._changed:
             first = self._risky if elsewhere else self._mine
-            queue = first or self._open
-            if not queue:
-                return None
-            self._out += 1
-            return queue.popleft()
+            group = [first.popleft()] if first else self._next_group()
+            self._out += bool(group)
+            return group
+
+    def _next_group(self) -> list[int]:
+        """Remove the next tasks that can run together; few at the end, so that all processes end together."""
+        size = max(1, min(MAX_GROUP, len(self._open) // (4 * self._workers)))
+        group: list[int] = []
+        while self._open and len(group) < size:
+            if group and self.tasks[self._open[0]].job is not self.tasks[group[0]].job:
+                break
+            group.append(self._open.popleft())
+        return group
 
     def put(self, index: int, result: dict[str, Any]) -> None:
         """Store the result of a task; the callback gets it before the task counts as done."""
@@ -126,27 +164,30 @@ class _Shared:
             self._kept(index, result)
         self.results[index] = result
 
-    def leave(self, *, back: int | None = None) -> None:
-        """Give a task back.
-
-        Args:
-            back: The task, if it has no result and the main thread must run it.
-        """
+    def leave(self) -> None:
+        """Count a group as ended."""
         with self._changed:
             self._out -= 1
-            if back is not None:
-                self._mine = deque(sorted([*self._mine, back]))
             self._changed.notify_all()
 
-    def died(self, index: int) -> None:
-        """Give a task back whose process has died; another one runs it, after several deaths none."""
+    def back(self, tasks: Sequence[int]) -> None:
+        """Have tasks without a result run by the main thread, one by one."""
         with self._changed:
-            self._deaths[index] += 1
-            if self._deaths[index] < MAX_DEATHS:
-                self._out -= 1
-                self._risky.append(index)
-                return
-        self.leave(back=index)
+            self._mine = deque(sorted([*self._mine, *tasks]))
+            self._changed.notify_all()
+
+    def died(self, tasks: Sequence[int]) -> None:
+        """Give tasks back whose process has died; another one runs them one by one, after several deaths none.
+
+        Only a single task counts as the cause.
+        """
+        with self._changed:
+            if len(tasks) == 1:
+                self._deaths[tasks[0]] += 1
+            self._risky.extend(index for index in tasks if self._deaths[index] < MAX_DEATHS)
+            self._mine = deque(sorted([*self._mine, *(i for i in tasks if self._deaths[i] >= MAX_DEATHS)]))
+            self._out -= 1
+            self._changed.notify_all()
 
     def join(self, helpers: int) -> None:
         """Count further processes, or with a negative number those that have ended; the last one leaves its tasks."""
@@ -224,17 +265,24 @@ class _Helper:
             self._shared.join(-1)
 
     def _feed(self, shared: _Shared) -> None:
-        while (index := shared.take(elsewhere=True)) is not None:
-            answer = self._answer(shared.tasks[index])
-            if answer is None:
-                shared.died(index)
-                if not self._replace():
+        while group := shared.take(elsewhere=True):
+            rest = list(group)
+            failed = not self._send(shared.tasks[group[0]].job, [shared.tasks[index].seed for index in group])
+            while rest and not failed:
+                answer = self._receive()
+                if answer is not None and "result" in answer:
+                    shared.put(rest.pop(0), answer["result"])
+                elif answer is None:
+                    failed = True
+                else:
+                    shared.back(rest)
+                    shared.leave()
                     return
-            elif "result" in answer:
-                shared.put(index, answer["result"])
+            if not rest:
                 shared.leave()
-            else:
-                shared.leave(back=index)
+                continue
+            shared.died(rest)
+            if not self._replace():
                 return
 
     def _replace(self) -> bool:
@@ -254,12 +302,20 @@ class _Helper:
         except (OSError, ValueError):
             return False
 
-    def _answer(self, task: Task) -> dict[str, Any] | None:
+    def _send(self, job: Job, seeds: list[int]) -> bool:
+        """Send tasks to the process; False if it has died."""
         assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps({"job": asdict(job), "seeds": seeds}).encode() + b"\n")
+            self._process.stdin.flush()
+        except OSError:
+            return False
+        return True
+
+    def _receive(self) -> dict[str, Any] | None:
+        """The next answer of the process; None if it has died."""
         assert self._process.stdout is not None
         try:
-            self._process.stdin.write(json.dumps(task.as_data()).encode() + b"\n")
-            self._process.stdin.flush()
             return dict(json.loads(self._process.stdout.readline()))
         except (OSError, ValueError):
             return None

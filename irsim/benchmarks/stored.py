@@ -6,6 +6,7 @@ again in their order: the files of a run that was interrupted and resumed equal 
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -25,10 +26,11 @@ from irsim.results.suite import SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError
 from irsim.scenario.limits import Limits
 
-__all__ = ["EPISODES", "PLAN", "RESULTS", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
+__all__ = ["EPISODES", "PLAN", "RESULTS", "TIMING", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
 
-EPISODES, PLAN, RESULTS = "episodes.jsonl", "plan.json", "results.json"
-"""Files in the folder of a benchmark: its episodes, everything that decides its numbers, and its result."""
+EPISODES, PLAN, RESULTS, TIMING = "episodes.jsonl", "plan.json", "results.json", "timing.json"
+"""Files in the folder of a benchmark: its episodes, everything that decides its numbers, its result, and how long
+policies took to decide, which is the only file that differs between two runs of a plan."""
 _FOLDER = Path(".irsim") / "benchmarks"
 
 
@@ -83,9 +85,10 @@ def run_plan(
     _make(folder)
     with _alone_in(folder):
         _prepare(plan, folder, resume)
+        timing: dict[str, Any] = {}
         found = benchmark(
             {scenario.name: scenario.document() for scenario in plan.scenarios},
-            list(plan.policies.values()),
+            plan.opened(),
             plan.seeds,
             perturb=plan.perturb,
             steps=plan.steps,
@@ -98,7 +101,9 @@ def run_plan(
             log=folder / EPISODES,
             resume=resume,
             until=plan.until,
+            timing=timing,
         )
+        _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
         result = _result(plan, found)
         _write(folder / EPISODES, as_log(found))
         _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")

@@ -112,7 +112,8 @@ class Suite(_Part):
     which fails the episode in both cases."""
     policies: Annotated[dict[Name, str | dict[str, Any]], Field(min_length=1)]
     """Name in the results → policy that the suite compares, with its options: a behavior (``dash`` or ``{name: orca,
-    timeHorizon: 2}``) or ``as-written``. Differences are to the first one."""
+    timeHorizon: 2}``), ``as-written``, ``random``, a plug-in, or a file (``.npz``, ``.onnx``) relative to the suite
+    file. Differences are to the first one."""
     perturb: list[Perturbation] = []
     """How far starts, headings, speeds and departures may differ from the scenarios, drawn per seed, such as
     ``[{position: 0.1}]``."""

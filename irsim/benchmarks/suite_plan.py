@@ -9,6 +9,7 @@ from pathlib import Path
 import yaml
 
 from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
+from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.benchmarks.suite_files import SuiteError, load_suite
 from irsim.benchmarks.suite_scenarios import Expanded, expand
@@ -33,11 +34,11 @@ def suite_plan(
 
     Args:
         suite: Name of a bundled suite, path of a file, or a suite.
-        policies: Names of policies of the suite, or other behaviors, instead of all policies of the suite.
+        policies: Names of policies of the suite, or other policies, instead of all policies of the suite.
         protocols: Some of its protocols; default: all.
         seeds: Number of seeds, instead of that of the suite.
         full: Run the number of seeds that the suite calls full.
-        scenarios: Names of scenarios, or of their families; default: all.
+        scenarios: Names of scenarios, with or without their protocol, or of their families; default: all.
         perturb: Perturbations instead of those of the suite, as on the command line.
 
     Raises:
@@ -48,27 +49,36 @@ def suite_plan(
     made = [one for one in expand(found, file) if one.protocol in kept]
     words = ["irsim", "benchmark", suite if isinstance(suite, str) else found.suite]
     if policies is not None:
-        words += ["--behaviors", ",".join(policies)]
+        words += ["--policies", ",".join(policies)]
     if list(kept) != list(found.protocols):
         words += [word for name in kept for word in ("--protocol", name)]
     if scenarios is not None:
-        names = _chosen("scenario", scenarios, sorted({name for one in made for name in (one.name, one.family)}))
-        made = [one for one in made if one.name in names or one.family in names]
+        names = _chosen("scenario", scenarios, sorted({name for one in made for name in _names(one)}))
+        made = [one for one in made if not _names(one).isdisjoint(names)]
         words += [word for name in names for word in ("--scenario", name)]
     perturbations = read_perturbations(perturb) or tuple(found.perturb)
     words += [word for item in perturb for word in ("--perturb", item)]
+    texts = _policies(found, policies)
+    sources, digests = files_of(texts, {name: file.parent for name in texts if name in found.policies})
     count = seeds or (found.seeds.full if full and found.seeds.full else found.seeds.count)
     words += ["--seeds", str(count)] if count != found.seeds.count else []
     return Plan(
         name=found.suite,
         suite=found,
         scenarios=_planned(made),
-        policies=_policies(found, policies),
+        policies=texts,
+        sources=sources,
+        digests=digests,
         seeds=[found.seeds.first + k for k in range(count)],
         until=found.until,
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
+
+
+def _names(one: Expanded) -> set[str]:
+    """What a scenario may be called: its name, its name under any protocol, the name of its family."""
+    return {one.name, one.name.rsplit("/", 1)[0], one.family}
 
 
 def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]:
@@ -80,7 +90,7 @@ def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]
 
 
 def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
-    """Label → behavior as text. A name that the suite does not have is a behavior of its own."""
+    """Label → policy as text. A name that the suite does not have is a policy of its own."""
     if wanted is not None and not wanted:
         raise SuiteError("there must be at least one policy, got none", f"choose from {', '.join(suite.policies)}")
     own = {name: behavior_text(policy) for name, policy in suite.policies.items()}

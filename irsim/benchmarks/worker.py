@@ -1,4 +1,4 @@
-"""A process that runs episodes: one task per line of standard input, one result per line of standard output.
+"""A process that runs episodes: a job and its seeds per line of standard input, one result per line of standard output.
 
 It ends immediately when its standard input is closed, so it never outlives the process that started it.
 """
@@ -23,18 +23,20 @@ def main() -> None:
     os.dup2(2, 1)  # what user modules print must not mix with the answers
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(lines,), daemon=True).start()
-    from irsim.benchmarks.episode import Task, run_task
+    from irsim.benchmarks.episode import Job
+    from irsim.benchmarks.together import run_together
 
     answers.write(READY.decode())
     answers.flush()
     while True:
-        line = lines.get()
+        data = json.loads(lines.get())
         try:
-            answer = json.dumps({"result": run_task(Task.of_data(json.loads(line)))})
+            for result in run_together(Job.of_data(data["job"]), data["seeds"]):
+                answers.write(json.dumps({"result": result}) + "\n")
+                answers.flush()
         except Exception as error:
-            answer = json.dumps({"error": f"{type(error).__name__}: {error}"})
-        answers.write(answer + "\n")
-        answers.flush()
+            answers.write(json.dumps({"error": f"{type(error).__name__}: {error}"}) + "\n")
+            answers.flush()
 
 
 def _listen(lines: queue.SimpleQueue[bytes]) -> None:

@@ -1,4 +1,4 @@
-"""``irsim benchmark``: compare behaviors over scenarios and seeds."""
+"""``irsim benchmark``: compare policies over scenarios and seeds."""
 
 from __future__ import annotations
 
@@ -46,12 +46,15 @@ def benchmark(
         list[str] | None,
         typer.Argument(help="Scenario files (YAML), or one suite: a name or a suite file.", show_default=False),
     ] = None,
-    behaviors: Annotated[
+    policies: Annotated[
         str | None,
         typer.Option(
+            "--policies",
+            "--behaviors",
             metavar="A,B,…",
-            help="Behaviors of all robots to compare, such as rvo,orca or '{name: orca, timeHorizon: 5}'. The first is "
-            "the reference for differences. Of a suite: names of its policies, or other behaviors.",
+            help="What drives all robots, to compare: behaviors such as rvo,orca or '{name: orca, timeHorizon: 5}', "
+            "files (model.npz), plug-ins; irsim policies lists them. The first is the reference for differences. Of a "
+            "suite: names of its policies, or others.",
             show_default="as-written, or all of a suite",
         ),
     ] = None,
@@ -121,7 +124,7 @@ def benchmark(
         ),
     ] = None,
 ) -> None:
-    """Compare behaviors: run every scenario with every behavior and the same seeds, on all cores.
+    """Compare policies: run every scenario with every policy and the same seeds, on all cores.
 
     The table shows the rates of success, collision and time-out with 95 % intervals, and mean times, speeds and paths.
     --json and --csv contain all metrics. A suite and every benchmark with -o writes each episode into a folder as soon
@@ -136,7 +139,7 @@ def benchmark(
         raise BenchmarkError("--json and --csv cannot be combined", "give one of them")
     import_user_modules(imports)
     wanted = Wanted(
-        files=files or [], behaviors=behaviors, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
+        files=files or [], policies=policies, seeds=seeds, perturb=perturb or [], steps=steps, strict=strict,
         imports=imports or [], workers=workers, cluster=cluster, max_objects=max_objects, folder=output, resume=resume,
         full=full, protocols=protocols or [], scenarios=scenarios or [],
     )  # fmt: skip
@@ -280,9 +283,12 @@ def _episodes_note(found: Estimate, episodes: int) -> str:
 
 
 def _labels(files: list[str]) -> dict[str, str]:
-    """Return a short label for each file; full paths without suffix if the file names are not unique."""
+    """Return a short label for each file; full paths without suffix if the file names are not unique.
+
+    Names that are not files, such as those of the scenarios of a suite, are their own labels.
+    """
     stems = {name: re.sub(r"(/scenario)?\.ya?ml$", "", name) for name in files}
-    short = {name: stem.rsplit("/", 1)[-1] for name, stem in stems.items()}
+    short = {name: stem.rsplit("/", 1)[-1] if stem != name else name for name, stem in stems.items()}
     return short if len(set(short.values())) == len(files) else stems
 
 

@@ -21,7 +21,7 @@ class Wanted:
     """The arguments of the command; see there."""
 
     files: Sequence[str]
-    behaviors: str | None
+    policies: str | None
     seeds: str
     perturb: Sequence[str]
     steps: int | None
@@ -91,7 +91,7 @@ def run_benchmark(wanted: Wanted) -> BenchmarkResult:
             from irsim.benchmarks import DEFAULT_SEEDS, benchmark
             from irsim.scenario.behavior_override import AS_WRITTEN, split_behaviors
 
-            policies = [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors)
+            policies = [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies)
             return benchmark(
                 list(wanted.files), policies, wanted.seeds or DEFAULT_SEEDS, perturb=wanted.perturb or None,
                 steps=wanted.steps, strict=wanted.strict, imports=wanted.imports, workers=wanted.workers,
@@ -121,7 +121,7 @@ def _suite(name: str, wanted: Wanted) -> Plan:
         raise ArgumentError(f"--seeds of a suite is their number, got {wanted.seeds}", "give a number such as 20")
     return suite_plan(
         name,
-        policies=None if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        policies=None if wanted.policies is None else split_behaviors(wanted.policies),
         protocols=wanted.protocols or None,  # type: ignore[arg-type]
         seeds=int(wanted.seeds) if wanted.seeds else None,
         full=wanted.full,
@@ -137,7 +137,7 @@ def _plan(wanted: Wanted) -> Plan:
 
     return file_plan(
         wanted.files,
-        [AS_WRITTEN] if wanted.behaviors is None else split_behaviors(wanted.behaviors),
+        [AS_WRITTEN] if wanted.policies is None else split_behaviors(wanted.policies),
         wanted.seeds,
         steps=wanted.steps,
         strict=wanted.strict,

@@ -33,11 +33,14 @@ def run(
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Show the simulation in a window.")] = False,
     strict: Strict = False,
-    behavior: Annotated[
+    policy: Annotated[
         str | None,
         typer.Option(
+            "--policy",
+            "--behavior",
             metavar="NAME",
-            help="Replace the behavior of every robot, such as rvo or '{name: orca, timeHorizon: 5}'.",
+            help="Drive every robot by this policy instead of its own behavior: a behavior such as rvo or '{name: "
+            "orca, timeHorizon: 5}', a file (model.npz), a plug-in; irsim policies lists them.",
             show_default=False,
         ),
     ] = None,
@@ -81,7 +84,7 @@ def run(
             seed=seed,
             steps=steps,
             strict=strict,
-            behavior=behavior,
+            policy=policy,
             perturb=perturb,
             imports=imports or (),
             save=save_gif,

@@ -35,6 +35,8 @@ void renew_goals(const World& world, State& state, int w, int object);
 /// Append the present pose of a row to its history.
 void remember(State& state, int row);
 
+/// Command an object to follow a world-frame velocity, as for a behavior that wants it.
+void command_velocity(const World& world, State& state, int w, int object, Vec2 velocity, const Turning& turning);
 /// The control with which `object` realises a world-frame velocity.
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning);
 

@@ -24,10 +24,11 @@ enum class Stream : std::uint64_t {
   planner,
   map,
   user,
-  perturbation
+  perturbation,
+  policy
 };
-constexpr std::array<const char*, 10> kStreamNames = {"placement", "shape",   "goal", "motion", "sensor",
-                                                      "behavior",  "planner", "map",  "user",   "perturbation"};
+constexpr std::array<const char*, 11> kStreamNames = {
+    "placement", "shape", "goal", "motion", "sensor", "behavior", "planner", "map", "user", "perturbation", "policy"};
 
 /// The stream of sensor number `index` of an object.
 inline std::uint64_t sensor_stream(int index) {

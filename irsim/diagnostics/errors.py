@@ -16,6 +16,7 @@ __all__ = [
     "NotSimulatedError",
     "OverLimitError",
     "PlacementError",
+    "PolicyError",
     "ScenarioError",
     "ScenarioNotFoundError",
 ]
@@ -96,6 +97,10 @@ class BehaviorError(CodedError, ValueError):
 
     def __init__(self, message: str) -> None:
         super().__init__(self.code, message.removeprefix(f"{self.code}: "))
+
+
+class PolicyError(CodedError, ValueError):
+    """A policy failed while it decided (``policy-failed``), or cannot drive these robots (``policy-mismatch``)."""
 
 
 class NotSimulatedError(ScenarioError):

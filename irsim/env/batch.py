@@ -18,6 +18,10 @@ from numpy.typing import NDArray
 from irsim.common.arrays import Floats
 from irsim.objects.extensions.attach import attach_python
 from irsim.objects.views import make_view
+from irsim.policies.behavior import with_policy
+from irsim.policies.catalog import PolicySource, open_policy
+from irsim.policies.driver import attach_policy
+from irsim.policies.policy import Policy
 from irsim.scenario.open import open_scenario
 from irsim.scenario.resolve.resolved import ResolvedScenario
 from irsim.simulation.events import Event, read_events
@@ -55,12 +59,15 @@ class Batch:
         robots: Ids of the robots.
     """
 
-    def __init__(self, scenario: ResolvedScenario, seeds: Sequence[int], threads: int) -> None:
-        self.scenario = scenario
+    def __init__(
+        self, scenario: ResolvedScenario, seeds: Sequence[int], threads: int, policy: Policy | None = None
+    ) -> None:
+        self.scenario = scenario = with_policy(scenario, policy)
         self.seeds = [check_seed(seed) for seed in seeds]
         self._simulation = Simulation(scenario, self.seeds, threads=threads)
         self._simulation.make_view = make_view
         attach_python(self._simulation)
+        attach_policy(self._simulation, policy)
         simulation, n, objects = self._simulation, len(self.seeds), self._simulation.objects
         self.n = n
         self.names = tuple(record.name for record in scenario.objects)
@@ -133,7 +140,8 @@ class Batch:
 
         Args:
             steps: Largest number of periods.
-            until_done: Stop each world as soon as every robot in it has arrived or stopped.
+            until_done: Stop each world as soon as every robot in it has arrived or stopped. Where Python code takes
+                part, such as a policy, all worlds go on until this is so in each of them.
 
         Returns:
             Largest number of periods that any world executed.
@@ -165,6 +173,7 @@ def batch(
     seeds: Sequence[int] | None = None,
     threads: int | None = None,
     strict: bool = False,
+    policy: PolicySource | None = None,
 ) -> Batch:
     """Open ``n`` worlds of a scenario.
 
@@ -175,10 +184,12 @@ def batch(
             at a number from fresh entropy.
         threads: Number of threads; by default one per core.
         strict: Treat what IR-SIM would ignore as errors, as for ``irsim.make``.
+        policy: What drives the robots of all worlds instead of their behaviors; see :func:`irsim.open_policy`.
 
     Raises:
         ValueError: ``n`` is below 1, or the number of seeds is not ``n``.
         ScenarioError: The file cannot be used.
+        PolicyError: The policy cannot drive the robots.
     """
     if n < 1:
         raise ValueError(f"a batch has at least one world, not {n}")
@@ -195,7 +206,8 @@ def batch(
         seeds = [first + i for i in range(n)]
     if len(seeds) != n:
         raise ValueError(f"{len(seeds)} seeds for {n} worlds")
-    return Batch(resolved, list(seeds), threads or os.cpu_count() or 1)
+    driver = None if policy is None else open_policy(policy)
+    return Batch(resolved, list(seeds), threads or os.cpu_count() or 1, driver)
 
 
 class _CallableModule(ModuleType):

@@ -17,6 +17,7 @@ from irsim.env import (
     loop,
     maps,
     messages,
+    policies,
     queries,
     random_obstacles,
 )
@@ -29,6 +30,7 @@ from irsim.simulation.active_env import use
 
 if TYPE_CHECKING:
     from irsim.env.factory import EnvConfig, ObjectFactory
+    from irsim.policies.catalog import PolicySource
     from irsim.rendering.env_plot import EnvPlot
 
 __all__ = ["Env", "EnvBase"]
@@ -50,6 +52,7 @@ class Env(EnvState):
         log_file, log_level: File to log to, and lowest level that is logged.
         seed: Seed in place of ``world.seed``; without both it is drawn from fresh entropy. ``env.seed`` returns it.
         strict: Treat what IR-SIM would ignore (misspelt keys, unknown behaviors) as errors.
+        policy: What drives the robots instead of their behaviors; see :meth:`set_policy`.
     """
 
     def __init__(
@@ -67,6 +70,7 @@ class Env(EnvState):
         log_level: str = "INFO",
         seed: int | None = None,
         strict: bool = False,
+        policy: PolicySource | None = None,
     ) -> None:
         self.id = next(_IDS)
         self.logger = Logger(log_level, log_file)
@@ -75,6 +79,7 @@ class Env(EnvState):
         use(self)
         self._strict, self._wanted_mode, self._wanted_seed = strict, step_mode, seed
         self.world_name = world_name
+        self._policy = policies.opened(policy)
         lifetime.open_world(self, world_name)
         self.headless = headless or disable_all_plot
         self.display = display and not self.headless
@@ -150,7 +155,8 @@ class Env(EnvState):
     random_obstacle_position = random_obstacles.random_obstacle_position
     random_polygon_shape = random_obstacles.random_polygon_shape
 
-    # behaviors of scripts, maps, messages: load_behavior.py, maps.py, messages.py
+    # behaviors of scripts, policies, maps, messages: load_behavior.py, policies.py, maps.py, messages.py
+    set_policy = policies.set_policy
     load_behavior = load_behavior.load_behavior
     get_map = maps.get_map
     get_msg = messages.get_msg

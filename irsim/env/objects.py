@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import count
 from typing import Any, Literal
 
+from irsim.env.policies import drive_again
 from irsim.env.state import EnvState
 from irsim.objects.lifecycle import admit, alone, dismiss, restore
 from irsim.objects.view import ObjectView
@@ -73,6 +74,7 @@ def add_objects(env: EnvState, objs: Iterable[ObjectView]) -> None:
     if newcomers:
         admit(env._simulation, newcomers)
         _note_exchange(env)
+        drive_again(env)
 
 
 def delete_object(env: Any, target_id: int | str) -> None:

@@ -20,7 +20,7 @@ def make(
             has the name of the running script with the suffix ``.yaml``.
         projection: ``"2d"`` (default) or ``"3d"``, which draws the same simulation in space.
         step_mode: ``"internal"`` or ``"external"``, in place of the value in the file.
-        **kwargs: Other arguments of :class:`Env`: display, headless, save_ani, seed, strict, log_level, …
+        **kwargs: Other arguments of :class:`Env`: display, headless, save_ani, seed, strict, log_level, policy, …
 
     Raises:
         ScenarioNotFoundError: The file does not exist; the error lists the folders searched and similar names.

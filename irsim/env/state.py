@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from irsim.graphics.scene.palette import Palette
     from irsim.gui import KeyboardControl, MouseControl
     from irsim.objects.view import ObjectView
+    from irsim.policies.policy import Policy
     from irsim.rendering.env_plot import EnvPlot
-    from irsim.scenario.resolve.resolved import ResolvedScenario
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
     from irsim.simulation.simulation import Simulation
 
 __all__ = ["EnvState"]
@@ -34,6 +35,8 @@ class EnvState:
             the next step or frame carries out.
         debug_count: Number of single steps that were requested in debugging.
         _simulation: The simulation behind the environment.
+        _policy: What drives the robots instead of their behaviors, or None.
+        _written: Id -> record, of the robots whose behavior a policy has replaced, as the scenario has them.
         _objects: The present objects, in the order of their rows.
         _originals: The objects of the scenario file.
         _exchanged: Whether objects have been added or deleted since the file was read.
@@ -72,6 +75,8 @@ class EnvState:
     debug_count: int
 
     _simulation: Simulation
+    _policy: Policy | None
+    _written: dict[int, ObjectRecord]
     _objects: list[ObjectView]
     _originals: list[ObjectView]
     _exchanged: bool

@@ -28,6 +28,7 @@ from irsim.simulation.outcome import robot_outcomes
 if TYPE_CHECKING:
     from irsim.env import Env
     from irsim.metrics import Approach
+    from irsim.policies.policy import Policy
     from irsim.scenario.resolve.resolved import ResolvedScenario
 
 __all__ = ["run_result"]
@@ -49,6 +50,7 @@ def run_result(
     imports: Sequence[str] = (),
     strict: bool = False,
     behavior: str | None = None,
+    policy: Policy | None = None,
     perturb: Sequence[str] = (),
 ) -> RunResult:
     """Make the result of an episode.
@@ -63,6 +65,7 @@ def run_result(
         imports: Modules that were imported for the scenario.
         strict: Whether the scenario was read strictly.
         behavior: Behavior that every robot had instead of its own.
+        policy: Policy in Python that drove the robots.
         perturb: Perturbations of the scenario, as on the command line.
     """
     events = env.events
@@ -80,6 +83,8 @@ def run_result(
     elif "collision" in ends:
         outcome = "collision"
     extra = [] if behavior is None else ["--behavior", behavior]
+    if policy is not None:
+        extra += ["--policy", policy.text or policy.name]
     for perturbation in perturb:
         extra += ["--perturb", perturbation]
     given = horizon if source in ("argument", "limits") else None
@@ -88,6 +93,8 @@ def run_result(
         seed=env.seed,
         random=random_parts(env.scenario),
         behavior=behavior,
+        policy=None if policy is None else policy.text or policy.name,
+        policy_digest=None if policy is None else policy.digest,
         perturb=list(perturb),
         outcome=outcome,
         summary=summary_message(env, robots, hits, behavior, parked, held, events, left, incidents, zones),

@@ -35,7 +35,8 @@ GUIDES: dict[str, Guide] = {
     ),
     "seeds": Guide(
         "what is random, and how to repeat it",
-        "These are random: distribution random, shapes with random_shape, wander goals, maps without their own seed, "
+        "These are random: the distributions random, circle_crossing and square_crossing, shapes with random_shape, "
+        "wander goals, maps without their own seed, "
         "noise. The same file, seed and version give the same run, bit by bit. The argument seed overrides world.seed; "
         "without either, a seed is drawn and reported. A scenario without any of these runs the same with every seed; "
         "perturb lets the seed change its starts.",

@@ -58,6 +58,8 @@ EVERYDAY: dict[str, str] = {
     "robot.acce": "acceleration, acceleration limit, braking, deceleration",
     "robot.distribution": "random positions, random placement, random start, scatter, spread, placement",
     "robot.distribution.random": "random positions, random placement, random start, scatter",
+    "robot.distribution.circle_crossing": "crowdnav, circle crossing, random angles of a circle, opposite goals",
+    "robot.distribution.square_crossing": "crowdnav, square crossing, opposite sides",
     "robot.color": "colour",
     "robot.plot": "drawing, draw, label, appearance",
     "robot.plot.show_trajectory": "trajectory, trail, path drawn, show path",

@@ -21,6 +21,7 @@ from irsim.lookup.index import (
     templates_answer,
 )
 from irsim.lookup.metrics import METRIC_TOPICS, all_metrics, metric_answer, metric_topic
+from irsim.lookup.policies import policies_answer
 from irsim.lookup.schema_walk import (
     COLOR,
     Node,
@@ -72,6 +73,7 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         "guides": guides_answer,
         "metric": all_metrics,
         "metrics": all_metrics,
+        "policies": policies_answer,
         "suites": suites_answer,
         "templates": templates_answer,
     }

@@ -115,6 +115,13 @@ def _extras() -> tuple[Metric, ...]:
         extra("barn_score", "0-0.5", "success x T*/clip(T, 2T*, 8T*), T* = L*/2", better="more"),
         extra("discomfort_ratio", "0-1", "share of time with 0 < distance to a human < 0.2 m", better="less"),
         extra("discomfort_min_dist", "m", "mean of such distances"),
+        extra(
+            "crowdnav_reward",
+            "-",
+            "1 on arrival, -0.25 on collision, (d - 0.2 m) x 0.5 x dt per step with a human at 0 < d < 0.2 m, each x "
+            "0.9^(t x top speed)",
+            better="more",
+        ),
         extra("near_misses", "count", "times a human came within 0.2 m and went without contact", better="less"),
         extra("freezing_count", "count", "stalls of 2 s or more, not arrived", better="less"),
         extra("freezing_time", "s", "time in such stalls", better="less"),

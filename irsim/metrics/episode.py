@@ -17,6 +17,7 @@ from irsim.metrics.motion import motion_metrics
 from irsim.metrics.outcome import outcome_metrics
 from irsim.metrics.progress import progress_metrics
 from irsim.metrics.proximity import proximity_metrics
+from irsim.metrics.reward import reward_metrics
 from irsim.metrics.social import social_metrics
 from irsim.metrics.trajectory import Track, tracks
 from irsim.metrics.watching import Rows, Watching, goal_visible_ratio, watching_metrics, zone_metrics
@@ -107,6 +108,7 @@ def episode_metrics(
         made, odd = progress_metrics(track, geodesics, inscribed_radius(simulation, track.index))
         near, apart = proximity_metrics(track)
         found = outcome_metrics(track) | motion_metrics(track) | near | social_metrics(track) | made | watched
+        found |= reward_metrics(track)
         if missing := [key for key in order if key not in found]:
             raise LookupError(f"no module of irsim/metrics computes {', '.join(missing)}")
         values.append({key: _without_rounding_error(found[key]) for key in order})

@@ -20,7 +20,7 @@ from irsim.simulation.simulation import Simulation
 if TYPE_CHECKING:
     from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
 
-__all__ = ["admit", "alone", "amend", "amend_world", "dismiss", "restore", "set_views"]
+__all__ = ["admit", "alone", "amend", "amend_all", "amend_world", "dismiss", "restore", "set_views"]
 
 
 def set_views(simulation: Simulation, shown: Sequence[Any]) -> None:
@@ -77,6 +77,17 @@ def amend(view: SimObject, record: ObjectRecord) -> None:
         forget_behavior(simulation, view)
     shown = simulation.views()
     _exchange(simulation, shown, [record if other is view else other.record for other in shown])
+
+
+def amend_all(simulation: Simulation, records: Sequence[ObjectRecord]) -> None:
+    """Replace the records of all objects of a world, in their order; the objects keep their states."""
+    shown = simulation.views()
+    for view, record in zip(shown, records, strict=True):
+        if record.behavior is not view.record.behavior:
+            forget_behavior(simulation, view)
+            for shown_keys in ("_keys", "_behavior"):
+                vars(view).pop(shown_keys, None)
+    _exchange(simulation, shown, records)
 
 
 def amend_world(simulation: Simulation, **changed: Any) -> None:

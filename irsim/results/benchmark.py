@@ -119,7 +119,9 @@ class BenchmarkResult(Result):
     scenarios: list[str]
     """The files."""
     behaviors: list[str]
-    """The behaviors; differences are to the first."""
+    """The policies; differences are to the first."""
+    digests: dict[str, str] = Field(default_factory=dict)
+    """SHA-256 of the file of each policy that is one."""
     seeds: list[int]
     """The seeds, the same for all."""
     step_time: dict[str, float]

@@ -129,6 +129,10 @@ class RunResult(Result):
     """What the seed decides; empty if every seed gives the same run."""
     behavior: str | None = None
     """Behavior of every robot instead of its own; None: the scenario as written."""
+    policy: str | None = None
+    """Policy in Python that drove every robot; None: behaviors did."""
+    policy_digest: str | None = None
+    """SHA-256 of the file of this policy; None without one."""
     perturb: list[str] = Field(default_factory=list)
     """Perturbations of starts, speeds and delays, as on the command line."""
     outcome: Literal["success", "collision", "timeout"]

@@ -42,7 +42,7 @@ def scenario_of(run: Run, limits: Limits | None = None) -> ResolvedScenario:
     options = run.options
     document = load_text(run.scenario_text, path=_scenario_path(run, limits), limits=limits)
     document.maps = _maps(run)
-    strict, behavior = bool(options.get("strict")) and not has_modules(run), options.get("behavior")
+    strict, behavior = bool(options.get("strict")) and not options.get("imports"), options.get("behavior")
     if isinstance(behavior, str):
         from irsim.scenario.behavior_override import parse_behavior, with_behavior
 
@@ -57,8 +57,8 @@ def resimulate(
 ) -> Env:
     """An environment at a step of a run, which the caller must end.
 
-    The run is simulated again, so that the environment has its complete state. With modules of the user, objects are
-    moved as recorded instead.
+    The run is simulated again, so that the environment has its complete state. With modules of the user or a policy,
+    objects are moved as recorded instead.
 
     Args:
         run: The recorded run.
@@ -81,8 +81,11 @@ def resimulate(
 
 
 def has_modules(run: Run) -> bool:
-    """Whether a run imported modules of the user; it cannot be simulated again, as reading a run imports none."""
-    return bool(run.options.get("imports"))
+    """Whether modules of the user or a policy in Python took part, which reading a run neither imports nor opens.
+
+    Such a run is not simulated again.
+    """
+    return bool(run.options.get("imports") or run.options.get("policy"))
 
 
 def _move_as_recorded(run: Run, env: Env, step: int) -> None:

@@ -23,7 +23,9 @@ __all__ = [
     "BenchmarkError",
     "behavior_text",
     "check_behavior_name",
+    "merged_options",
     "parse_behavior",
+    "raise_if_about_behavior",
     "read_with_behavior",
     "split_behaviors",
     "with_behavior",
@@ -145,13 +147,13 @@ def read_with_behavior(
             _set_behavior(entry, behavior)
     changed = read(replace(document, data=data, text=None, _root=None), strict=strict, limits=document.limits)
     for item in changed.diagnostics:
-        _raise_if_about_behavior(item, behavior)
+        raise_if_about_behavior(item, behavior)
     if changed.scenario is None:
         or_raise(read(document, strict=strict, limits=document.limits))  # these findings have line numbers
     return or_raise(changed)
 
 
-def _raise_if_about_behavior(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
+def raise_if_about_behavior(item: Diagnostic, behavior: Mapping[str, Any]) -> None:
     """Raise a finding about the given behavior: it is an argument, so IR-SIM's leniency for files does not apply."""
     owner = item.path.index("behavior") + 1 if item.path[:1] == ("robot",) and "behavior" in item.path else None
     if owner is None:
@@ -172,12 +174,13 @@ def _set_behavior(entry: dict[str, Any], behavior: Mapping[str, Any]) -> None:
     """Replace the behavior of the robots of an entry."""
     own, group = entry.pop("behavior", None), entry.pop("group_behavior", None)
     if isinstance(own, list):
-        entry["behavior"] = [_merge_options(one, group, behavior) for one in own]
+        entry["behavior"] = [merged_options(one, group, behavior) for one in own]
     else:
-        entry["behavior"] = _merge_options(own, group, behavior)
+        entry["behavior"] = merged_options(own, group, behavior)
 
 
-def _merge_options(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
+def merged_options(own: Any, group: Any, behavior: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of a behavior for a robot that keeps what its own behavior, or that of its group, tells it to do."""
     own, group = _mapping(own), _mapping(group)
     kept = {key: source[key] for source in (group, own) for key in _KEPT if key in source}
     return {**kept, **behavior}

@@ -15,6 +15,7 @@ from irsim.components.maps._grid import MapCells, Walls
 from irsim.options.registry import (
     BEHAVIORS,
     CUSTOM_GROUP_BEHAVIORS,
+    DISTRIBUTIONS,
     KINEMATICS,
     PLANNERS,
     SENSORS,
@@ -29,9 +30,17 @@ from irsim.simulation.watching import build_targets, build_views, build_zones
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+    from irsim.scenario.resolve.resolved import ObjectRecord, Placement, ResolvedScenario
 
-__all__ = ["COLLISION_MODES", "PLACEMENT_ATTEMPTS", "build_world", "group_behaviors", "padded", "speed_controls"]
+__all__ = [
+    "COLLISION_MODES",
+    "PLACEMENT_ATTEMPTS",
+    "build_world",
+    "group_behaviors",
+    "padded",
+    "speed_controls",
+    "static_shapes_are_random",
+]
 
 AFTER_ARRIVAL = {None: 0, "freeze": 1, "yield": 2}
 COLLISION_MODES = {"stop": 0, "unobstructed": 1, "reactive": 1, "unobstructed_obstacles": 2, "contact": 3}
@@ -191,6 +200,14 @@ Built = dict[int, tuple["ObjectRecord", BehaviorOptions | None, core.ObjectSpec]
 """Cache of built objects: identity of the record -> record, behavior of its group, object of the core."""
 
 
+def placement_kernel(placement: Placement) -> type[Any]:
+    """The class of the core that holds a placement."""
+    feature = DISTRIBUTIONS.get(placement.distribution)
+    if feature is None or feature.kernel is None:
+        raise LookupError(f"the distribution {placement.distribution!r} has no kernel")
+    return feature.kernel
+
+
 def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None = None) -> core.World:
     """Build ``copies`` worlds of a scenario, ready for a :class:`irsim._core.State`.
 
@@ -219,12 +236,10 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
         gravity=scenario.world.gravity,
         objects=[now[id(record)][2] for record in scenario.objects],
         placements=[
-            core.RandomPlacement(
+            placement_kernel(placement)(
                 objects=[row[number] for number in placement.objects if number in row],
-                range_low=placement.range_low,
-                range_high=placement.range_high,
-                min_distance=placement.min_distance,
                 attempts=PLACEMENT_ATTEMPTS,
+                **placement.options,
             )
             for placement in scenario.placements
         ],
@@ -248,3 +263,17 @@ def build_world(scenario: ResolvedScenario, copies: int = 1, built: Built | None
     x0, y0, x1, y1 = scenario.world.bounds
     world.extent = x0, y0, x1, y1
     return world
+
+
+def static_shapes_are_random(scenario: ResolvedScenario) -> bool:
+    """Return whether the shape of a static object is drawn for each scene."""
+    return any(_is_drawn(record.shape) for record in scenario.objects if record.static)
+
+
+def _is_drawn(shape: Any) -> bool:
+    if isinstance(shape, (MapCells, Walls)):
+        parts = shape.parts()
+    else:
+        function = feature_of(SHAPES, shape).function
+        parts = [] if function is None else function(shape)
+    return any(isinstance(part, (core.RandomCircle, core.RandomPolygon, core.PerlinCells)) for part in parts)

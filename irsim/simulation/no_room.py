@@ -29,18 +29,16 @@ def no_room(scenario: ResolvedScenario, index: int, seed: int) -> Diagnostic:
 
 
 def _in_its_range(scenario: ResolvedScenario, record: ObjectRecord, placement: Placement, seed: int) -> Diagnostic:
-    low, high = placement.range_low, placement.range_high
-    area = abs((high[0] - low[0]) * (high[1] - low[1]))
     return Diagnostic(
         code="placement-crowded",
         severity="error",
         path=(*record.path, "distribution"),
         message=(
             f"no room for {record.name!r} with seed {seed}: {len(placement.objects)} objects of this entry "
-            f"share {area:.3g} m2"
+            f"share {placement.room}"
         ),
         given=len(placement.objects),
-        fix="lower `number` or `min_distance`, make the shapes smaller, or widen range_low/range_high",
+        fix=f"lower `number` or `{placement.distance_key}`, make the shapes smaller, or {placement.widen}",
         file=scenario.source,
     )
 

@@ -61,6 +61,9 @@ class ExternalDrives(Protocol):
     def control_alone(self, row: int, wanted: Floats) -> Floats:
         """Return the control (n,) with which the drive of a row realizes the choice of a native behavior."""
 
+    def control_for(self, row: int, velocity: Floats) -> Floats | None:
+        """Return the control (n,) that follows a world-frame velocity (2,) [m/s]; None where the core moves the row."""
+
     def feeling(self) -> AbstractContextManager[None]:
         """Return a context in which velocity changes by contacts are applied to the controls of these drives, too."""
 

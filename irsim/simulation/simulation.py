@@ -25,7 +25,8 @@ __all__ = ["PythonDecision", "PythonMeasurement", "Simulation"]
 CONTACT = COLLISION_MODES["contact"]
 
 PythonDecision = Callable[["Simulation"], None]
-"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion."""
+"""Fills ``command`` of the rows that it decides for; called between the native decisions and the motion. Its method
+``claim(simulation)``, if it has one, marks rows as ``given`` before the native decisions, which then skip them."""
 
 PythonMeasurement = Callable[["Simulation", "NDArray[np.bool_] | None"], None]
 """Updates the sensors that it computes, in the worlds of the mask (None: all); called after the native sensors."""
@@ -180,6 +181,8 @@ class Simulation:
             self.measure()
             return
         world, state = self.world, self.state
+        for claim in filter(None, [getattr(part, "claim", None) for part in self.decisions]):
+            claim(self)
         if hooks is None:
             core.decide(world, state)
         else:
@@ -316,7 +319,6 @@ class Simulation:
         return self._first_scan.get(index, 0)
 
     # all rows ---------------------------------------------------------------------------------------------------------
-
     def advance(self, steps: int, *, until_done: bool = False) -> int:
         """Advance by up to ``steps`` periods, in a single call of the core if no Python code takes part.
 
@@ -330,7 +332,7 @@ class Simulation:
         if not self.in_python:
             return core.advance(self.world, self.state, steps, threads=self.threads, until_done=until_done)
         for done in range(steps):
-            if until_done and self.copies == 1 and self.state.done(0):
+            if until_done and self.done().all():
                 return done
             self.step()
         return steps

@@ -24,6 +24,7 @@ __all__ = [
     "present_row",
     "record",
     "record_rollout",
+    "record_worlds",
     "sensors",
 ]
 
@@ -105,6 +106,43 @@ def record(simulation: Simulation, steps: int, *, until_done: bool = True, scans
     return join_traces(
         [present_row(simulation, scans), next_rows(simulation, steps, until_done=until_done, scans=scans)]
     )
+
+
+def record_worlds(simulation: Simulation, steps: Sequence[int]) -> list[Trace]:
+    """Advance all worlds until every robot of each has arrived or stopped, and return their traces.
+
+    The traces, which include the present state, equal those that :func:`record` returns for the worlds alone. While
+    Python code takes part, worlds that are done move on until the last one is done.
+
+    Args:
+        simulation: The simulation, at the start of an episode in every world.
+        steps: Largest number of periods of each world.
+    """
+    worlds, objects, most = simulation.copies, simulation.objects, max(steps)
+    first = _present(simulation, scans=False)[:-1]
+    if simulation.in_python:
+        taken = [first]
+        ended = [0 if simulation.state.done(world) or not steps[world] else -1 for world in range(worlds)]
+        for step in range(1, most + 1):
+            if min(ended) >= 0:
+                break
+            simulation.step()
+            taken.append(_present(simulation, scans=False)[:-1])
+            for world in range(worlds):
+                if ended[world] < 0 and (step == steps[world] or simulation.state.done(world)):
+                    ended[world] = step
+        columns = [np.concatenate([row[number] for row in taken]) for number in range(len(first))]
+    else:
+        kept = core.rollout(simulation.world, simulation.state, most, threads=simulation.threads, until_done=True)
+        after = (kept.pose, kept.control, kept.goal, kept.arrived, kept.collided, kept.stopped)
+        columns = [np.concatenate([now, rows]) for now, rows in zip(first, after, strict=True)]
+        ended = [min(int(executed), limit) for executed, limit in zip(kept.steps, steps, strict=True)]
+    traces = []
+    for world, last in enumerate(ended):
+        rows = slice(world * objects, (world + 1) * objects)
+        own = [np.ascontiguousarray(column[: last + 1, rows]) for column in columns]
+        traces.append(_trace(simulation, 0, [*own, np.zeros((last + 1, 0), dtype=np.float32)], last + 1, scans=False))
+    return traces
 
 
 def present_row(simulation: Simulation, scans: bool = False) -> Trace:

@@ -79,7 +79,7 @@ def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str
     else:
         given = "scenario_yaml=<the same text>" if text[1] is None else f"scenario_yaml=<text {text[1]} of scenarios>"
     words = ["run_episode", given, f"seed={episode['seed']}"]
-    words += [f"behavior={clean(behavior, 500)!r}"] if behavior != "as-written" else []
+    words += [f"policy={clean(behavior, 500)!r}"] if behavior != "as-written" else []
     words += [f"perturb={'; '.join(result['perturb'])!r}"] if result["perturb"] else []
     words += [f"max_steps={steps[1]}"] if steps else []
     return " ".join(words)

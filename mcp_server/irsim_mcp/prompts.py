@@ -163,7 +163,7 @@ _COMPARE = """\
 Compare fairly the behaviors that could drive the robots in {what} of the robot-navigation simulator irsim.
 
 1. Call validate_scenario on it; it must be valid. lookup lists the behaviors; choose those that fit its drive.
-2. Try one seed of each with run_episode (behavior=…) to rule out trivial failures.
+2. Try one seed of each with run_episode (policy=…) to rule out trivial failures.
 3. Call benchmark with all of them over at least 20 seeds, with the same scenario and horizon; get_job waits for it.
 4. Read the intervals: where they overlap, the difference is not significant; say so, or use more seeds.
 5. Inspect one failure of each kind with inspect_run and name its cause.

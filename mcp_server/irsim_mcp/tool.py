@@ -12,7 +12,7 @@ from mcp.server.mcpserver.exceptions import ToolError, UnexpectedToolError
 from mcp.server.mcpserver.tools import Tool
 from mcp.server.mcpserver.utilities.func_metadata import FuncMetadata
 from mcp.types import ToolAnnotations
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
 from irsim.common.text import clean
 from irsim.diagnostics.diagnostic import format_path, suggestion
@@ -33,10 +33,17 @@ _PLURALS = {"integer": "integers", "number": "numbers", "string": "texts"}
 
 
 class StrictTool(Tool):
-    """A tool that refuses unknown arguments instead of ignoring them, and says which values are valid."""
+    """A tool that refuses unknown arguments instead of ignoring them, and says which values are valid.
+
+    Attributes:
+        former_names: Name that an argument had before → its name; it is still accepted, and not listed.
+    """
+
+    former_names: dict[str, str] = Field(default_factory=dict)
 
     async def run(self, arguments: dict[str, Any], context: Context[Any, Any], convert_result: bool = False) -> Any:
         """Check the arguments and call the function."""
+        arguments = self._renamed(arguments)
         known = list(self.parameters["properties"])
         for name in arguments:
             if name not in known:
@@ -54,6 +61,18 @@ class StrictTool(Tool):
             if isinstance(error.__cause__, ValidationError):
                 raise self._refused(error.__cause__, arguments) from None
             raise ToolError(str(error).removeprefix(f"Error executing tool {self.name}: ")) from None
+
+    def _renamed(self, arguments: dict[str, Any]) -> dict[str, Any]:
+        """The arguments under their present names."""
+        for old, new in self.former_names.items():
+            if arguments.get(old) is not None and arguments.get(new) is not None:
+                what = f"{new} and {old} are two names of one argument"
+                raise failure("bad-argument", what, where=self.name, fix=f"give only {new}")
+        return {
+            self.former_names.get(name, name): value
+            for name, value in arguments.items()
+            if name not in self.former_names or value is not None
+        }
 
     def _check(self, arguments: Mapping[str, Any]) -> None:
         """Check all arguments against the schema as strictly as JSON: true is not 1, and "10" is not 10."""
@@ -123,6 +142,7 @@ def strict(
     destructive: bool = False,
     open_world: bool = False,
     page: str | None = None,
+    former_names: Mapping[str, str] | None = None,
 ) -> StrictTool:
     """Make a tool of a function.
 
@@ -135,6 +155,7 @@ def strict(
         destructive: Whether it may overwrite or delete something.
         open_world: Whether it reaches beyond this machine.
         page: Resource that shows its results, for hosts of MCP Apps.
+        former_names: Former names of arguments that are still accepted → the present ones.
     """
     hints = ToolAnnotations(
         read_only_hint=read_only,
@@ -157,6 +178,7 @@ def strict(
         output.pop("description", None)  # the description of the tool says more
         tool.fn_metadata.output_schema = output
     assert isinstance(tool, StrictTool)
+    tool.former_names = dict(former_names or {})
     return tool
 
 

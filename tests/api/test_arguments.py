@@ -34,14 +34,14 @@ def test_the_same_behavior_twice_is_found_out_whichever_way_it_is_written() -> N
         irsim.benchmark(TEXT, ["{name: orca, timeHorizon: 5}", {"name": "orca", "timeHorizon": 5}], 1)
 
 
-_NOT_A_BEHAVIOR = r"(is not a valid behavior|a behavior must be a name or a mapping, got .+)"
+_NOT_A_BEHAVIOR = r"(is not a valid behavior|a policy cannot be .+)"
 
 
 @pytest.mark.parametrize("behaviors", [3, [None], [["orca"]], {"nam": "orca"}, [{}]])
 def test_what_is_no_behavior_is_told(behaviors: Any) -> None:
-    with pytest.raises(BenchmarkError, match=rf"{_NOT_A_BEHAVIOR}\. Fix: give a name such as orca") as told:
+    with pytest.raises(BenchmarkError, match=rf"{_NOT_A_BEHAVIOR}\. Fix: give a name") as told:
         irsim.benchmark(TEXT, behaviors, 1)
-    assert told.value.where == "behaviors[0]"
+    assert told.value.where == "policies[0]"
     with pytest.raises(BenchmarkError, match=_NOT_A_BEHAVIOR):
         irsim.run(text=TEXT, behavior=behaviors)
 

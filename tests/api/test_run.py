@@ -145,7 +145,7 @@ def test_a_behavior_with_options_and_one_that_nobody_has() -> None:
     assert result.behavior == "{name: orca, timeHorizon: 3}"
     assert "--behavior '{name: orca, timeHorizon: 3}'" in result.reproduce
     assert irsim.run(text=text(), behavior="as-written") == irsim.run(text=text())
-    with pytest.raises(BenchmarkError, match=r"there is no behavior 'orcaa'\. Fix: did you mean orca\?"):
+    with pytest.raises(BenchmarkError, match=r"there is no policy 'orcaa'\. Fix: did you mean orca\?"):
         irsim.run(text=text(), behavior="orcaa")
 
 

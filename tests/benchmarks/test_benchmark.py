@@ -7,6 +7,7 @@ import io
 import json
 import math
 import re
+from dataclasses import asdict
 
 import pytest
 from typer.testing import CliRunner
@@ -14,7 +15,7 @@ from typer.testing import CliRunner
 import irsim
 from irsim.benchmarks import AS_WRITTEN, BenchmarkError
 from irsim.benchmarks import pool as pool_module
-from irsim.benchmarks.episode import Job, Task, scenario_of
+from irsim.benchmarks.episode import Job, scenario_of
 from irsim.cli.app import app
 from irsim.diagnostics.errors import BehaviorError, OverLimitError, ScenarioNotFoundError
 from irsim.metrics import wilson
@@ -271,7 +272,7 @@ def test_what_is_no_behavior(wrong) -> None:
 
 
 def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path) -> None:
-    with pytest.raises(OverLimitError, match="2 scenarios x 3 behaviors x 100 seeds = 600 episodes"):
+    with pytest.raises(OverLimitError, match="2 scenarios x 3 policies x 100 seeds = 600 episodes"):
         irsim.benchmark(files, ["rvo", "orca", "sfm"], 100, most_episodes=500)
     with pytest.raises(BenchmarkError, match="did you mean rvo"):
         irsim.benchmark(files, "rov")
@@ -286,7 +287,7 @@ def test_what_cannot_be_compared_is_refused_before_anything_runs(files, tmp_path
     for strict in (True, False):  # no file of IR-SIM has such an argument
         with pytest.raises(BenchmarkError, match="'timeHorizn' is not a key of behavior orca") as error:
             irsim.benchmark(files, ["dash", "{name: orca, timeHorizn: 5}"], strict=strict)
-        assert error.value.where == "behaviors[1]"
+        assert error.value.where == "policies[1]"
 
 
 def test_an_episode_that_fails_is_raised_as_it_is(files, monkeypatch) -> None:
@@ -312,9 +313,9 @@ def test_a_behavior_that_only_this_program_knows(files, monkeypatch) -> None:
     assert [episode.metrics["velocity_max"] for episode in found.episodes] == pytest.approx([0.1] * 4)
 
 
-def test_tasks_cross_a_process_unchanged() -> None:
-    task = Task(Job("text", "a.yaml", "rvo", 5, True, ("module",), (("root", None), ("steps", 3))), 7)
-    assert Task.of_data(json.loads(json.dumps(task.as_data()))) == task
+def test_a_job_crosses_a_process_unchanged() -> None:
+    job = Job("text", "a.yaml", "rvo", 5, True, ("module",), (("root", None), ("steps", 3)))
+    assert Job.of_data(json.loads(json.dumps(asdict(job)))) == job
 
 
 def test_the_command(files) -> None:
@@ -328,7 +329,7 @@ def test_the_command(files) -> None:
     told = runner.invoke(app, ["benchmark", files[0], "--behaviors", "dash,rvo", "--seeds", "2-4", "--json"])
     same = irsim.benchmark(files[0], ["dash", "rvo"], [2, 3, 4])
     assert told.stdout.rstrip("\n") == same.model_dump_json()
-    assert same.reproduce == f"irsim benchmark {files[0]} --behaviors dash,rvo --seeds 2-4"
+    assert same.reproduce == f"irsim benchmark {files[0]} --policies dash,rvo --seeds 2-4"
     table = list(
         csv.DictReader(io.StringIO(runner.invoke(app, ["benchmark", *files, "--csv", "--seeds", "1,3"]).stdout))
     )

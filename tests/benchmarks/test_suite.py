@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
+import irsim
 from irsim.benchmarks.suite_files import SuiteError, is_suite, load_suite, read_suite, suite_names
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.suite_scenarios import expand
@@ -162,3 +163,39 @@ def test_what_a_robot_does_that_has_arrived(mode: str, stands: bool, latched: bo
             lost += not first.arrive
     assert (moved == 0, lost == 0) == (stands, latched)
     assert all(robot.arrive for robot in env.robot_list)
+
+
+DASHES = """
+world: {width: 20, height: 10, collision_mode: stop, after_arrival: yield}
+robot:
+  - number: 2
+    distribution: {name: manual}
+    kinematics: {name: omni}
+    shape: {name: circle, radius: 0.3}
+    state: [[1, 2, 0], [1, 8, 0]]
+    goal: GOALS
+    behavior: {name: dash}
+obstacle:
+  - kinematics: {name: omni}
+    shape: {name: circle, radius: 0.3}
+    state: [9, 2, 0]
+    goal: [1, 2, 0]
+    behavior: {name: dash}
+"""
+
+
+@pytest.mark.parametrize(("goal", "step"), [([9, 2], 38), ([2, 2], 66)], ids=["under way", "after arrival"])
+def test_the_first_collision_of_an_episode_decides_it(goal: list[int], step: int) -> None:
+    found = irsim.benchmark(DASHES.replace("GOALS", str([goal, [19, 8]])), until="first_collision", steps=400)
+    [episode] = found.episodes
+    assert (episode.outcome, episode.steps) == ("collision", step)
+    assert episode.failures == {"robot_0": "collision with 'obstacle_2'"}
+    metrics = episode.metrics
+    assert (metrics["success"], metrics["collision"], metrics["timeout"]) == (0, 1, 0)
+    assert not any("ended early" in note for note in found.notes)
+
+
+def test_a_scenario_is_named_with_or_without_its_protocol(tmp_path: Path) -> None:
+    suite = str(written(tmp_path, protocols=["freeze", "yield"]))
+    for name, count in (("one", 2), ("one/yield", 1)):
+        assert len(suite_plan(suite, scenarios=[name]).scenarios) == count

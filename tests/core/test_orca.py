@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import irsim._core as core
+from irsim.testing import check_turned_world
 from tests.core import oracle
 from tests.core.worlds import (
     DRIVES,
@@ -39,6 +40,8 @@ def options(**overrides: Any) -> core.OrcaOptions:
         "timeHorizonObst": 5.0,
         "safe_radius": 0.05,
         "maxSpeed": None,
+        "responsibility": None,
+        "approach_time": None,
     }
     return core.OrcaOptions(**{**default, **overrides})
 
@@ -183,6 +186,27 @@ def test_two_share_the_change_and_others_leave_it_to_it() -> None:
     assert state.command[0, 1] == 0.0, "target_roles: robot does not show obstacles"
 
 
+def test_its_share_of_the_change_can_be_given() -> None:
+    def sideways(share: float | None, other: core.ObjectSpec) -> float:
+        mine = agent((0, 0), (10, 0), control=[1.0, 0.0, 0.0], behavior=options(responsibility=share))
+        world, state = scene(mine, other)
+        core.decide(world, state)
+        return float(state.command[0, 1])
+
+    oncoming: dict[str, Any] = {"pose": (4, 0.1, math.pi), "goal": (-10, 0.1), "control": [1.0, 0.0, 0.0]}
+    sees, blind = agent(**oncoming), agent(**oncoming, role=1, group=1, target_roles=2)
+    assert sideways(None, sees) == sideways(0.5, sees) == sideways(0.5, blind)
+    assert sideways(None, blind) == sideways(1.0, blind) == sideways(1.0, sees)
+    assert sideways(1.0, sees) < sideways(0.5, sees) < -1e-3
+
+
+def test_near_the_goal_it_slows_down_if_asked_to() -> None:
+    for away, speed in ((3.0, 1.0), (1.0, 0.5), (0.3, 0.15)):
+        world, state = scene(agent((1, 1), (1 + away, 1), behavior=options(approach_time=2.0)))
+        core.decide(world, state)
+        np.testing.assert_allclose(state.command[0], [speed, 0.0, 0.0], atol=1e-12)
+
+
 def test_unobstructed_things_that_stand_are_no_obstacle() -> None:
     def forward(**keys: Any) -> float:
         world, state = scene(agent((0, 0), (10, 0)), obstacle(**{"pose": [1.0, 0.0, 0.0], **keys}))
@@ -317,3 +341,8 @@ def test_a_car_that_faces_a_wall_backs_off_if_it_can_reverse(drive: str) -> None
             reversed_once |= bool(state.control[0, 0] < 0)
             assert not state.collided[0]
         assert reversed_once == moves
+
+
+def test_a_robot_that_heads_along_a_line_through_zero_keeps_its_speed() -> None:
+    """Rounding must not decide between full speed and a dead stop, so a turned world has the same motion."""
+    check_turned_world(steps=30, drive="diff", behavior="{name: orca}")

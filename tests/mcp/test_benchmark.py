@@ -25,7 +25,7 @@ robot:
 
 MANY = {
     "scenarios": [RANDOM.replace("12}", f"12, step_time: 0.01{digit}}}") for digit in range(6)],
-    "behaviors": ["dash", "rvo", "orca"],
+    "policies": ["dash", "rvo", "orca"],
     "seeds": 100,
     "wait_s": 0,
 }
@@ -37,7 +37,7 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     (workspace / "random.yaml").write_text(RANDOM)
     async with connected(workspace, era) as client:
         result = await client.call_tool(
-            "benchmark", {"scenarios": ["random.yaml", ROOM], "behaviors": ["dash", "rvo"], "seeds": 4}
+            "benchmark", {"scenarios": ["random.yaml", ROOM], "policies": ["dash", "rvo"], "seeds": 4}
         )
     found = data_of(result)
     assert (found["status"], found["done"], found["total"]) == ("finished", 10, 10)
@@ -54,7 +54,7 @@ async def test_the_same_as_in_python(workspace: Path, era: str, monkeypatch: pyt
     ]
     assert "diff" in found["rows"][1]
     assert any("nothing is random" in note for note in found["notes"])
-    assert found["reproduce"].startswith("irsim benchmark random.yaml scenario.yaml --behaviors dash,rvo")
+    assert found["reproduce"].startswith("irsim benchmark random.yaml scenario.yaml --policies dash,rvo")
     for row in found["rows"]:
         assert f"{row['success'][0]:g} [" in text_of(result)
     assert len(json.dumps(found)) < 6000
@@ -82,7 +82,7 @@ async def test_other_seeds_and_the_episodes_that_failed(workspace: Path) -> None
     told = text_of(result)
     assert told.count(long) == 2  # in the note, and in the command that repeats it
     assert row["failed"] in told
-    assert f"seed={bad[0]} behavior='dash' (collision)" in found["next"]
+    assert f"seed={bad[0]} policy='dash' (collision)" in found["next"]
 
 
 async def test_the_largest_seeds_can_be_run_again(workspace: Path) -> None:
@@ -121,9 +121,9 @@ async def test_what_is_not_random_has_no_interval(workspace: Path) -> None:
 async def test_limits(workspace: Path) -> None:
     async with connected(workspace) as client:
         for arguments, product in (
-            ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 behaviors x 101 seeds = 101 episodes"),
-            ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 behaviors x 1 seeds = 21 episodes"),
-            ({"scenarios": [ROOM], "behaviors": list("abcdef")}, "1 scenarios x 6 behaviors x 10 seeds = 60 episodes"),
+            ({"scenarios": [ROOM], "seeds": 101}, "1 scenarios x 1 policies x 101 seeds = 101 episodes"),
+            ({"scenarios": [ROOM] * 21, "seeds": 1}, "21 scenarios x 1 policies x 1 seeds = 21 episodes"),
+            ({"scenarios": [ROOM], "behaviors": list("abcdef")}, "1 scenarios x 6 policies x 10 seeds = 60 episodes"),
             ({"scenarios": [ROOM] * 20, "behaviors": list("abc"), "seeds": 100}, "= 6,000 episodes"),
         ):
             told = error_of(await client.call_tool("benchmark", arguments))
@@ -142,7 +142,7 @@ async def test_limits(workspace: Path) -> None:
             ({"scenarios": ["../x.yaml"]}, "path-outside-workspace"),
             ({"scenarios": ["none.yaml"]}, "file-not-found"),
             ({"scenarios": ["#\n" * 200_000]}, "file-too-large"),
-            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "bad-argument: there is no behavior"),
+            ({"scenarios": [ROOM], "behaviors": ["rov"]}, "unknown-policy: there is no policy"),
             ({"scenarios": [ROOM.replace("goal", "gaol")]}, "invalid-scenario: 1 error: (text) robot[0].gaol"),
             ({"scenarios": [ROOM], "wait_s": 51}, "bad-argument: 51 is not accepted"),
             ({"scenarios": [ROOM], "seed": 3}, "unknown-argument: there is no argument 'seed'"),
@@ -159,7 +159,7 @@ async def test_limits(workspace: Path) -> None:
         ),
         ("{name: orca, timeHorizon: -5}", "'timeHorizon' must be > 0 [s], got -5 {}. Fix: allowed is > 0 [s]."),
         ("{name: follow, planner: {name: astr}}", "planner.name: 'astr' is not a planner {}. Fix: name: astar."),
-        ("orcaa", "there is no behavior 'orcaa' {}. Fix: did you mean orca?"),
+        ("orcaa", "there is no policy 'orcaa' {}. Fix: did you mean orca?"),
         ("{orca", "'{{orca' is not a valid behavior {}. Fix: give a name such as orca, or "),
     ],
 )
@@ -170,8 +170,9 @@ async def test_a_wrong_behavior_is_told_by_its_argument_and_leaves_nothing(
     async with connected(workspace) as client:
         one = await client.call_tool("run_episode", {"scenario_path": "room.yaml", "behavior": behavior})
         many = await client.call_tool("benchmark", {"scenarios": ["room.yaml"], "behaviors": ["dash", behavior]})
-    assert error_of(one).startswith("bad-argument: " + told.format("(behavior)"))
-    assert error_of(many).startswith("bad-argument: " + told.format("(behaviors[1])"))
+    code = "unknown-policy" if behavior == "orcaa" else "bad-argument"
+    assert error_of(one).startswith(f"{code}: " + told.format("(policy)"))
+    assert error_of(many).startswith(f"{code}: " + told.format("(policies[1])"))
     assert list((workspace / ".irsim" / "jobs").iterdir()) == []
 
 
@@ -211,7 +212,7 @@ async def test_episodes_are_read_by_inspect_run(workspace: Path) -> None:
     assert "(text 1), dash, 0, collision, 2.2, 22" in text_of(first)
     assert "rover: collision with 'crate'" in text_of(first)
     assert f"orca #2 is {long}" in text_of(first)
-    call = "run_episode scenario_yaml=<text 1 of scenarios> seed=0 behavior='dash' max_steps=90"
+    call = "run_episode scenario_yaml=<text 1 of scenarios> seed=0 policy='dash' max_steps=90"
     assert call in text_of(first)
     assert call in data_of(result)["next"]
     assert "cursor=5" in pages[0]["next"]

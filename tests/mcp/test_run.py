@@ -187,14 +187,14 @@ async def test_another_behavior_for_all_robots(workspace: Path) -> None:
         last = {"run_id": data_of(driven)["run_id"], "step": -1, "return_image": False}
         picture = await client.call_tool("render_snapshot", last)
     assert data_of(plain)["outcome"] == "timeout"
-    assert "behavior=dash" in data_of(plain)["next"]
+    assert "policy=dash" in data_of(plain)["next"]
     assert "behavior" not in data_of(plain)
     assert (data_of(driven)["outcome"], data_of(driven)["behavior"]) == ("success", "dash")
     assert "with behavior dash for all robots" in text_of(driven)
     assert "--behavior dash" in data_of(driven)["reproduce"]
     assert "'rover' arrived at (4.0" in text_of(picture)
     assert data_of(options)["outcome"] == "success"
-    assert error_of(wrong) == "bad-argument: there is no behavior 'dahs' (behavior). Fix: did you mean dash?"
+    assert error_of(wrong) == "unknown-policy: there is no policy 'dahs' (policy). Fix: did you mean dash?"
 
 
 async def test_no_seed_is_shown_where_it_decides_nothing(workspace: Path) -> None:

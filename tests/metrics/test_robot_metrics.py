@@ -249,6 +249,29 @@ def test_a_detour_costs_what_it_is_longer() -> None:
     assert found["barn_score"] == pytest.approx(2.5 / 7)
 
 
+@pytest.mark.parametrize(
+    ("seconds", "score"),
+    [(4.0, 0.5), (2.0, 0.5), (8.0, 0.25), (16.0, 0.125), (30.0, 0.125)],  # T* = 4 m / (2 m/s) = 2 s
+)
+def test_the_score_of_barn_is_the_time_at_2_metres_a_second_over_one_between_2_and_8_times_it(
+    seconds: float, score: float
+) -> None:
+    resolved = scenario(([1, 5], [5, 5]))
+    steps = round(seconds / 0.1)
+    path = straight(steps, speed=4 / seconds)[:, None]
+    arrival = event("arrival", steps, resolved.objects[0].name)
+    found = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [arrival])[0]
+    assert found["barn_score"] == pytest.approx(score)
+    found = robot_metrics(trace(resolved, path, [[5, 5]]), resolved, [])[0]
+    assert found["barn_score"] == 0.0
+    walled = scenario(([1, 5], [5, 5]), world="width: 20, height: 20, boundary: walls")
+    names = [record.name for record in walled.objects]
+    both = np.concatenate([path, np.zeros_like(path)], axis=1)
+    contact = event("collision", 1, *names)
+    found = robot_metrics(trace(walled, both, [[5, 5]]), walled, [contact, arrival])[0]
+    assert found["barn_score"] == 0.0
+
+
 WALL = "obstacle:\n  - {shape: {name: rectangle, length: 0.5, width: 6}, state: [10, 10, 0]}\n"
 
 

@@ -67,7 +67,7 @@ def test_commands_work_as_written(tmp_path: Path) -> None:
 
 def test_tools_and_their_arguments_are_those_of_the_server(tmp_path: Path) -> None:
     tools = asyncio.run(tool_arguments(tmp_path))
-    assert {"scenarios", "behaviors", "seeds", "max_steps"} <= tools["benchmark"]
+    assert {"scenarios", "policies", "seeds", "max_steps"} <= tools["benchmark"]
     assert "job_id" in tools["get_job"]
     assert "seed" in tools["run_episode"]
 

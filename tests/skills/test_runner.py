@@ -152,7 +152,7 @@ def test_the_data_set_is_the_stated_one(copied: Path) -> None:
     for words in commands(copied):
         told = execute(words, copied)
         if words[1] == "run":
-            assert "the last at 9.3 s" in told
+            assert "the last at 9 s" in told
     shapes = json.loads(told)["shapes"]
     assert f"**{shapes['scan'][0]}** samples" in read(copied.name, "elements.md")
     data = np.load(copied / "samples.npz")

@@ -55,6 +55,8 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     lines = [f"{size}; {len(result.episodes):,} episodes."]
     if isinstance(result, SuiteResult):
         lines.append(f"Suite version {result.suite_version}, content hash {result.hash}, irsim {result.version}.")
+    if result.incidents:
+        lines.append(f"Besides outcomes: {'; '.join(result.incidents)}.")
     return lines
 
 

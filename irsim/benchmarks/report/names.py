@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+from irsim.policies.catalog import SUFFIXES
 from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
 from irsim.results.labels import labels_of
 from irsim.results.suite import SuiteResult
@@ -13,10 +15,22 @@ __all__ = ["families", "policy_labels", "series"]
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:
-    """Behavior as the rows have it → name."""
+    """Policy as the rows have it → name; of a file without its folders, if that is unambiguous."""
     if isinstance(result, SuiteResult):
-        return {text: name for name, text in result.policies.items()}
-    return labels_of(result.behaviors)
+        labels = {text: name for name, text in result.policies.items()}
+    else:
+        files = {text: text for text in result.behaviors if text.endswith(SUFFIXES)}
+        labels = labels_of(result.behaviors) | files
+    for parts in (1, 2):
+        short = {text: _shortened(label, parts) for text, label in labels.items()}
+        if len(set(short.values())) == len(labels):
+            return short
+    return labels
+
+
+def _shortened(label: str, parts: int) -> str:
+    """The last parts of the path of a file; other labels as they are."""
+    return "/".join(Path(label).parts[-parts:]) if label.endswith(SUFFIXES) else label
 
 
 def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[dict[str, Any], str]]]]:

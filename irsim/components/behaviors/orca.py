@@ -9,7 +9,7 @@ from pydantic import Field
 import irsim._core as core
 from irsim.components.behaviors._options import BehaviorOptions
 from irsim.options.registry import BEHAVIORS
-from irsim.options.units import Count, Meters, MetersPerSecond, Seconds
+from irsim.options.units import Count, Fraction, Meters, MetersPerSecond, Seconds
 
 
 class Orca(BehaviorOptions):
@@ -39,6 +39,12 @@ class Orca(BehaviorOptions):
     """Margin added to the radius of the object itself."""
     maxSpeed: Annotated[MetersPerSecond, Field(gt=0)] | None = None
     """Largest speed; null is the speed that the object can reach in every direction, which is also the upper limit."""
+    responsibility: Annotated[Fraction, Field(gt=0)] | None = None
+    """Share of the change of velocity that it makes for a moving object; null is half for one that runs orca and sees
+    it, and all for others. Most other programs always take 0.5, also for people who do not see the robot."""
+    approach_time: Annotated[Seconds, Field(gt=0)] | None = None
+    """Slow down at the goal: the wanted speed is at most the distance to the goal divided by this time; null is full
+    speed."""
 
 
 BEHAVIORS.register(Orca, kernel=core.OrcaOptions)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 from irsim.options.base import Options
 
-__all__ = ["DistributionOptions", "WorldExtent"]
+__all__ = ["MARGIN", "DistributionOptions", "Drawn", "WorldExtent"]
+
+MARGIN = 0.5
+"""Distance of drawn places from the edge of the world [m], unless the options say where they are."""
 
 
 class DistributionOptions(Options):
@@ -30,3 +35,24 @@ class WorldExtent(Protocol):
     @property
     def center(self) -> tuple[float, float]:
         """x, y of the middle [m]."""
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """x_min, y_min, x_max, y_max [m]."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Where a distribution with a kernel draws places.
+
+    Attributes:
+        low: Smallest x [m], y [m] and heading [rad] of a place, world frame.
+        high: Greatest x, y and heading.
+        min_distance: Smallest distance between the positions of its objects that the options ask for [m].
+        kernel: Fields of the kernel, without the objects and the number of attempts.
+    """
+
+    low: list[float]
+    high: list[float]
+    min_distance: float
+    kernel: Mapping[str, Any]

@@ -18,6 +18,7 @@ constexpr double kStuckShare = 0.1;          // a car below this share of its wa
 constexpr double kBackingShare = 0.3;        // share of its speed at which a car wants to back up
 constexpr double kMaxBackingSteering = 0.5;  // largest steering angle of a car that backs up [rad]
 constexpr double kMinCarShare = 0.2;  // smallest share of a wanted speed, because a car turns only while it rolls
+constexpr double kParallel = 1e-9;    // a smaller sine of the angle between a heading and a line is a rounding error
 
 /// Largest speed [m/s] in every direction, or forward for drives that cannot move sideways.
 double top_speed(const OrcaOptions& options, const World& world, const State& state, int row, int object) {
@@ -28,14 +29,16 @@ double top_speed(const OrcaOptions& options, const World& world, const State& st
   return std::max(0.0, options.maxSpeed ? std::min(*options.maxSpeed * state.pace[row], own) : own);
 }
 
-/// Full speed toward the goal; zero without a goal or within `goal_threshold` of it. As in IR-SIM, an `omni` drive with
-/// unequal limits leans toward the axis of the world with the larger limit.
-Vec2 preferred_velocity(const World& world, const State& state, int row, int object, double speed) {
+/// Toward the goal, at full speed or as `approach_time` says; zero without a goal or within `goal_threshold` of it. As
+/// in IR-SIM, an `omni` drive with unequal limits leans toward the axis of the world with the larger limit.
+Vec2 preferred_velocity(const OrcaOptions& options, const World& world, const State& state, int row, int object,
+                        double speed) {
   const Goal& goal = state.destination(row);
   if (std::isnan(goal.x)) return {};
   Vec2 way = goal.position() - state.pose[row].position();
   const double distance = norm(way);
   if (!(distance > 0.0 && distance >= world.goal_threshold[object])) return {};
+  if (options.approach_time) speed = std::min(speed, distance / *options.approach_time);
   const Vec3& top = state.vel_max[row];
   if (top[0] == top[1] || !std::holds_alternative<OmniOptions>(world.drive[object])) return way * (speed / distance);
   way = {way.x * top[0], way.y * top[1]};
@@ -86,7 +89,7 @@ double fastest_along(Vec2 direction, const HalfPlane* planes, int count) {
   double most = kInfinity;
   for (int k = 0; k < count; ++k) {
     const double rate = cross(planes[k].direction, direction);
-    if (rate < 0.0) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
+    if (rate < -kParallel) most = std::min(most, std::max(0.0, -planes[k].depth({}) / rate));
   }
   return most;
 }
@@ -173,8 +176,8 @@ void avoid_movers(const OrcaOptions& options, const World& world, int self, Orca
     // An object with a given command, one that is stopped or waits to start, or one that does not see this object does
     // not give way.
     const bool mutual = all.group[m] >= 0 && (all.group[m] == group || targets_role(world, world.moving[m], object));
-    all.planes.push_back(
-        avoid_agent(agent, all.movers[m], mutual ? 0.5 : 1.0, options.timeHorizon, world.step_time, self < m));
+    const double share = options.responsibility ? *options.responsibility : mutual ? 0.5 : 1.0;
+    all.planes.push_back(avoid_agent(agent, all.movers[m], share, options.timeHorizon, world.step_time, self < m));
   }
 }
 
@@ -191,7 +194,7 @@ void orca(const OrcaOptions& options, const Decision& decision, Intent* intents)
     const OrcaAgent& agent = all.movers[self];
     const double speed = top_speed(options, world, state, row, i);
     all.planes.clear();
-    Vec2 preferred = preferred_velocity(world, state, row, i, speed);
+    Vec2 preferred = preferred_velocity(options, world, state, row, i, speed);
     const auto* car = std::get_if<AckerOptions>(&world.drive[i]);
     if (car != nullptr) face_ahead(state.heading(row), all.planes, preferred);
     if (const Route* route = state.route_of(row)) {  // a route already avoids static objects

@@ -17,11 +17,15 @@ struct OrcaOptions {
   double timeHorizonObst;          // time horizon for walls and static circles [s]
   double safe_radius;              // margin added to the radius of the object [m]
   std::optional<double> maxSpeed;  // [m/s]; none: the limit of the object
+  std::optional<double>
+      responsibility;                   // share of a change of velocity; none: half for objects that give way, else all
+  std::optional<double> approach_time;  // time constant of slowing down at the goal [s]; none: full speed
   static constexpr auto fields() {
     using O = OrcaOptions;
     return std::make_tuple(field("neighborDist", &O::neighborDist), field("maxNeighbors", &O::maxNeighbors),
                            field("timeHorizon", &O::timeHorizon), field("timeHorizonObst", &O::timeHorizonObst),
-                           field("safe_radius", &O::safe_radius), field("maxSpeed", &O::maxSpeed));
+                           field("safe_radius", &O::safe_radius), field("maxSpeed", &O::maxSpeed),
+                           field("responsibility", &O::responsibility), field("approach_time", &O::approach_time));
   }
 };
 

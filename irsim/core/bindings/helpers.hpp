@@ -113,6 +113,7 @@ void bind_fields(nb::module_& m, const char* name) {
 void bind_features(nb::module_& m);
 void bind_log(nb::module_& m);
 void bind_maps(nb::module_& m);
+void bind_networks(nb::module_& m);
 void bind_planning(nb::module_& m);
 void bind_world(nb::module_& m);
 void bind_state(nb::module_& m);
@@ -120,5 +121,6 @@ void bind_steps(nb::module_& m);
 void bind_object(nb::module_& m);
 void bind_tools(nb::module_& m);
 void bind_clearance(nb::module_& m);
+void bind_policies(nb::module_& m);
 
 }  // namespace irsim

@@ -13,4 +13,6 @@ NB_MODULE(_core, m) {
   irsim::bind_object(m);
   irsim::bind_tools(m);
   irsim::bind_clearance(m);
+  irsim::bind_networks(m);
+  irsim::bind_policies(m);
 }

@@ -10,6 +10,8 @@ void bind_world(nb::module_& m) {
   bind_fields<RouteOptions>(m, "RouteOptions");
   bind_fields<ObjectSpec>(m, "ObjectSpec");
   bind_fields<RandomPlacement>(m, "RandomPlacement");
+  bind_fields<CircleCrossing>(m, "CircleCrossing");
+  bind_fields<SquareCrossing>(m, "SquareCrossing");
   bind_fields<Perturbation>(m, "Perturbation");
   bind_fields<View>(m, "View");
   bind_fields<Fog>(m, "Fog");
@@ -17,7 +19,7 @@ void bind_world(nb::module_& m) {
       .def(
           "__init__",
           [](World* self, double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> objects,
-             std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog,
+             std::vector<Placement> placements, int copies, std::optional<Fog> fog,
              std::vector<Perturbation> perturbations, const std::vector<PartSpec>& zones, std::vector<View> views,
              const std::vector<int>& targets) {
             new (self) World(step_time, collision_mode, gravity, std::move(objects), std::move(placements), copies,

@@ -44,9 +44,11 @@ void run_behavior(const World& world, State& state, int w, const BehaviorGroup& 
     const int object = work.objects[k];
     const Intent& intent = intents[k];
     state.infeasible[first + object] += intent.infeasible;
-    state.command[first + object] = intent.kind == Intent::control_body
-                                        ? intent.control
-                                        : control_for(world, state, w, object, intent.velocity, intent.turning);
+    if (intent.kind == Intent::velocity_world) {
+      command_velocity(world, state, w, object, intent.velocity, intent.turning);
+      continue;
+    }
+    state.command[first + object] = intent.control;
     face_goal(world, state, first + object, object, state.command[first + object]);
   }
 }
@@ -65,6 +67,12 @@ void renew_goals(const World& world, State& state, int w, int object) {
     queue.goals.push_back({start.x, start.y, world.state_arrival[object] ? start.theta : kNone});
   }
   state.sync_goal(row);
+}
+
+void command_velocity(const World& world, State& state, int w, int object, Vec2 velocity, const Turning& turning) {
+  Vec3& command = state.command[w * world.objects + object];
+  command = control_for(world, state, w, object, velocity, turning);
+  face_goal(world, state, w * world.objects + object, object, command);
 }
 
 Vec3 control_for(const World& world, const State& state, int w, int object, Vec2 velocity, const Turning& turning) {

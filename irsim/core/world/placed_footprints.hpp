@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/distance.hpp"
 #include "collision/grid.hpp"
 #include "collision/touch.hpp"
 #include "world/world.hpp"
@@ -61,6 +62,17 @@ class PlacedFootprints {
     place(object, pose);
     const Footprint body = footprint(object);
     return !grid_.any(body.box, [&](int other) { return !ignored(other) && touch(body, footprint(other)); });
+  }
+  /// Whether the object fits at a pose with at least this distance [m] to all others.
+  bool is_clear(int object, const Pose& pose, double clearance) {
+    if (world_.unobstructed[object]) return true;
+    place(object, pose);
+    const Footprint body = footprint(object);
+    const Box& box = body.box;
+    return !grid_.any({box.x0 - clearance, box.y0 - clearance, box.x1 + clearance, box.y1 + clearance}, [&](int other) {
+      const Footprint there = footprint(other);
+      return touch(body, there) || distance(body, there) < clearance;
+    });
   }
   void add(int object, const Pose& pose) {
     if (world_.unobstructed[object]) return;

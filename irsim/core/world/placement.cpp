@@ -1,4 +1,5 @@
 // Random placement. Footprints must not overlap those placed before: fixed objects first, then entries in file order.
+#include "world/crossing.hpp"
 #include "world/placed_footprints.hpp"
 #include "world/spec.hpp"
 #include "world/state.hpp"
@@ -28,14 +29,15 @@ class Spread {
   std::vector<Vec2> points_;
 };
 
-/// Draw poses until one fits. Returns false if none does; `pose` is then the last draw.
-bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first, int object,
-               const Spread& spread, PlacedFootprints& placed, Pose& pose) {
+/// Draw poses until `fits()` holds for one. Returns false if none does; `pose` is then the last draw.
+template <class Fits>
+bool draw_pose(const RandomPlacement& entry, int attempts, const Draws& draws, std::uint64_t first,
+               const Spread& spread, Pose& pose, Fits&& fits) {
   const auto &low = entry.range_low, &high = entry.range_high;
-  for (int attempt = 0; attempt < std::max(1, attempts); ++attempt) {
+  for (int attempt = 0; attempt < attempts; ++attempt) {
     const auto u = draws.uniforms(first + static_cast<std::uint64_t>(attempt));
     pose = {low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1], low[2] + (high[2] - low[2]) * u[2]};
-    if (spread.fits(pose.position()) && placed.fits(object, pose)) return true;
+    if (spread.fits(pose.position()) && fits()) return true;
   }
   return false;
 }
@@ -50,48 +52,93 @@ void place_randomly(const World& world, State& state, int w) {
     if (state.failed_placement[w] < 0) state.failed_placement[w] = object;
   };
   // A scene in which an object does not fit is not used, so the objects after it are drawn only once.
-  const auto attempts = [&](const RandomPlacement& entry) {
-    return state.failed_placement[w] < 0 ? entry.attempts : 1;
+  const auto attempts = [&](const auto& entry) {
+    return state.failed_placement[w] < 0 ? std::max(1, entry.attempts) : 1;
+  };
+  const auto draws = [&](int object) { return Draws(key, Stream::placement, world.number[object]); };
+  // Whether an object has a goal that it could reach; objects that wander get theirs at every reset.
+  const auto travels = [&](int object) {
+    return !world.is_static[object] && world.dynamics[object].driven && !world.wander[object];
   };
 
   std::vector<std::uint8_t> random(world.objects, 0);
-  for (const RandomPlacement& entry : world.placements) {
-    for (const int i : entry.objects) random[i] = 1;
+  bool crossings = false;
+  for (const Placement& placement : world.placements) {
+    for (const int i : placed_objects(placement)) random[i] = 1;
+    crossings = crossings || !std::holds_alternative<RandomPlacement>(placement);
   }
-  PlacedFootprints states(world, shapes);
+  CrossingPlaces placed{PlacedFootprints(world, shapes), std::nullopt, std::nullopt};
+  if (crossings) placed.ends.emplace(world, shapes), placed.goals.emplace(world, shapes);
+  const auto add_start = [&](int object) {
+    const Pose& start = state.initial_pose[first + object];
+    placed.starts.add(object, start);
+    if (placed.ends && world.is_static[object]) placed.ends->add(object, start);
+  };
   for (int i = 0; i < world.objects; ++i) {
-    if (!random[i]) states.add(i, state.initial_pose[first + i]);
+    if (random[i]) continue;
+    add_start(i);
+    const std::vector<Goal>& goals = state.goals[first + i].initial;
+    if (!placed.ends || !travels(i) || goals.empty()) continue;
+    Pose last = goals.back();
+    if (std::isnan(last.theta)) last.theta = state.initial_pose[first + i].theta;
+    placed.ends->add(i, last);
   }
-  for (const RandomPlacement& entry : world.placements) {
+  const auto place_starts = [&](const RandomPlacement& entry) {
     Spread spread(entry.min_distance);
     for (const int i : entry.objects) {
       Pose& pose = state.initial_pose[first + i];
-      if (!draw_pose(entry, attempts(entry), Draws(key, Stream::placement, world.number[i]), 0, i, spread, states,
-                     pose))
-        failed(i);
+      // what stands still must not stand on goals that are known already
+      const auto fits = [&] {
+        return placed.starts.fits(i, pose) && (!placed.goals || !world.is_static[i] || placed.goals->fits(i, pose));
+      };
+      if (!draw_pose(entry, attempts(entry), draws(i), 0, spread, pose, fits)) failed(i);
       spread.add(pose.position());
-      states.add(i, pose);
+      add_start(i);
     }
+  };
+  const auto place_crossing = [&](const auto& entry) {
+    for (const int i : entry.objects) {
+      const bool goes = travels(i);
+      const Crossing drawn = draw_crossing(entry, draws(i), attempts(entry), i, goes, placed);
+      if (!drawn.fits) failed(i);
+      state.initial_pose[first + i] = drawn.start;
+      add_start(i);
+      if (world.wander[i]) continue;
+      state.goals[first + i].initial = {drawn.goal};
+      if (!goes) continue;
+      placed.ends->add(i, drawn.goal);
+      placed.goals->add(i, drawn.goal);
+    }
+  };
+  for (const Placement& placement : world.placements) {
+    std::visit(
+        [&](const auto& entry) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(entry)>, RandomPlacement>)
+            place_starts(entry);
+          else
+            place_crossing(entry);
+        },
+        placement);
   }
 
   PlacedFootprints still(world, shapes);
   for (const int i : world.fixed_objects) still.add(i, state.initial_pose[first + i]);
-  for (const RandomPlacement& entry : world.placements) {
-    Spread spread(entry.min_distance);
+  for (const Placement& placement : world.placements) {
+    const auto* entry = std::get_if<RandomPlacement>(&placement);
+    if (entry == nullptr) continue;
+    Spread spread(entry->min_distance);
     PlacedFootprints goals = still;  // objects of different entries may have the same goal
-    for (const int i : entry.objects) {
+    for (const int i : entry->objects) {
       if (world.wander[i]) continue;  // their goals are drawn at every reset
       Goal goal;
-      if (world.is_static[i] ||
-          !world.dynamics[i].driven) {  // these objects never reach a goal, but IR-SIM gives them one
-        const auto u = Draws(key, Stream::placement, world.number[i]).uniforms(kGoalDraws);
-        const auto &low = entry.range_low, &high = entry.range_high;
+      if (!travels(i)) {  // these objects never reach a goal, but IR-SIM gives them one
+        const auto u = draws(i).uniforms(kGoalDraws);
+        const auto &low = entry->range_low, &high = entry->range_high;
         state.goals[first + i].initial = {{low[0] + (high[0] - low[0]) * u[0], low[1] + (high[1] - low[1]) * u[1],
                                            low[2] + (high[2] - low[2]) * u[2]}};
         continue;
       }
-      if (!draw_pose(entry, attempts(entry), Draws(key, Stream::placement, world.number[i]), kGoalDraws, i, spread,
-                     goals, goal))
+      if (!draw_pose(*entry, attempts(*entry), draws(i), kGoalDraws, spread, goal, [&] { return goals.fits(i, goal); }))
         failed(i);
       spread.add(goal.position());
       goals.add(i, goal);

@@ -1,6 +1,7 @@
 // The template world that Python hands over, object by object.
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include "behaviors.gen.hpp"
@@ -73,6 +74,41 @@ struct RandomPlacement {
                            field("attempts", &P::attempts));
   }
 };
+
+/// Objects that start at random angles of a circle, near it, and cross it to the opposite place.
+struct CircleCrossing {
+  std::vector<int> objects;
+  std::array<double, 2> center;  // [m]
+  double radius;                 // of the circle [m]
+  double noise;                  // largest change of x and of y of a start [m]
+  double clearance;              // smallest distance between footprints, of starts and of goals [m]
+  int attempts;                  // maximum number of draws for an object
+  static constexpr auto fields() {
+    using P = CircleCrossing;
+    return std::make_tuple(field("objects", &P::objects), field("center", &P::center), field("radius", &P::radius),
+                           field("noise", &P::noise), field("clearance", &P::clearance),
+                           field("attempts", &P::attempts));
+  }
+};
+
+/// Objects that start in the left or right half of a square and end in the other half.
+struct SquareCrossing {
+  std::vector<int> objects;
+  std::array<double, 2> center;  // [m]
+  double width;                  // of the square [m]
+  double clearance;              // smallest distance between footprints, of starts and of goals [m]
+  int attempts;                  // maximum number of draws for a start, and for a goal
+  static constexpr auto fields() {
+    using P = SquareCrossing;
+    return std::make_tuple(field("objects", &P::objects), field("center", &P::center), field("width", &P::width),
+                           field("clearance", &P::clearance), field("attempts", &P::attempts));
+  }
+};
+
+inline const std::vector<int>& placed_objects(
+    const std::variant<RandomPlacement, CircleCrossing, SquareCrossing>& placement) {
+  return std::visit([](const auto& entry) -> const std::vector<int>& { return entry.objects; }, placement);
+}
 
 /// How far the start, the top speed and the time of departure of an object may differ between scenes.
 struct Perturbation {

@@ -123,7 +123,7 @@ void check(const ObjectSpec& spec) {
 }  // namespace
 
 World::World(double step_time_, int collision_mode_, double gravity_, std::vector<ObjectSpec> specs_,
-             std::vector<RandomPlacement> placements_, int copies_, std::optional<Fog> fog_,
+             std::vector<Placement> placements_, int copies_, std::optional<Fog> fog_,
              std::vector<Perturbation> perturbations_, Zones zones_, std::vector<View> views_,
              const std::vector<int>& targets)
     : step_time(step_time_),
@@ -149,8 +149,8 @@ World::World(double step_time_, int collision_mode_, double gravity_, std::vecto
     is_target[i] = 1;
   }
   bool random_shapes = false, random_statics = false;
-  for (const RandomPlacement& placement : placements) {
-    for (const int i : placement.objects) {
+  for (const Placement& placement : placements) {
+    for (const int i : placed_objects(placement)) {
       if (i < 0 || i >= objects) throw std::invalid_argument("a placement names an object that does not exist");
       random_statics = random_statics || specs[i].is_static;
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "contact/bodies.hpp"
@@ -18,9 +19,14 @@ namespace irsim {
 
 struct ObjectSpec;
 struct RandomPlacement;
+struct CircleCrossing;
+struct SquareCrossing;
 struct Perturbation;
 struct BehaviorGroup;
 struct Scan;
+
+/// The objects of one entry that are placed anew for each scene.
+using Placement = std::variant<RandomPlacement, CircleCrossing, SquareCrossing>;
 
 /// A goal without a heading has theta NaN.
 using Goal = Pose;
@@ -53,8 +59,8 @@ struct BodyDynamics {
 
 struct World {
   World(double step_time, int collision_mode, double gravity, std::vector<ObjectSpec> specs,
-        std::vector<RandomPlacement> placements, int copies, std::optional<Fog> fog,
-        std::vector<Perturbation> perturbations, Zones zones, std::vector<View> views, const std::vector<int>& targets);
+        std::vector<Placement> placements, int copies, std::optional<Fog> fog, std::vector<Perturbation> perturbations,
+        Zones zones, std::vector<View> views, const std::vector<int>& targets);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -88,7 +94,7 @@ struct World {
   int beams_per_world = 0, velocities_per_world = 0;
   std::optional<Fog> fog;
   std::vector<Mount> fog_beams;  // beams of each view of the fog; empty for views without occlusion
-  std::vector<RandomPlacement> placements;
+  std::vector<Placement> placements;
   std::vector<Perturbation> perturbations;  // of different objects, static ones first
   Zones zones;                              // what objects enter or cross
   std::vector<View> views;                  // fields of view that are watched

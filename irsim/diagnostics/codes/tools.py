@@ -41,9 +41,33 @@ TOOLS: dict[str, Code] = {
         "library not installed",
         "This needs a library that irsim does not install by itself; the message has the command that installs it.",
     ),
+    "policy-file": Code(
+        "file of a policy not usable",
+        "Networks are read from .npz (format irsim-policy: arrays and one JSON document) and .onnx files within limits "
+        "of size and work. The message names the place, what was given and what is allowed. No code of a file is run.",
+    ),
+    "policy-input": Code(
+        "robots do not observe what a policy needs",
+        "The policy was made for other observations, such as more beams. The message says what is missing.",
+    ),
     "behavior-failed": Code(
         "behavior in Python failed",
         "A behavior written in Python raised an error, or did not return finite numbers, one per control component.",
+    ),
+    "policy-failed": Code(
+        "policy failed",
+        "A policy raised an error, or did not return one row of finite numbers for each robot that decides; the "
+        "message names the robot and what to return.",
+    ),
+    "policy-mismatch": Code(
+        "policy does not fit the robots",
+        "The policy controls other drives than the robots have, or needs something that they lack, such as a lidar "
+        "with as many beams as it was made for.",
+    ),
+    "unknown-policy": Code(
+        "unknown policy",
+        "There is no policy of that name: no behavior, plug-in or file. The message names the nearest ones; irsim "
+        "policies lists all.",
     ),
     "invalid-input": Code(
         "input not usable",

@@ -140,6 +140,14 @@ class PythonDrives:
         control: Floats = control_from(handler, self.state(row, record), wanted[:2, None].copy())
         return control
 
+    def control_for(self, row: int, velocity: Floats) -> Floats | None:
+        """Return the control (n,) that follows a world-frame velocity (2,) [m/s]; None where the core moves the row."""
+        if self._key(row) not in self._handlers:
+            return None
+        record, handler = self._of(row)
+        control: Floats = control_from(handler, self.state(row, record), velocity[:2, None].copy())
+        return control
+
     def state(self, row: int, record: ObjectRecord) -> Floats:
         """Return the state of a row, (state_dim, 1)."""
         extra = self._simulation.extra[row, : record.state_dim - 3]

@@ -305,12 +305,14 @@ def _placed_outside(context: Context, path: Path, entry: Entry, records: list[Ob
         if left < x0 or low < y0 or right > x1 or high > y1:
             key = "range_high" if right > x1 or high > y1 else "range_low"
             written = getattr(options, key, None) is not None
+            keys = {"circle_crossing": "'center' and 'radius'", "square_crossing": "'center' and 'width'"}
+            removed = keys.get(placement.distribution, "'range_low' and 'range_high'")
             yield hint(
                 "outside-world",
                 (*path, "distribution", key) if written else (*path, "distribution"),
                 f"random places have x from {left:g} to {right:g} and y from {low:g} to {high:g}, partly outside "
                 + world,
-                fix="remove 'range_low' and 'range_high': the defaults end half a metre inside the world",
+                fix=f"remove {removed}: the defaults end half a metre inside the world",
             )
         return
     lost = [r for r in records if not (x0 <= r.state[0] <= x1 and y0 <= r.state[1] <= y1)]

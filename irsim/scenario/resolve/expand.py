@@ -29,8 +29,6 @@ NO_GROUP = -1
 """Group of the objects that no entry makes: the map and the walls round the world."""
 _STATIC_CONTROLS = 3
 """Control components of an object that never moves, as in IR-SIM."""
-_MARGIN = 0.5
-"""Distance of random placement from the edge of the world [m]."""
 
 
 def resolve(
@@ -156,13 +154,15 @@ class _Maker:
         if not self._is_random() or not self.count:
             return None
         options: Any = self.entry.distribution
-        x0, y0, x1, y1 = self.world.bounds
+        drawn = options.drawn_in(self.world)
         return Placement(
             objects=list(range(self.first_id, self.first_id + self.count)),
-            range_low=options.range_low or [x0 + _MARGIN, y0 + _MARGIN, -math.pi],
-            range_high=options.range_high or [x1 - _MARGIN, y1 - _MARGIN, math.pi],
-            min_distance=options.min_distance,
+            range_low=drawn.low,
+            range_high=drawn.high,
+            min_distance=drawn.min_distance,
             path=self.path,
+            distribution=options.name,
+            options=drawn.kernel,
         )
 
     def _is_random(self) -> bool:

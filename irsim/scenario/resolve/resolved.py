@@ -92,13 +92,40 @@ class ObjectRecord:
 
 @dataclass(slots=True)
 class Placement:
-    """The objects of one entry with ``distribution: random``."""
+    """The objects of one entry that are placed anew for each scene, such as ``distribution: random``.
+
+    ``range_low``, ``range_high`` and ``min_distance`` are those of :class:`Drawn`, ``options`` its ``kernel``, where
+    ``Drawn`` is that of :mod:`irsim.components.distributions._options`.
+    """
 
     objects: list[int]  # ids
     range_low: list[float]
     range_high: list[float]
     min_distance: float
     path: Path
+    distribution: str
+    options: Mapping[str, Any]
+
+    @property
+    def distance_key(self) -> str:
+        """Key of the distance that its objects keep."""
+        return "min_distance" if self.distribution == "random" else "clearance"
+
+    @property
+    def room(self) -> str:
+        """The area in which places are drawn, in words."""
+        width, height = (self.range_high[i] - self.range_low[i] for i in range(2))
+        if self.distribution == "circle_crossing":
+            return f"the circle of radius {self.options['radius']:g} m with its noise of {self.options['noise']:g} m"
+        if self.distribution == "square_crossing":
+            return f"the halves of a square of {self.options['width']:g} m"
+        return f"{abs(width * height):.3g} m2"
+
+    @property
+    def widen(self) -> str:
+        """How to make that area larger, in words."""
+        keys = {"circle_crossing": "raise radius or noise", "square_crossing": "raise width"}
+        return keys.get(self.distribution, "widen range_low/range_high")
 
 
 @dataclass(slots=True)

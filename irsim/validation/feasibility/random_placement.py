@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from irsim.scenario.checks import Context
 from irsim.scenario.messages.findings import Finding, error, warning
+from irsim.scenario.resolve.resolved import Placement
 from irsim.validation.feasibility.scenes import Drawn
 
 __all__ = ["check"]
@@ -21,11 +22,9 @@ def check(context: Context, drawn: Drawn) -> Iterator[Finding]:
     placement = next((p for p in context.resolved.placements if p.path == path), None)
     if placement is None:
         return
-    width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
     failed, tried = len(drawn.failed), drawn.tried
     what = f"with {failed} of {tried} seeds, not all objects find a free place"
-    place = f"this entry puts {len(placement.objects)} objects into {width:g} m × {height:g} m, clear of all others"
-    fix = f"fewer or smaller objects, a smaller min_distance (now {placement.min_distance:g} m), or a larger range"
+    place, fix = _words(placement)
     where = (*path, "distribution")
     if failed == tried or drawn.own in drawn.failed:
         own = (
@@ -35,3 +34,21 @@ def check(context: Context, drawn: Drawn) -> Iterator[Finding]:
         yield error("placement-crowded", where, f"{what}{own}; {place}", given=len(placement.objects), fix=fix)
     else:
         yield warning("placement-tight", where, f"{what}; {place}", given=len(placement.objects), fix=fix)
+
+
+def _words(placement: Placement) -> tuple[str, str]:
+    """What the entry asks for, and what to change."""
+    count = len(placement.objects)
+    if placement.distribution != "random":
+        place = f"this entry puts {count} objects into {placement.room}, clear of all others"
+        now = placement.options[placement.distance_key]
+        return (
+            place,
+            f"fewer or smaller objects, a smaller {placement.distance_key} (now {now:g} m), or {placement.widen}",
+        )
+    width, height = (placement.range_high[i] - placement.range_low[i] for i in range(2))
+    place = f"this entry puts {count} objects into {width:g} m × {height:g} m, clear of all others"
+    return (
+        place,
+        f"fewer or smaller objects, a smaller min_distance (now {placement.min_distance:g} m), or a larger range",
+    )

@@ -1,4 +1,4 @@
-"""``benchmark``: compare behaviors over scenarios and seeds."""
+"""``benchmark``: compare policies over scenarios and seeds."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ from irsim_mcp.tool import StrictTool, strict
 __all__ = ["Benchmark", "answer", "tool"]
 
 _DESCRIPTION = """
-    Compare behaviors fairly: every scenario under every behavior with the same seeds. Rows have shares of
+    Compare policies fairly: every scenario under every policy with the same seeds. Rows have shares of
     success, collision and timeout and means of metrics as [value, low, high] (95 %), and the seeds that failed; diff
-    is the difference from the first behavior, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job,
+    is the difference from the first policy, seed by seed. Work that exceeds wait_s becomes a job. Next: get_job,
     inspect_run with the job_id, or run_episode with a seed that failed.
 """
 _SHARES = ("success", "collision", "timeout")
@@ -81,11 +81,11 @@ def tool(services: Services) -> StrictTool:
         scenarios: Annotated[
             list[str], Field(description=f"1-{MAX_SCENARIOS} scenario files of the workspace, or YAML texts.")
         ],
-        behaviors: Annotated[
+        policies: Annotated[
             list[str] | None,
             Field(
-                description=f"1-{MAX_BEHAVIORS} for all robots, such as rvo or '{{name: orca, timeHorizon: 5}}'. "
-                "Default: as-written, the scenario's own."
+                description=f"1-{MAX_BEHAVIORS} for all robots: rvo, '{{name: orca, timeHorizon: 5}}', random or a "
+                "file (net.npz). Default: as-written."
             ),
         ] = None,
         seeds: Annotated[int, Field(description=f"How many, 1-{MAX_SEEDS}.")] = 10,
@@ -101,14 +101,14 @@ def tool(services: Services) -> StrictTool:
         max_steps: Annotated[int | None, Field(ge=1, le=MAX_STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
-        chosen = behaviors or ["as-written"]
+        chosen = policies or ["as-written"]
         _check(scenarios, chosen, seeds, first_seed)
         files = [services.scenario_source(item) for item in scenarios]
         job = services.jobs.start(
             "benchmark",
             {
                 "files": files,
-                "behaviors": chosen,
+                "policies": chosen,
                 "seeds": list(range(first_seed, first_seed + seeds)),
                 "perturb": perturb,
                 "steps": max_steps,
@@ -124,19 +124,22 @@ def tool(services: Services) -> StrictTool:
             services.jobs.forget(job)  # the caller gets the error and no id
         return answer(state)
 
-    return strict(benchmark, title="Compare behaviors", description=_DESCRIPTION, read_only=False, idempotent=True)
+    return strict(
+        benchmark, title="Compare policies", description=_DESCRIPTION, read_only=False, idempotent=True,
+        former_names={"behaviors": "policies"},
+    )  # fmt: skip
 
 
-def _check(scenarios: Sequence[str], behaviors: Sequence[str], seeds: int, first: int) -> None:
+def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int, first: int) -> None:
     if not scenarios or seeds < 1:
         what = "there must be at least one scenario" if not scenarios else f"seeds must be at least 1, got {seeds}"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
-    total = len(scenarios) * len(behaviors) * seeds
-    within = len(scenarios) <= MAX_SCENARIOS and len(behaviors) <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
+    total = len(scenarios) * len(policies) * seeds
+    within = len(scenarios) <= MAX_SCENARIOS and len(policies) <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
     if not within or total > MAX_EPISODES:
         raise failure(
             "over-limit",
-            f"{len(scenarios)} scenarios x {len(behaviors)} behaviors x {seeds} seeds = {total:,} episodes; at most "
+            f"{len(scenarios)} scenarios x {len(policies)} policies x {seeds} seeds = {total:,} episodes; at most "
             f"{MAX_SCENARIOS} x {MAX_BEHAVIORS} x {MAX_SEEDS}, and {MAX_EPISODES:,} in all",
             fix="ask for fewer seeds, or split them over several calls",
         )

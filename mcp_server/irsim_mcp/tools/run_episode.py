@@ -111,7 +111,7 @@ def tool(services: Services) -> StrictTool:
         scenario_path: ScenarioPath = None,
         scenario_yaml: ScenarioYaml = None,
         seed: Seed = None,
-        behavior: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
+        policy: Annotated[str | None, Field(max_length=500, description="Of all robots, as in benchmark.")] = None,
         perturb: Annotated[str | None, Field(max_length=500, description="As in benchmark.")] = None,
         max_steps: Annotated[
             int | None,
@@ -136,7 +136,7 @@ def tool(services: Services) -> StrictTool:
             progress=reporter(ctx, "steps"),
             seed=seed,
             steps=max_steps,
-            behavior=behavior,
+            policy=policy,
             perturb=perturb,
         )
         episode = _episode(found, response_format == "detailed")
@@ -146,8 +146,9 @@ def tool(services: Services) -> StrictTool:
         return CallToolResult(content=[text], structured_content=episode.model_dump(exclude_none=True))
 
     return strict(
-        run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True, page=PAGE
-    )
+        run_episode, title="Run a scenario", description=_DESCRIPTION, read_only=False, idempotent=True, page=PAGE,
+        former_names={"behavior": "policy"},
+    )  # fmt: skip
 
 
 def _json_answer(found: Found, most: int) -> TextContent:
@@ -176,7 +177,7 @@ def _episode(found: dict[str, Any], detailed: bool) -> Episode:
         summary=clean(found["summary"], 300),
         seed=found["seed"],
         random=found["random"],
-        behavior=None if found["behavior"] is None else clean(found["behavior"], 200),
+        behavior=clean(found["behavior"] or found["policy"] or "", 200) or None,
         incidents=_incidents(found) or None,
         steps=found["steps"],
         sim_time=_rounded(found["sim_time"]),
@@ -260,7 +261,7 @@ def _advice(found: dict[str, Any]) -> str:
         more = "; try other seeds" if found["random"] else ""
         return f"See the paths with render_snapshot{run} step=-1{more}."
     if found["outcome"] == "timeout" and _UNDRIVEN in str(found["reason"]):
-        return "Nothing to change if it is meant to stay or a program drives it; to try the layout: behavior=dash."
+        return "Nothing to change if it is meant to stay or a program drives it; to try the layout: policy=dash."
     late = [robot["name"] for robot in found["robots"] if robot["outcome"] != "success"]
     if late and set(late) <= set(found["parked"]) and not held:
         return f"Nothing to change if it is meant to stay; see it with render_snapshot{run} step=-1."

@@ -32,6 +32,8 @@ def decide(index: int) -> np.ndarray:
         timeHorizonObst=horizon_walls,
         safe_radius=margin,
         maxSpeed=None,
+        responsibility=None,
+        approach_time=None,
     )
     agents = [
         robot(

@@ -1,0 +1,61 @@
+"""``irsim policies``: list what can drive robots, or describe one."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+
+from irsim.cli.options import Imports, Json
+
+__all__ = ["policies"]
+
+
+def policies(
+    name: Annotated[
+        str | None, typer.Argument(help="Describe this policy: a name, or a file (model.npz).", show_default=False)
+    ] = None,
+    imports: Imports = None,
+    json_output: Json = False,
+) -> None:
+    """List the policies that can drive robots, or describe one: what it observes, returns and controls."""
+    from irsim.cli.findings import import_user_modules
+    from irsim.cli.output import console
+    from irsim.common.text import clean
+    from irsim.policies.description import describe_policy, list_policies
+
+    import_user_modules(imports)
+    found = list_policies() if name is None else [describe_policy(name)]
+    if json_output:
+        data = [asdict(one) for one in found]
+        typer.echo(json.dumps(data if name is None else data[0], indent=2, ensure_ascii=False))
+        return
+    from rich.table import Table
+    from rich.text import Text
+
+    out = console()
+    table = Table(box=None, pad_edge=False, header_style="dim", show_header=name is None)
+    if name is None:
+        for heading in ("policy", "kind", "returns", "needs", "drives", "what it does"):
+            table.add_column(heading)
+        for one in found:
+            needs, drives = ", ".join(one.needs) or "-", ", ".join(one.drives)
+            row = (one.kind, one.output, clean(needs, 100), clean(drives, 100), clean(one.about, 200))
+            table.add_row(Text(clean(one.name), "bold cyan"), *row)
+        out.print(table)
+        out.print("a file is a policy, too: irsim policies model.npz; irsim run SCENARIO --policy NAME uses one")
+        return
+    one = found[0]
+    period = "every step" if one.decision_dt is None else f"every {one.decision_dt:g} s"
+    facts = {
+        "kind": one.kind, "returns": one.output, "needs": ", ".join(one.needs) or "nothing else",
+        "drives": ", ".join(one.drives), "decides": period, "sha256": one.digest or "",
+        "options": "; ".join(f"{key}: {value}" for key, value in one.options.items()),
+    }  # fmt: skip
+    out.print(Text.assemble((clean(one.name, 200), "bold cyan"), ": ", clean(one.about, 1000)))
+    for key, value in facts.items():
+        if value:
+            table.add_row(key, clean(value, 1000))
+    out.print(table)

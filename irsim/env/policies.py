@@ -1,0 +1,73 @@
+"""The method of an environment that lets a policy drive its robots."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from irsim.env.state import EnvState
+from irsim.objects.lifecycle import amend_all
+from irsim.policies.behavior import TASK_AND_BEHAVIOR, BehaviorPolicy, with_policy
+from irsim.policies.catalog import PolicySource, open_policy
+from irsim.policies.driver import attach_policy
+
+if TYPE_CHECKING:
+    from irsim.policies.policy import Policy
+    from irsim.scenario.resolve.resolved import ObjectRecord, ResolvedScenario
+
+__all__ = ["drive_again", "opened", "remember_written", "set_policy"]
+
+
+def opened(policy: PolicySource | None) -> Policy | None:
+    """Open the policy that a caller gives; None stands for the behaviors of the scenario."""
+    return None if policy is None else open_policy(policy)
+
+
+def set_policy(env: EnvState, policy: PolicySource | None) -> None:
+    """Let a policy drive all robots that can move, from the next step on; objects keep their states.
+
+    Actions that are given to ``step`` take precedence over it. ``reset`` and ``reload`` keep it.
+
+    Args:
+        policy: What :func:`irsim.open_policy` takes: a policy, a function of observations, or a name such as ``orca``.
+            None gives the robots back to the behaviors of the scenario.
+
+    Raises:
+        PolicyError: The policy cannot drive these robots (``policy-mismatch``); nothing is changed then.
+        BenchmarkError: There is no such policy, or a behavior cannot drive these robots.
+    """
+    chosen, simulation = opened(policy), env._simulation
+    now = simulation.scenario
+    plain = replace(now, objects=[_as_written(record, env._written) for record in now.objects])
+    wanted = with_policy(plain, chosen)
+    attach_policy(simulation, chosen)
+    env.scenario = with_policy(_plain(env.scenario, env._written), chosen)
+    remember_written(env, plain, wanted)
+    env._policy = chosen
+    if wanted.objects != now.objects:
+        amend_all(simulation, wanted.objects)
+
+
+def remember_written(env: EnvState, plain: ResolvedScenario, driven: ResolvedScenario) -> None:
+    """Remember the records that a policy has replaced, to restore their behaviors later."""
+    pairs = zip(plain.objects, driven.objects, strict=True)
+    env._written = {before.id: before for before, after in pairs if before is not after}
+
+
+def drive_again(env: EnvState) -> None:
+    """Give robots that have come the behavior that is the policy; policies in Python find new robots themselves."""
+    if isinstance(env._policy, BehaviorPolicy):
+        set_policy(env, env._policy)
+
+
+def _plain(scenario: ResolvedScenario, written: dict[int, ObjectRecord]) -> ResolvedScenario:
+    return replace(scenario, objects=[_as_written(record, written) for record in scenario.objects])
+
+
+def _as_written(record: ObjectRecord, written: dict[int, ObjectRecord]) -> ObjectRecord:
+    """The record with the behavior that the scenario gives it."""
+    before = written.get(record.id)
+    if before is None:
+        return record
+    own: dict[str, Any] = {key: getattr(before, key) for key in TASK_AND_BEHAVIOR}
+    return replace(record, **own)

@@ -1,0 +1,216 @@
+"""Opens policies from what people write: names, mappings with options, files, functions and policy objects."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from irsim.common.arguments import as_given
+from irsim.common.text import clean
+from irsim.diagnostics.diagnostic import nearest
+from irsim.diagnostics.errors import CodedError, PolicyError
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS, CUSTOM_GROUP_BEHAVIORS
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.function import FunctionPolicy
+from irsim.policies.observations import Observations
+from irsim.policies.policy import Policy
+from irsim.policies.registry import POLICIES, RANDOM
+from irsim.scenario.behavior_override import AS_WRITTEN, BenchmarkError, behavior_text, parse_behavior
+from irsim.scenario.path_confinement import why_outside
+from irsim.scenario.yaml.rewrite import yaml_flow
+
+__all__ = [
+    "SUFFIXES",
+    "PolicySource",
+    "UnknownPolicyError",
+    "behavior_names",
+    "file_of",
+    "files_beside",
+    "names_file",
+    "open_policy",
+    "policy_names",
+    "with_file",
+]
+
+PolicySource = Policy | Callable[[Observations], Any] | str | os.PathLike[str] | Mapping[str, Any]
+"""What :func:`open_policy` takes."""
+SUFFIXES = (".npz", ".onnx")
+"""Suffixes of files that hold policies."""
+MAX_FILE_BYTES = 500_000_000
+"""Largest file of a policy."""
+
+
+class UnknownPolicyError(BenchmarkError):
+    """No policy has that name, or there is no such file."""
+
+    code = "unknown-policy"
+
+
+def behavior_names() -> list[str]:
+    """Names of the policies that are behaviors, sorted."""
+    return sorted({AS_WRITTEN, *BEHAVIORS.names(), *CUSTOM_BEHAVIORS.names(), *CUSTOM_GROUP_BEHAVIORS.names()})
+
+
+def policy_names() -> list[str]:
+    """Names of all policies that are not files, sorted."""
+    return sorted({*behavior_names(), RANDOM, *POLICIES.names()})
+
+
+def open_policy(source: PolicySource, *, folder: str | Path | None = None, root: str | Path | None = None) -> Policy:
+    """Open a policy.
+
+    Args:
+        source: A policy object; a function ``f(observations)`` that returns controls; the name of a behavior
+            (``orca``), of ``as-written``, of ``random`` or of a plug-in; the path of an ``.npz`` or ``.onnx`` file; or
+            one of these names with options, as a mapping or as YAML text (``{name: orca, timeHorizon: 5}``).
+        folder: Folder that relative paths start from; default: the current one.
+        root: Folder that files must lie in. With it only built-in policies and files are opened: no code runs that
+            irsim does not have.
+
+    Returns:
+        The policy. Its ``text`` is the source as written, None for objects and functions.
+
+    Raises:
+        UnknownPolicyError: There is no such policy or file; the message names the most similar one.
+        BenchmarkError: The text is not a policy.
+        PolicyError: The policy cannot be made with these options, or its file cannot be used.
+    """
+    given: Any = os.fspath(source) if isinstance(source, os.PathLike) else source
+    if isinstance(given, Policy):
+        return given
+    if not isinstance(given, (str, Mapping)):
+        if callable(given) and root is None:
+            return FunctionPolicy(given)
+        fix = "give a name, a file, a mapping with a name, or a function of observations"
+        raise BenchmarkError(f"a policy cannot be {as_given(given)}", fix)
+    text = behavior_text(given)
+    name, keys = _parsed(text)
+    if name.endswith(SUFFIXES):
+        return _from_file(text, name, keys, folder, root)
+    if name in behavior_names():
+        return BehaviorPolicy(text)
+    if name == RANDOM:
+        from irsim.policies.random import RandomPolicy
+
+        return _named(_made(name, RandomPolicy, keys), text)
+    maker = POLICIES.get(name) if root is None else None
+    if maker is None:
+        raise _unknown(name, root)
+    return _named(_made(name, maker, keys), text)
+
+
+def names_file(text: str) -> bool:
+    """Whether the text of a policy names a file.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    return file_of(text) is not None
+
+
+def file_of(text: str) -> Path | None:
+    """The file that the text of a policy names; None if it names none.
+
+    Raises:
+        BenchmarkError: The text is not a policy.
+    """
+    name = _parsed(text)[0]
+    return Path(name) if name.endswith(SUFFIXES) else None
+
+
+def files_beside(path: Path) -> list[Path]:
+    """The files that a policy may have beside its own: the document of an ONNX model."""
+    return [path.with_suffix(".json")] if path.suffix == ".onnx" else []
+
+
+def with_file(text: str, path: Path) -> str:
+    """The text of a policy that is a file, with another path and the same options."""
+    options = _parsed(text)[1]
+    return yaml_flow({"name": str(path), **options}) if options else str(path)
+
+
+def _parsed(text: str) -> tuple[str, dict[str, Any]]:
+    """Name and options of a policy that is given as text."""
+    plain = text.endswith(SUFFIXES) and not text.startswith("{")
+    options = {"name": text} if plain else parse_behavior(text)
+    name = AS_WRITTEN if options is None else str(options["name"])
+    return name, {key: value for key, value in (options or {}).items() if key != "name"}
+
+
+def _unknown(name: str, root: str | Path | None) -> UnknownPolicyError:
+    known = policy_names() if root is None else sorted({*behavior_names(), RANDOM})
+    near = nearest(name, known)
+    fix = f"did you mean {near}?" if near else f"choose one of {', '.join(known)}, or a file (.npz, .onnx)"
+    if root is not None and name in POLICIES.names():
+        fix = "plug-ins are not run here; choose a behavior or a file of the workspace"
+    return UnknownPolicyError(f"there is no policy {clean(name)!r}", fix)
+
+
+def _made(name: str, maker: Callable[..., Any], options: Mapping[str, Any]) -> Policy:
+    """What a maker makes of options."""
+    try:
+        made = maker(**options)
+    except CodedError:
+        raise
+    except Exception as error:
+        what = f"policy {clean(name)!r} cannot be made: {clean(str(error), 300)}"
+        raise PolicyError("policy-failed", what, f"irsim policies {clean(name)} lists its options") from error
+    if not isinstance(made, Policy):
+        what = f"{clean(name)!r} made {as_given(made)}, which is no policy"
+        raise PolicyError("policy-failed", what, "return an object of a class derived from irsim.Policy")
+    return made
+
+
+def _named(policy: Policy, text: str) -> Policy:
+    """The policy, with the text that opens it."""
+    policy.text = policy.source = text
+    if not getattr(policy, "name", ""):
+        policy.name = text
+    return policy
+
+
+def _digest(path: Path) -> str:
+    """SHA-256 of a file, and of those beside it that belong to it."""
+    found = hashlib.sha256(path.read_bytes())
+    for other in files_beside(path):
+        if other.is_file():
+            found.update(other.read_bytes())
+    return found.hexdigest()
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _from_file(
+    text: str, name: str, options: Mapping[str, Any], folder: str | Path | None, root: str | Path | None
+) -> Policy:
+    """A network from a file."""
+    from irsim.policies.networks import open_network
+
+    if root is not None and (why := why_outside(name, Path(root))) is not None:
+        fix = "put the file into the workspace and name it relative to that"
+        raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
+    path = Path(root if root is not None else folder or ".", name)
+    if not path.is_file():
+        beside = [one.name for one in sorted(path.parent.glob("*")) if one.suffix in SUFFIXES][:1000]
+        near = nearest(path.name, beside)
+        fix = f"did you mean {Path(name).with_name(near)}?" if near else "check the path; irsim policies lists names"
+        raise UnknownPolicyError(f"there is no file {clean(name)!r}", fix)
+    if path.stat().st_size > MAX_FILE_BYTES:
+        raise PolicyError("over-limit", f"{clean(name)!r} has more than {MAX_FILE_BYTES:,} bytes", "use a smaller file")
+    period = options.get("decision_dt")
+    unknown = [key for key in options if key != "decision_dt"]
+    if unknown or (period is not None and not (_is_number(period) and period > 0)):
+        what = f"{clean(unknown[0])!r} is no option of a file" if unknown else "decision_dt must be a time [s] above 0"
+        raise PolicyError("policy-failed", f"{clean(name)!r}: {what}", "the only option is decision_dt", where="policy")
+    policy = open_network(path)
+    if period is not None:
+        policy.decision_dt = float(period)
+    policy.stochastic = False
+    policy.text, policy.digest = text, _digest(path)
+    policy.source = with_file(text, path.resolve())
+    return policy

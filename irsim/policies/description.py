@@ -1,0 +1,142 @@
+"""What policies there are, and what each observes and returns."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from irsim.options.registry import BEHAVIORS, CUSTOM_BEHAVIORS
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.catalog import behavior_names, names_file, open_policy
+from irsim.policies.policy import Needs, Policy
+from irsim.policies.random import RandomPolicy
+from irsim.policies.registry import POLICIES, RANDOM
+from irsim.scenario.behavior_override import AS_WRITTEN
+
+__all__ = ["PolicyInfo", "describe_policy", "list_policies"]
+
+_IN_ENGINE = "runs in the engine; irsim describe behavior {} has its options"
+
+
+@dataclass(frozen=True)
+class PolicyInfo:
+    """A policy in words.
+
+    Attributes:
+        name: What opens it.
+        kind: ``behavior``, ``built-in``, ``plug-in`` or ``file``.
+        about: What it does.
+        output: What it returns: ``control``, ``velocity``, or ``engine`` for a behavior.
+        needs: What it observes besides the state and the goal of the robot.
+        drives: Names of the drives that it controls; ``any``.
+        decision_dt: Time between two decisions [s]; None: every step.
+        options: Option → its default in words; ``required`` without one.
+        digest: SHA-256 of its file; None without one.
+    """
+
+    name: str
+    kind: str
+    about: str
+    output: str
+    needs: list[str]
+    drives: list[str]
+    decision_dt: float | None = None
+    options: dict[str, str] = field(default_factory=dict)
+    digest: str | None = None
+
+
+def list_policies() -> list[PolicyInfo]:
+    """All policies that have a name; files are policies, too."""
+    behaviors = sorted(behavior_names(), key=lambda name: (name != AS_WRITTEN, name))
+    return [
+        *map(_behavior, behaviors),
+        _random(),
+        *(_plugin(name) for name in POLICIES.names()),
+    ]
+
+
+def describe_policy(text: str, folder: str | Path | None = None) -> PolicyInfo:
+    """Describe a policy, which is opened if it is a file or has options.
+
+    Raises:
+        As :func:`irsim.open_policy`.
+    """
+    if text in POLICIES.names():
+        return _plugin(text)
+    policy = open_policy(text, folder=folder)
+    if isinstance(policy, BehaviorPolicy):
+        return _behavior(policy.name)
+    if text == RANDOM:
+        return _random()
+    kind = "file" if names_file(text) else "built-in" if policy.name == RANDOM else "plug-in"
+    return _info(text, kind, policy, _about(policy), {})
+
+
+def _behavior(name: str) -> PolicyInfo:
+    if name == AS_WRITTEN:
+        about, options, drives = "The behavior that the scenario gives each robot.", {}, ["any"]
+    else:
+        feature = BEHAVIORS.get(name)
+        about = "" if feature is None else _about(feature.options)
+        options = {} if feature is None else {"…": _IN_ENGINE.format(name)}
+        drives = ["any"] if feature is not None else CUSTOM_BEHAVIORS.drives(name) or ["any"]
+    return PolicyInfo(name, "behavior", about or "Registered in Python.", "engine", [], drives, options=options)
+
+
+def _random() -> PolicyInfo:
+    return _info(RANDOM, "built-in", RandomPolicy(), _about(RandomPolicy), _options(RandomPolicy))
+
+
+def _plugin(name: str) -> PolicyInfo:
+    maker: Any = POLICIES.get(name)
+    return _info(name, "plug-in", maker, _about(maker), _options(maker))
+
+
+def _info(name: str, kind: str, policy: Any, about: str, options: dict[str, str]) -> PolicyInfo:
+    """Describe a policy, or the class or function that makes it."""
+    known = isinstance(policy, Policy) or (isinstance(policy, type) and issubclass(policy, Policy))
+    needs = policy.needs if known and isinstance(policy.needs, Needs) else Needs()
+    drives = sorted(policy.drives) if known and policy.drives is not None else ["any"]
+    return PolicyInfo(
+        name=name,
+        kind=kind,
+        about=about,
+        output=policy.output if known else "known once it is made",
+        needs=_words(needs),
+        drives=["any"] if known and policy.output == "velocity" else drives,
+        decision_dt=policy.decision_dt if known else None,
+        options=options,
+        digest=policy.digest if known else None,
+    )
+
+
+def _words(needs: Needs) -> list[str]:
+    found = []
+    if needs.neighbors:
+        reach = "" if math.isinf(needs.neighbor_range) else f" within {needs.neighbor_range:g} m"
+        static = ", also static ones" if needs.static_neighbors else ""
+        found.append(f"{needs.neighbors} nearest neighbors{reach}{static}")
+    if needs.scan:
+        found.append("a lidar" if needs.beams is None else f"a lidar with {needs.beams} beams")
+    if needs.map:
+        found.append(f"the map in cells of {needs.map_resolution:g} m")
+    return found
+
+
+def _about(thing: Any) -> str:
+    """The first sentence of a docstring, or what a network says about itself."""
+    own = getattr(thing, "about", None)
+    text = own if isinstance(own, str) and own else inspect.getdoc(thing if callable(thing) else type(thing)) or ""
+    return " ".join(text.split("\n\n")[0].split())
+
+
+def _options(maker: Any) -> dict[str, str]:
+    try:
+        parameters = inspect.signature(maker).parameters.values()
+    except (TypeError, ValueError):
+        return {}
+    named = [one for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
+    return {one.name: "required" if one.default is one.empty else repr(one.default) for one in named}

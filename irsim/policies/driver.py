@@ -1,0 +1,281 @@
+"""Lets a policy decide for the robots of a simulation, in the steps in which a decision is due."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import CodedError, PolicyError
+from irsim.policies.behavior import BehaviorPolicy
+from irsim.policies.fit import check_fit, drive_of
+from irsim.policies.observe import Observer
+from irsim.policies.policy import Episode, Policy
+from irsim.simulation.random_streams import generator
+
+if TYPE_CHECKING:
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["PolicyDriver", "attach_policy", "decision_steps", "driver_of"]
+
+_CORE_CONTROLS = 3
+_NEVER = np.iinfo(np.int64).max
+
+
+def decision_steps(policy: Policy, step_time: float) -> int:
+    """Number of steps between two decisions of a policy, at least one."""
+    return 1 if policy.decision_dt is None else max(1, math.floor(policy.decision_dt / step_time + 0.5))
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Robots that a policy drives together: all, or those with one drive.
+
+    Attributes:
+        number: Number of the group.
+        drive: Name of their drive, or ``mixed``.
+        columns: Number of values that a decision has for each.
+        places: Indices of the robots among the driven ones.
+    """
+
+    number: int
+    drive: str
+    columns: int
+    places: NDArray[np.int64]
+
+
+class PolicyDriver:
+    """Part of the steps of a simulation: asks a policy, and keeps what it decided until the next decision.
+
+    It drives every robot that can move. Scenario draws, obstacles and noise do not depend on it.
+
+    Args:
+        simulation: The simulation, with one world or many.
+        policy: The policy.
+
+    Attributes:
+        policy: The policy.
+        seconds: Wall-clock time of each call of ``act`` [s], for timings only.
+        decided: Number of robots that each of these calls decided for.
+
+    Raises:
+        PolicyError: The policy cannot drive a robot (``policy-mismatch``).
+    """
+
+    def __init__(self, simulation: Simulation, policy: Policy) -> None:
+        self.policy = policy
+        self.seconds: list[float] = []
+        self.decided: list[int] = []
+        self._steps = decision_steps(policy, float(simulation.scenario.world.step_time))
+        self._ids: list[int] = []
+        self._seen: Any = None
+        worlds = simulation.copies
+        self._last = np.full(worlds, _NEVER)
+        self._keys = np.zeros((3, worlds), dtype=np.uint64)
+        self._held: Floats = np.zeros((worlds, 0, 0))
+        self._next = np.zeros((worlds, 0), dtype=np.int64)
+        self._first = np.zeros((worlds, 0), dtype=bool)
+        self._active = np.zeros((worlds, 0), dtype=bool)
+        self._find(simulation)
+
+    # the objects --------------------------------------------------------------------------------------------------
+    def _find(self, simulation: Simulation) -> None:
+        """Find the robots again if objects were added, removed or changed; the others keep what was decided."""
+        seen = simulation.revision, simulation.scenario
+        if self._seen is not None and seen[0] == self._seen[0] and seen[1] is self._seen[1]:
+            return
+        self._seen = seen
+        records = simulation.scenario.objects
+        robots = [
+            index
+            for index, record in enumerate(records)
+            if record.role == "robot" and record.kinematics is not None and not record.static
+        ]
+        check_fit(self.policy, simulation, robots)
+        self._robots = np.array(robots, dtype=np.int64)
+        self._groups = self._grouped(simulation, robots)
+        self._observer = Observer(simulation, self.policy.needs, self._robots)
+        self._python = np.array([index in _python_drives(simulation) for index in robots], dtype=bool)
+        before, self._ids = self._ids, [records[index].id for index in robots]
+        old = [before.index(number) if number in before else -1 for number in self._ids]
+        columns = max([group.columns for group in self._groups], default=0)
+        held = np.zeros((simulation.copies, len(robots), columns))
+        fresh = np.array(old, dtype=np.int64) < 0
+        kept, width = np.flatnonzero(~fresh), min(columns, self._held.shape[2])
+        taken = np.array(old, dtype=np.int64)[kept]
+        held[:, kept, :width] = self._held[:, taken, :width]
+        following = np.zeros((simulation.copies, len(robots)), dtype=np.int64)
+        following[:, kept] = self._next[:, taken]
+        first = np.ones((simulation.copies, len(robots)), dtype=bool)
+        first[:, kept] = self._first[:, taken]
+        self._held, self._next, self._first = held, following, first
+        self._active = np.zeros_like(first)
+
+    def _grouped(self, simulation: Simulation, robots: list[int]) -> list[_Group]:
+        drives = [drive_of(simulation, index) for index in robots]
+        names = list(dict.fromkeys(drives))
+        if self.policy.output == "velocity":
+            return [_Group(0, names[0] if len(names) == 1 else "mixed", 2, np.arange(len(robots)))] if robots else []
+        sizes = {name: simulation.scenario.objects[robots[drives.index(name)]].vel_dim for name in names}
+        return [
+            _Group(number, name, sizes[name], np.flatnonzero(np.array(drives) == name))
+            for number, name in enumerate(names)
+        ]
+
+    # a step -------------------------------------------------------------------------------------------------------
+    def claim(self, simulation: Simulation) -> None:
+        """Take the robots that can move now and that the caller does not steer; no behavior decides for them."""
+        self._find(simulation)
+        self._begin_episodes(simulation)
+        rows = self._rows(simulation)
+        idle = (simulation.stopped[rows] | simulation.given[rows]).astype(bool)
+        idle |= simulation.count[:, None] < simulation.start_step[rows]
+        self._active = ~idle
+        self._next[idle] = 0  # such a robot decides as soon as it can
+        simulation.given[rows[self._active]] = 1
+
+    def __call__(self, simulation: Simulation) -> None:
+        """Decide where a decision is due, and command all robots that were taken."""
+        rows = self._rows(simulation)
+        due = self._active & (simulation.count[:, None] >= self._next)
+        for group in self._groups:
+            self._decide(simulation, group, rows, due)
+        if self.policy.output == "velocity":
+            self._follow(simulation, rows)
+        else:
+            self._control(simulation, rows)
+
+    def _rows(self, simulation: Simulation) -> NDArray[np.int64]:
+        """(W, n) rows of the driven robots."""
+        starts = np.arange(simulation.copies, dtype=np.int64) * simulation.objects
+        rows: NDArray[np.int64] = starts[:, None] + self._robots
+        return rows
+
+    def _begin_episodes(self, simulation: Simulation) -> None:
+        state, count = simulation.state, simulation.count
+        keys = np.stack([state.seed, state.scene.astype(np.uint64), state.noise.astype(np.uint64)])
+        new = (count <= self._last) | (keys != self._keys).any(axis=0)
+        self._keys, self._last = keys, count.copy()
+        if not new.any():
+            return
+        self._next[new], self._first[new], self._held[new] = 0, True, 0.0
+        if type(self.policy).reset is Policy.reset:
+            return
+        step_time = float(simulation.scenario.world.step_time)
+        for world in np.flatnonzero(new).tolist():
+            for group in self._groups:
+                robots = tuple(self._robots[group.places].tolist())
+                episode = Episode(world * len(self._groups) + group.number, robots, step_time, self._steps, group.drive)
+                rng = generator(*simulation.key(world), stream="policy", object_id=group.number)
+                self._guarded(self.policy.reset, episode, rng)
+
+    def _decide(self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], due: NDArray[np.bool_]) -> None:
+        world, place = np.nonzero(due[:, group.places])
+        if not world.size:
+            return
+        place = group.places[place]
+        slot = world * len(self._groups) + group.number
+        chosen = rows[world, place]
+        observations = self._observer.observe(chosen, self._first[world, place], slot)
+        begin = time.perf_counter()
+        found = self._guarded(self.policy.act, observations)
+        self.seconds.append(time.perf_counter() - begin)
+        self.decided.append(len(chosen))
+        self._held[world, place, : group.columns] = self._checked(simulation, group, chosen, found)
+        self._next[world, place] = simulation.count[world] + self._steps
+        self._first[world, place] = False
+
+    def _follow(self, simulation: Simulation, rows: NDArray[np.int64]) -> None:
+        native = self._active & ~self._python
+        core.follow_rows(simulation.world, simulation.state, rows[native], self._held[native])
+        if simulation.drives is None:
+            return
+        for world, place in np.argwhere(self._active & self._python).tolist():
+            row = int(rows[world, place])
+            control = simulation.drives.control_for(row, self._held[world, place])
+            if control is not None:
+                simulation.impose(row, control)
+
+    def _control(self, simulation: Simulation, rows: NDArray[np.int64]) -> None:
+        width = min(_CORE_CONTROLS, self._held.shape[2])
+        chosen = rows[self._active]
+        simulation.command[chosen] = 0.0
+        simulation.command[chosen, :width] = self._held[self._active][:, :width]
+        if simulation.drives is None or self._held.shape[2] <= _CORE_CONTROLS:
+            return
+        for world, place in np.argwhere(self._active & self._python).tolist():
+            row, robot = int(rows[world, place]), int(self._robots[place])
+            size = simulation.scenario.objects[robot].vel_dim
+            simulation.impose(row, self._held[world, place, :size])
+
+    # what the policy does -------------------------------------------------------------------------------------------
+    def _guarded(self, call: Any, *arguments: Any) -> Any:
+        try:
+            return call(*arguments)
+        except CodedError:
+            raise
+        except Exception as error:
+            what = f"policy {self.policy.name!r} raised {type(error).__name__}: {error}"
+            raise PolicyError(
+                "policy-failed", what, "repair the policy; the error above this one says where"
+            ) from error
+
+    def _checked(
+        self, simulation: Simulation, group: _Group, rows: NDArray[np.int64], found: Any
+    ) -> NDArray[np.float64]:
+        """What a policy returned, as one row of finite numbers for each robot."""
+        count, columns = len(rows), group.columns
+        what = "velocities in the world frame" if self.policy.output == "velocity" else f"controls of {group.drive}"
+        advice = f"return an array of shape ({count}, {columns}): {what}, one row for each robot"
+        try:
+            values = np.asarray(found, dtype=np.float64)
+        except (TypeError, ValueError):
+            values = np.zeros(0)
+        exact = self.policy.output == "velocity"
+        fits = values.ndim == 2 and values.shape[0] == count and values.shape[1] >= columns
+        if not fits or (exact and values.shape[1] != columns):
+            given = "None" if found is None else type(found).__name__ if not values.size else f"shape {values.shape}"
+            raise PolicyError("policy-failed", f"policy {self.policy.name!r} returned {given}", advice)
+        values = values[:, :columns]
+        wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
+        if wrong.size:
+            world, robot = divmod(int(rows[wrong[0]]), simulation.objects)
+            name = simulation.scenario.objects[robot].name
+            where = f" of world {world}" if simulation.copies > 1 else ""
+            numbers = values[wrong[0]].tolist()
+            message = f"policy {self.policy.name!r} returned {numbers} for {name!r}{where}, which is not finite"
+            raise PolicyError("policy-failed", message, advice)
+        return values
+
+
+def _python_drives(simulation: Simulation) -> list[int]:
+    return [] if simulation.drives is None else simulation.drives.objects
+
+
+def driver_of(simulation: Simulation) -> PolicyDriver | None:
+    """The driver of a simulation; None if no policy in Python drives it."""
+    return next((part for part in simulation.decisions if isinstance(part, PolicyDriver)), None)
+
+
+def attach_policy(simulation: Simulation, policy: Policy | None) -> PolicyDriver | None:
+    """Let a policy drive the robots of a simulation from the next step on, instead of an earlier one.
+
+    Args:
+        simulation: The simulation, with its Python drives attached.
+        policy: The policy; None leaves the robots to the behaviors of the scenario, and so does a policy that is a
+            behavior, because it is part of the scenario then (:func:`irsim.policies.behavior.with_policy`).
+
+    Raises:
+        PolicyError: The policy cannot drive a robot (``policy-mismatch``).
+    """
+    driver = None if policy is None or isinstance(policy, BehaviorPolicy) else PolicyDriver(simulation, policy)
+    simulation.decisions[:] = [part for part in simulation.decisions if not isinstance(part, PolicyDriver)]
+    if driver is not None:
+        simulation.decisions.append(driver)
+    return driver

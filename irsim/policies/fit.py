@@ -1,0 +1,72 @@
+"""Checks that a policy can drive the robots of a scenario, before the first step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from irsim.diagnostics.errors import PolicyError
+from irsim.policies.observe import Beams, beams_of
+
+if TYPE_CHECKING:
+    from irsim.policies.policy import Policy
+    from irsim.simulation.simulation import Simulation
+
+__all__ = ["check_fit", "drive_of"]
+
+
+def drive_of(simulation: Simulation, robot: int) -> str:
+    """Name of the drive of an object that has one."""
+    return str(getattr(simulation.scenario.objects[robot].kinematics, "name", ""))
+
+
+def check_fit(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> None:
+    """Refuse robots that a policy cannot drive.
+
+    Args:
+        policy: The policy.
+        simulation: The simulation.
+        robots: Indices of the robots within a world.
+
+    Raises:
+        PolicyError: A robot has another drive, or lacks the lidar that the policy needs (``policy-mismatch``).
+    """
+    for robot in robots:
+        drive, name = drive_of(simulation, robot), simulation.scenario.objects[robot].name
+        if policy.output == "control" and policy.drives is not None and drive not in policy.drives:
+            known = ", ".join(sorted(policy.drives))
+            raise _mismatch(
+                policy,
+                f"controls {known}, but {name!r} has the drive {drive}",
+                f"give {name!r} kinematics {{name: {sorted(policy.drives)[0]}}}, or choose another policy",
+            )
+    if policy.needs.scan:
+        _check_lidars(policy, simulation, robots)
+
+
+def _check_lidars(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> None:
+    count = policy.needs.beams
+    wanted = "sensors: [{name: lidar2d" + (f", number: {count}" if count else "") + "}]"
+    first: tuple[str, Beams] | None = None
+    for robot in robots:
+        name, beams = simulation.scenario.objects[robot].name, beams_of(simulation, robot)
+        if beams is None:
+            raise _mismatch(policy, f"needs the scan of a lidar, but {name!r} has none", f"give {name!r} {wanted}")
+        if count is not None and len(beams.angles) != count:
+            raise _mismatch(
+                policy,
+                f"was made for {count} beams, but the first lidar of {name!r} has {len(beams.angles)}",
+                f"write number: {count} in the lidar of {name!r}",
+            )
+        if first is not None and not first[1].equal(beams):
+            raise _mismatch(
+                policy,
+                f"needs equal lidars, but those of {first[0]!r} and {name!r} differ in number, angle_range, offset or "
+                "range_max",
+                f"give {name!r} the lidar of {first[0]!r}",
+            )
+        first = first or (name, beams)
+
+
+def _mismatch(policy: Policy, message: str, fix: str) -> PolicyError:
+    return PolicyError("policy-mismatch", f"policy {policy.name!r} {message}", fix, where="policy")

@@ -1,0 +1,124 @@
+"""The JSON document of a network: what it observes, its layers, and what its result means."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from irsim.options.base import Options, problem
+from irsim.options.selection import Select
+from irsim.options.units import Bool, Integer, Number, Seconds
+from irsim.policies.networks.features import LAYERS
+from irsim.policies.networks.frames import Frame
+from irsim.policies.networks.layers._options import LayerOptions
+from irsim.policies.networks.layout import Layout
+from irsim.policies.networks.parts._options import Label
+
+__all__ = ["FORMAT", "VERSION", "Card", "OutputOptions", "PolicyDocument", "PolicyHead"]
+
+FORMAT = "irsim-policy"
+VERSION = 1
+Text = Annotated[str, Field(max_length=4000)]
+Row = Annotated[list[Number], Field(min_length=1, max_length=3)]
+
+
+class OutputOptions(Options):
+    """What the numbers of the network mean.
+
+    Without `choices`, a number u is squashed first. With `low` and `high`, or with `limits`, it then becomes
+    low + (u + 1) / 2 (high - low); otherwise it stays as it is, in m/s and rad/s.
+    """
+
+    input: Label
+    """Label of the vector that is the result of the network."""
+    returns: Literal["control", "velocity"] = "control"
+    """Controls of the drive, or a velocity that every drive follows."""
+    frame: Frame = "world"
+    """Frame of the velocity."""
+    squash: Literal["none", "clip", "tanh"] = "none"
+    """Bring the numbers into [-1, 1] by clipping them or by their hyperbolic tangent."""
+    low: Row | None = None
+    """What -1 stands for, one number for each control or for vx and vy."""
+    high: Row | None = None
+    """What 1 stands for."""
+    limits: Bool = False
+    """Take `low` and `high` from the limits of each robot's controls."""
+    increment: Bool = False
+    """Add the result to the present velocity, or to the control executed last."""
+    choices: Annotated[list[Row], Field(min_length=1, max_length=4096)] | None = None
+    """Controls or velocities, of which the one with the largest number is chosen; the first of equal ones."""
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> OutputOptions:
+        if (self.low is None) != (self.high is None):
+            raise problem("policy-file", "'low' and 'high' are given together or not at all", fix="give both")
+        if self.low is not None and self.high is not None and len(self.low) != len(self.high):
+            raise problem("policy-file", "'low' and 'high' have different lengths", fix="one number for each output")
+        if self.limits and (self.low is not None or self.returns == "velocity"):
+            raise problem(
+                "policy-file", "'limits' are those of controls and replace low and high", fix="give one of them"
+            )
+        if self.choices is not None and (self.low is not None or self.limits or self.squash != "none"):
+            raise problem("policy-file", "'choices' are neither squashed nor scaled", fix="remove squash, low and high")
+        if self.choices is not None and len({len(row) for row in self.choices}) > 1:
+            raise problem("policy-file", "the choices have different lengths", fix="one number for each control")
+        if self.frame != "world" and self.returns == "control":
+            raise problem("policy-file", "'frame' is that of a velocity", fix="remove it, or set returns: velocity")
+        return self
+
+
+class Card(Options):
+    """Where a network comes from and what it is good for."""
+
+    description: Text = ""
+    """What the policy does, for people."""
+    license: Text = ""
+    """Licence of the weights, such as an SPDX identifier."""
+    source: Text = ""
+    """Who has made it, or where it is published."""
+    task: Text = ""
+    """What it was trained on: scenario or suite."""
+    protocol: Text = ""
+    """What happens on arrival in the training: `freeze`, `yield` or both."""
+    seeds: Annotated[list[Integer], Field(max_length=1000)] = []
+    """Seeds of the training."""
+    steps: Annotated[Integer, Field(ge=0)] | None = None
+    """Decisions of all robots in the training."""
+    notes: Annotated[dict[Label, Text | Number | Integer | Bool], Field(max_length=100)] = {}
+    """Anything else."""
+
+
+class PolicyHead(Options):
+    """What is said about a network in any format."""
+
+    layout: Layout
+    """What it observes."""
+    output: OutputOptions
+    """What its result means."""
+    drives: Annotated[list[Annotated[str, Field(max_length=64)]], Field(min_length=1, max_length=64)] | None = None
+    """Drives whose controls it returns; null for velocities, which every drive follows."""
+    decision_dt: Annotated[Seconds, Field(gt=0)] | None = None
+    """Time between two decisions; null decides in each step of the simulation."""
+    card: Card = Card()
+    """Where it comes from."""
+
+    @model_validator(mode="after")
+    def _has_drives(self) -> PolicyHead:
+        if self.output.returns == "control" and self.drives is None:
+            message = "'drives' is missing: controls are those of certain drives"
+            raise problem("policy-file", message, fix='add "drives": ["diff"], or return velocities')
+        return self
+
+
+class PolicyDocument(PolicyHead):
+    """A network of the layers of irsim, and all that is needed to let it drive robots."""
+
+    format: Literal["irsim-policy"] = "irsim-policy"
+    """Says that this is a policy of irsim."""
+    version: Literal[1] = 1
+    """Version of the format."""
+    precision: Literal["float32", "float64"] = "float32"
+    """Type of all arrays, and of the arithmetic."""
+    network: Annotated[list[Annotated[LayerOptions, Select(LAYERS)]], Field(min_length=1)]
+    """The layers in the order in which they run."""

@@ -1,0 +1,105 @@
+"""Files of networks in the format ``irsim-policy``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from irsim.common.files import check_suffix, replace_bytes
+from irsim.common.text import clean
+from irsim.policies.networks.archive import pack_arrays, unpack_arrays
+from irsim.policies.networks.document import FORMAT, PolicyDocument
+from irsim.policies.networks.errors import PolicyFileError, Problem
+from irsim.policies.networks.limits import LIMITS, Limits
+from irsim.policies.networks.network import FIX, Network, check_network, read_document
+
+__all__ = ["network_bytes", "parse_json", "read_network", "save_network"]
+
+_DOCUMENT = "policy"
+"""Name of the array that holds the JSON document as UTF-8."""
+
+
+def network_bytes(network: Network, source: str = "network") -> bytes:
+    """The file of a network: the JSON document as an array of bytes, and the arrays by name.
+
+    Args:
+        network: The network.
+        source: Name for messages.
+
+    Raises:
+        PolicyFileError: Its layers, arrays and output do not fit together.
+    """
+    check_network(network, source)
+    data = network.document.model_dump(mode="json")
+    text = json.dumps(data, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    document = np.frombuffer(text.encode(), dtype=np.uint8)
+    return pack_arrays({_DOCUMENT: document, **{name: network.arrays[name] for name in sorted(network.arrays)}})
+
+
+def save_network(path: str | Path, network: Network) -> None:
+    """Write a network to a ``.npz`` file in one step. Equal networks give equal bytes.
+
+    Args:
+        path: The file, which is replaced if it exists; its folder must exist.
+        network: The network.
+
+    Raises:
+        PolicyFileError: Its layers, arrays and output do not fit together.
+        TargetError: The file has another suffix.
+    """
+    path = Path(path)
+    check_suffix(path, [".npz"])
+    replace_bytes(path, network_bytes(network, clean(str(path))), mode=None)
+
+
+def read_network(content: bytes, source: str, limits: Limits = LIMITS) -> Network:
+    """The network of a ``.npz`` file. Nothing is unpickled.
+
+    Args:
+        content: The file.
+        source: Its name for messages.
+        limits: How large it may be.
+
+    Raises:
+        PolicyFileError: It is not valid or over the limits; the error names every place.
+    """
+    arrays = unpack_arrays(content, source, limits)
+    written = arrays.pop(_DOCUMENT, None)
+    if written is None or written.dtype != np.uint8 or written.ndim != 1:
+        missing = Problem(_DOCUMENT, f"the JSON document of format {FORMAT} is missing, which is an array of bytes")
+        fix = "make a network of plain weights with irsim.policies.networks.mlp and write it with save_network"
+        raise PolicyFileError(source, [missing], fix)
+    document = read_document(PolicyDocument, parse_json(written.tobytes(), source, limits), source)
+    network = Network(document, arrays)
+    check_network(network, source, limits)
+    return network
+
+
+def parse_json(text: bytes, source: str, limits: Limits) -> Any:
+    """The data of a JSON text: strict, without keys that are given twice and without NaN.
+
+    Raises:
+        PolicyFileError: It is not valid, or too long.
+    """
+    if len(text) > limits.document_bytes:
+        long = Problem("", "the document is too long", f"{len(text)} bytes", f"up to {limits.document_bytes}")
+        raise PolicyFileError(source, [long], FIX)
+    try:
+        return json.loads(text.decode(), object_pairs_hook=_without_twice, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        broken = Problem("", f"the document is not valid JSON ({clean(str(error), 100)})")
+        raise PolicyFileError(source, [broken], FIX) from None
+
+
+def _without_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        raise ValueError("a key is given twice")
+    return data
+
+
+def _refuse(word: str) -> Any:
+    raise ValueError(f"{word} is no number")

@@ -1,0 +1,94 @@
+"""Layouts: which parts of observations a policy sees, in which order."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from irsim.common.arrays import Floats
+from irsim.options.base import Options, problem
+from irsim.options.selection import Select
+from irsim.policies.networks.features import PARTS
+from irsim.policies.networks.parts._options import PartOptions
+from irsim.policies.networks.values import Shape, Value
+from irsim.policies.observations import Observations
+from irsim.policies.policy import Needs
+
+__all__ = ["LAYOUT_VERSION", "Layout", "layout_bounds", "layout_needs", "layout_shapes", "observe"]
+
+LAYOUT_VERSION = 1
+"""Raised whenever a part gives other numbers for the same options."""
+
+
+class Layout(Options):
+    """The parts that a policy observes."""
+
+    version: Literal[1] = 1
+    """Version of the meaning of the parts."""
+    parts: Annotated[list[Annotated[PartOptions, Select(PARTS)]], Field(min_length=1, max_length=32)]
+    """The parts."""
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Layout:
+        labels = [part.key for part in self.parts]
+        twice = next((label for label in labels if labels.count(label) > 1), None)
+        if twice is not None:
+            raise problem("repeated-value", f"two parts are called '{twice}'", fix="give one of them another label")
+        if len({part.needs().static_neighbors for part in self.parts if part.needs().neighbors}) > 1:
+            raise problem("policy-file", "'static' differs between two parts of neighbors", fix="give both the same")
+        return self
+
+
+def layout_needs(layout: Layout) -> Needs:
+    """What a policy with this layout observes: enough for every part."""
+    needs = [part.needs() for part in layout.parts]
+    seeing = [need for need in needs if need.neighbors]
+    return Needs(
+        neighbors=max((need.neighbors for need in needs), default=0),
+        neighbor_range=max((need.neighbor_range for need in seeing), default=float("inf")),
+        static_neighbors=any(need.static_neighbors for need in needs),
+        scan=any(need.scan for need in needs),
+        map=any(need.map for need in needs),
+        map_resolution=min((need.map_resolution for need in needs if need.map), default=Needs.map_resolution),
+    )
+
+
+def layout_shapes(layout: Layout) -> dict[str, Shape]:
+    """Shape of each part, by its label."""
+    return {part.key: Shape(len(part.channels()), part.members) for part in layout.parts}
+
+
+def layout_bounds(layout: Layout) -> dict[str, tuple[Floats, Floats]]:
+    """Lower and upper bounds of each part, (F,) or (K, F), by its label: for spaces of learning libraries."""
+    bounds = {}
+    for part in layout.parts:
+        low, high = (np.array([channel[side] for channel in part.channels()], dtype=np.float64) for side in (1, 2))
+        if part.members is not None:  # absent members hold zeros
+            size = (part.members, len(low))
+            low, high = (np.broadcast_to(b, size).copy() for b in (np.minimum(low, 0.0), np.maximum(high, 0.0)))
+        bounds[part.key] = (low, high)
+    return bounds
+
+
+def observe(layout: Layout, observations: Observations) -> dict[str, Value]:
+    """The parts of what B robots observe, by their labels.
+
+    Args:
+        layout: The parts.
+        observations: What :func:`layout_needs` declares.
+
+    Returns:
+        (B, F) vectors and (B, K, F) sets of float64.
+
+    Raises:
+        PolicyInputError: Something that a part needs is not observed.
+    """
+    found = {}
+    for part in layout.parts:
+        feature = PARTS.get(part.name)
+        assert feature is not None
+        assert feature.function is not None
+        found[part.key] = feature.function(observations, part)
+    return found

@@ -1,0 +1,125 @@
+"""Networks as policies."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from irsim.common.arrays import Floats
+from irsim.policies.networks.document import PolicyHead
+from irsim.policies.networks.graph import GraphPlan, run_graph
+from irsim.policies.networks.layout import layout_needs, layout_shapes, observe
+from irsim.policies.networks.network import Network
+from irsim.policies.networks.output import decide
+from irsim.policies.networks.slots import Slots
+from irsim.policies.networks.values import Array, Value
+from irsim.policies.policy import Policy
+
+if TYPE_CHECKING:
+    from irsim.policies.observations import Observations
+
+__all__ = ["LayerPolicy", "NetworkPolicy"]
+
+_NUMBERS_AT_ONCE = 500_000
+"""Results of layers that are computed together: as many robots as fit the caches, and never much memory."""
+
+
+class NetworkPolicy(Policy):
+    """A network that observes the parts of a layout.
+
+    One that remembers knows robots by world and index, so one object drives one simulation at a time.
+
+    Args:
+        name: Its name in tables.
+        head: What it observes, and what its result means.
+        facts: What :meth:`describe` adds: format, size, hash.
+    """
+
+    stochastic = False
+    batch_invariant = True
+
+    def __init__(self, name: str, head: PolicyHead, facts: Mapping[str, Any]) -> None:
+        self.name, self.head = name, head
+        self.needs = layout_needs(head.layout)
+        self.output = head.output.returns
+        self.drives = None if head.drives is None else frozenset(head.drives)
+        self.decision_dt = head.decision_dt
+        self.digest = facts.get("sha256")
+        self._facts = dict(facts)
+
+    def act(self, observations: Observations) -> Floats:
+        """Decide for B robots; the decision of each is the same, bit for bit, in any batch.
+
+        Raises:
+            PolicyInputError: The robots do not observe what the network needs.
+        """
+        observed = observe(self.head.layout, observations)
+        return decide(self.head.output, self.compute(observed, observations), observations)
+
+    @abstractmethod
+    def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:
+        """(B, F) result of the network.
+
+        Args:
+            observed: Parts of the layout.
+            observations: What they were made of.
+        """
+
+    def describe(self) -> dict[str, Any]:
+        """Facts for people and programs: plain data for JSON."""
+        head = self.head
+        shapes = layout_shapes(head.layout)
+        parts = [
+            {"label": part.key, "shape": str(shapes[part.key]), **part.model_dump(mode="json", exclude={"label"})}
+            for part in head.layout.parts
+        ]
+        return {
+            "name": self.name,
+            **self._facts,
+            "observes": parts,
+            "layout_version": head.layout.version,
+            "output": head.output.model_dump(mode="json", exclude_defaults=True) | {"returns": self.output},
+            "drives": None if self.drives is None else sorted(self.drives),
+            "decision_dt": self.decision_dt,
+            "card": head.card.model_dump(mode="json", exclude_defaults=True),
+        }
+
+
+class LayerPolicy(NetworkPolicy):
+    """A network of the layers of irsim.
+
+    Args:
+        name: Its name in tables.
+        network: The network.
+        plan: What its layers need.
+        facts: What :meth:`describe` adds.
+    """
+
+    def __init__(self, name: str, network: Network, plan: GraphPlan, facts: Mapping[str, Any] | None = None) -> None:
+        document = network.document
+        size = {"parameters": plan.parameters, "work": plan.work, "memory": sum(plan.memory.values())}
+        layers = [f"{layer.label}: {layer.name} ({plan.shapes[layer.label]})" for layer in document.network]
+        super().__init__(name, document, {**(facts or {}), **size, "precision": document.precision, "layers": layers})
+        self._network, self._arrays = network, network.by_layer()
+        self._dtype = np.dtype(document.precision)
+        self._rows = max(1, _NUMBERS_AT_ONCE // max(1, plan.numbers))
+        self._slots = Slots(plan.memory, self._dtype) if plan.memory else None
+
+    def compute(self, observed: Mapping[str, Value], observations: Observations) -> Array:
+        """(B, F) result of the layers."""
+        values = {label: Value(value.array.astype(self._dtype), value.mask) for label, value in observed.items()}
+        rows, memory = (None, {}) if self._slots is None else self._slots.recall(observations)
+        results = []
+        with np.errstate(all="ignore"):  # what is not finite is reported where the result is used
+            for first in range(0, max(len(observations), 1), self._rows):
+                some = slice(first, first + self._rows)
+                seen = {label: value.rows(some) for label, value in values.items()}
+                kept = {label: state[some] for label, state in memory.items()}  # views, which layers write
+                document = self._network.document
+                results.append(run_graph(document.network, self._arrays, seen, kept, document.output.input).array)
+        if self._slots is not None and rows is not None:
+            self._slots.store(rows, memory)
+        return np.concatenate(results)

@@ -1,0 +1,140 @@
+"""``neighbors``: the nearest other objects."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from irsim.options.units import Bool, Integer, Meters, MetersPerSecond
+from irsim.policies.networks.errors import PolicyInputError
+from irsim.policies.networks.features import PARTS
+from irsim.policies.networks.frames import Frame, direction, length, turn_back, x_axis
+from irsim.policies.networks.parts._options import PartOptions, clip_to, select, unique
+from irsim.policies.networks.values import Channel, Value, apply
+from irsim.policies.observations import Observations
+from irsim.policies.policy import Needs
+
+Feature = Literal[
+    "x", "y", "vx", "vy", "heading_cos", "heading_sin", "radius", "radii", "distance", "gap", "nearness",
+    "goal_distance", "arrived", "robot", "present",
+]  # fmt: skip
+_ZERO_TO_ONE = ("radius", "radii", "distance", "goal_distance")
+_SHARES = ("nearness", "arrived", "robot", "present")
+
+
+class NeighborsPart(PartOptions):
+    """The nearest other objects: a set of `count` members, nearest first. Absent members are masked and hold zeros.
+
+    - `x`, `y`: position / `distance_max`
+    - `vx`, `vy`: velocity / `speed_max`
+    - `heading_cos`, `heading_sin`: direction of the heading
+    - `radius`: radius of the bounding circle / `radius_max`; `radii`: the sum of both radii / `radius_max`
+    - `distance`: between the centers / `distance_max`; `gap`: between the bounding circles / `distance_max`
+    - `nearness`: exp(-gap / `decay`), 1 for circles that overlap
+    - `goal_distance`: from the neighbor to the robot's own goal / `distance_max`; 0 without a goal
+    - `arrived`: 1 for a robot that has reached its last goal; `robot`: 1 for a robot; `present`: 1
+    """
+
+    schema_extra: ClassVar[dict[str, Any]] = {"examples": [{"name": "neighbors", "count": 6, "range": 4.0}]}
+
+    name: Literal["neighbors"] = "neighbors"
+    features: Annotated[list[Feature], Field(min_length=1), AfterValidator(unique)] = [
+        "x", "y", "vx", "vy", "radius", "gap", "nearness", "arrived", "robot",
+    ]  # fmt: skip
+    """The numbers of each neighbor, in this order."""
+    count: Annotated[Integer, Field(ge=1, le=256)] = 6
+    """Largest number of neighbors."""
+    range: Annotated[Meters, Field(gt=0)] | None = None
+    """Others with a larger gap between the bounding circles are not seen; null sees everything."""
+    static: Bool = False
+    """Whether static objects count, each as its bounding circle."""
+    nearest_last: Bool = False
+    """Order the members from the farthest to the nearest, after the absent ones."""
+    frame: Frame = "own"
+    """Frame of positions, velocities and headings."""
+    relative_velocity: Bool = True
+    """Subtract the robot's own velocity."""
+    distance_max: Annotated[Meters, Field(gt=0)] = 4.0
+    """Distance that becomes 1."""
+    speed_max: Annotated[MetersPerSecond, Field(gt=0)] = 1.0
+    """Speed that becomes 1."""
+    radius_max: Annotated[Meters, Field(gt=0)] = 1.0
+    """Radius that becomes 1."""
+    decay: Annotated[Meters, Field(gt=0)] = 1.0
+    """Gap at which `nearness` is 1/e."""
+    clip: Bool = True
+    """Whether all numbers are clipped to 1."""
+
+    @property
+    def members(self) -> int:
+        """The largest number of neighbors."""
+        return self.count
+
+    def needs(self) -> Needs:
+        """Neighbors."""
+        reach = math.inf if self.range is None else self.range
+        return Needs(neighbors=self.count, neighbor_range=reach, static_neighbors=self.static)
+
+    def channels(self) -> tuple[Channel, ...]:
+        """One for each feature."""
+        most = 1.0 if self.clip else math.inf
+        bounds = dict.fromkeys(_ZERO_TO_ONE, (0.0, most)) | dict.fromkeys(_SHARES, (0.0, 1.0))
+        bounds |= dict.fromkeys(("heading_cos", "heading_sin"), (-1.0, 1.0))
+        return tuple(Channel(name, *bounds.get(name, (-most, most))) for name in self.features)
+
+
+@PARTS.register(NeighborsPart)
+def neighbors(observations: Observations, options: NeighborsPart) -> Value:
+    """Observe the neighbors.
+
+    Args:
+        observations: Of B robots, with at least ``count`` neighbors.
+        options: The options of the part.
+
+    Returns:
+        (B, K, F) features and the (B, K) mask.
+
+    Raises:
+        PolicyInputError: The observations hold no or fewer neighbors.
+    """
+    seen, count = observations.neighbors, options.count
+    if seen is None or seen.mask.shape[1] < count:
+        there = 0 if seen is None else seen.mask.shape[1]
+        raise PolicyInputError(f"the network observes {count} neighbors, not {there}", "observe what `needs` declares")
+    axis = x_axis(options.frame, observations)[:, None]
+    away = seen.position[:, :count] - observations.pose[:, None, :2]
+    distance = length(away)
+    radius = seen.radius[:, :count]
+    radii = radius + observations.radius[:, None]
+    gap = distance - radii
+    mask = seen.mask[:, :count] & (gap <= (math.inf if options.range is None else options.range))
+    moving = seen.velocity[:, :count]
+    velocity = turn_back(moving - observations.velocity[:, None] if options.relative_velocity else moving, axis)
+    position = turn_back(away, axis)
+    facing = np.clip(turn_back(direction(seen.heading[:, :count]), axis), -1.0, 1.0)
+    goal = observations.goal[:, None, :2]
+    to_goal = np.where(np.isfinite(goal).all(axis=2), length(goal - seen.position[:, :count]), 0.0)
+    far, clip = options.distance_max, options.clip
+    columns = {
+        "x": clip_to(position[..., 0], far, clip),
+        "y": clip_to(position[..., 1], far, clip),
+        "vx": clip_to(velocity[..., 0], options.speed_max, clip),
+        "vy": clip_to(velocity[..., 1], options.speed_max, clip),
+        "heading_cos": facing[..., 0],
+        "heading_sin": facing[..., 1],
+        "radius": clip_to(radius, options.radius_max, clip),
+        "radii": clip_to(radii, options.radius_max, clip),
+        "distance": clip_to(distance, far, clip),
+        "gap": clip_to(gap, far, clip),
+        "nearness": apply("exp", -np.maximum(gap, 0.0) / options.decay),
+        "goal_distance": clip_to(to_goal, far, clip),
+        "arrived": seen.arrived[:, :count].astype(np.float64),
+        "robot": seen.robot[:, :count].astype(np.float64),
+        "present": np.ones(mask.shape),
+    }
+    members = np.where(mask[:, :, None], select(columns, options.features), 0.0)
+    step = -1 if options.nearest_last else 1
+    return Value(members[:, ::step], mask[:, ::step])

@@ -1,0 +1,99 @@
+"""What flows through a network: arrays of one row per robot, and sets with a mask."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import irsim._core as core
+
+__all__ = ["Array", "Channel", "Shape", "Value", "add_in_order", "apply"]
+
+Array = NDArray[Any]
+"""Array of float32 or float64."""
+
+
+class Channel(NamedTuple):
+    """One number of an observation.
+
+    Attributes:
+        name: What it is.
+        low, high: Bounds.
+    """
+
+    name: str
+    low: float
+    high: float
+
+
+class Shape(NamedTuple):
+    """Shape of a value without its rows of robots.
+
+    Attributes:
+        features: Number of features.
+        members: Number of members of a set; None for one vector.
+    """
+
+    features: int
+    members: int | None = None
+
+    def __str__(self) -> str:
+        return f"{self.features}" if self.members is None else f"{self.members} x {self.features}"
+
+
+@dataclass(frozen=True)
+class Value:
+    """A vector or a set for each of B robots.
+
+    Attributes:
+        array: (B, F) vectors, or (B, K, F) sets.
+        mask: (B, K) which members of the sets are present; None for vectors. Absent members may hold any number.
+    """
+
+    array: Array
+    mask: NDArray[np.bool_] | None = None
+
+    @property
+    def shape(self) -> Shape:
+        """Its shape without the rows of robots."""
+        return Shape(self.array.shape[-1], None if self.mask is None else self.array.shape[1])
+
+    def rows(self, some: slice) -> Value:
+        """The value of some of the robots."""
+        return Value(self.array[some], None if self.mask is None else self.mask[some])
+
+    def flags(self) -> NDArray[np.uint8] | None:
+        """The mask as the core takes it."""
+        return None if self.mask is None else np.ascontiguousarray(self.mask).view(np.uint8)
+
+    def flat(self) -> Array:
+        """(B, F) or (B, K F) features of all members one after the other, with zeros for absent ones."""
+        rows, *sides = self.array.shape
+        return self.present().reshape(rows, math.prod(sides))
+
+    def present(self) -> Array:
+        """The array with zeros for absent members."""
+        return self.array if self.mask is None else np.where(self.mask[:, :, None], self.array, 0)
+
+
+def apply(name: str, array: Array) -> Array:
+    """A function of the core, element by element.
+
+    NumPy's own exponential and trigonometric functions have other last bits on other processors.
+    """
+    result: Array = core.elementwise(name, np.ascontiguousarray(array).reshape(-1)).reshape(array.shape)
+    return result
+
+
+def add_in_order(arrays: Iterable[Array]) -> Array:
+    """The sum of arrays of equal shape, added one after the other; ``np.sum`` has an order for each shape."""
+    first, *others = arrays
+    total = first.copy()
+    for array in others:
+        total += array
+    return total

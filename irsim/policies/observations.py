@@ -1,0 +1,124 @@
+"""What policies observe: arrays over all robots that decide in a step, in all worlds at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from irsim.common.arrays import Floats
+
+__all__ = ["Map", "Neighbors", "Observations", "Scan"]
+
+
+@dataclass(frozen=True)
+class Neighbors:
+    """The K nearest other objects of each of B robots, nearest first by the distance of the bounding circles.
+
+    They are the moving objects whose role the robot targets (``target_roles``) and, if the policy asks for them, static
+    objects; unobstructed static ones, the map and the walls round the world are not among them. Rows of absent
+    neighbors (``mask`` False) hold zeros.
+
+    Attributes:
+        mask: (B, K) whether there is such a neighbor.
+        index: (B, K) index of the object in its world; -1 where there is none.
+        position: (B, K, 2) x, y of the center of the bounding circle [m], world frame.
+        heading: (B, K) [rad], world frame.
+        velocity: (B, K, 2) true velocity [m/s], world frame.
+        radius: (B, K) radius of the bounding circle [m].
+        arrived: (B, K) whether the neighbor is a robot that has reached its last goal.
+        robot: (B, K) whether the neighbor is a robot.
+    """
+
+    mask: NDArray[np.bool_]
+    index: NDArray[np.int64]
+    position: Floats
+    heading: Floats
+    velocity: Floats
+    radius: Floats
+    arrived: NDArray[np.bool_]
+    robot: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Scan:
+    """Ranges of the first lidar of each of B robots.
+
+    Attributes:
+        ranges: (B, n) [m]; a beam that hits nothing has the range ``range_max``.
+        angles: (n,) direction of each beam in the frame of the robot [rad].
+        range_max: Largest range [m].
+    """
+
+    ranges: Floats
+    angles: Floats
+    range_max: float
+
+
+class Map(Protocol):
+    """The static objects of a world as a grid."""
+
+    @property
+    def occupied(self) -> NDArray[np.bool_]:
+        """(nx, ny) whether a static object touches the cell."""
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """Corner of the cell (0, 0) with the smallest x and y [m], world frame."""
+
+    @property
+    def resolution(self) -> float:
+        """Side of a cell [m]."""
+
+
+@dataclass(frozen=True)
+class Observations:
+    """What B robots know when they decide; row b is one robot of one world.
+
+    Neighbors, scans and maps are present only if the policy needs them (:class:`irsim.policies.Needs`).
+
+    Attributes:
+        world: (B,) index of the world of each robot, as in :meth:`irsim.policies.Policy.reset`.
+        robot: (B,) index of the robot among the objects of its world.
+        first: (B,) whether this is the robot's first decision of an episode.
+        time: (B,) simulated time [s].
+        step_time: Period of the simulation [s].
+        pose: (B, 3) x, y [m], heading [rad], world frame.
+        steering: (B,) steering angle [rad]; 0 for drives that do not steer.
+        velocity: (B, 2) true velocity [m/s], world frame.
+        yaw_rate: (B,) [rad/s].
+        control: (B, 3) control executed in the last step, in the command frame of each drive, zero padded.
+        goal: (B, 3) present goal: x, y [m], heading [rad], world frame; NaN without one.
+        goal_threshold: (B,) distance to the goal below which a robot has arrived [m].
+        radius: (B,) radius of the bounding circle [m].
+        low, high: (B, 3) limits of the controls, zero padded.
+        arrived: (B,) whether the robot has reached its last goal and is still controlled.
+        neighbors: The nearest other objects.
+        scan: Ranges of a lidar.
+        maps: One map per row; rows of one world share it.
+    """
+
+    world: NDArray[np.int64]
+    robot: NDArray[np.int64]
+    first: NDArray[np.bool_]
+    time: Floats
+    step_time: float
+    pose: Floats
+    steering: Floats
+    velocity: Floats
+    yaw_rate: Floats
+    control: Floats
+    goal: Floats
+    goal_threshold: Floats
+    radius: Floats
+    low: Floats
+    high: Floats
+    arrived: NDArray[np.bool_]
+    neighbors: Neighbors | None = None
+    scan: Scan | None = None
+    maps: tuple[Map, ...] | None = None
+
+    def __len__(self) -> int:
+        return len(self.world)

@@ -1,0 +1,118 @@
+"""The interface of everything that decides for robots."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from irsim.common.arrays import Floats
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from irsim.policies.observations import Observations
+
+__all__ = ["Episode", "Needs", "Output", "Policy"]
+
+Output = Literal["control", "velocity"]
+"""What a policy returns: controls of the drive, or velocities in the world frame, which every drive follows."""
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What a policy observes besides the state and the goal of the robot itself.
+
+    Attributes:
+        neighbors: Number of nearest other objects; 0 for none.
+        neighbor_range: Distance beyond which others are not seen [m], between bounding circles.
+        static_neighbors: Whether static objects count as neighbors; each is then seen as its bounding circle.
+        scan: Whether it needs the ranges of a lidar; every robot must then carry one, with equal beams.
+        beams: Number of beams that this lidar must have; None: any.
+        map: Whether it needs the grid of static objects.
+        map_resolution: Side of the cells of this grid [m]; larger in worlds that have more than 4 million such cells.
+    """
+
+    neighbors: int = 0
+    neighbor_range: float = float("inf")
+    static_neighbors: bool = False
+    scan: bool = False
+    beams: int | None = None
+    map: bool = False
+    map_resolution: float = 0.1
+
+
+@dataclass(frozen=True)
+class Episode:
+    """What a policy learns at the start of an episode.
+
+    Attributes:
+        world: Index of the world among those that run together. Where a policy of controls drives robots with different
+            drives, those of each drive have an index of their own, as if they were in another world.
+        robots: Indices of the robots that the policy drives, among the objects of the world.
+        step_time: Period of the simulation [s].
+        decision_steps: Number of steps between two decisions.
+        drive: Name of the drive of these robots; ``mixed`` where robots with different drives follow velocities.
+    """
+
+    world: int
+    robots: tuple[int, ...]
+    step_time: float
+    decision_steps: int
+    drive: str
+
+
+class Policy(ABC):
+    """Decides for all robots of all worlds that run together.
+
+    What a policy does in one world must not depend on the other worlds: whatever it remembers belongs to a world.
+
+    Attributes:
+        name: Name in tables.
+        needs: What it observes.
+        output: What :meth:`act` returns.
+        drives: Names of the drives that it can control; None: all of them (for ``output = "velocity"``).
+        decision_dt: Time between two decisions [s]; None: every step. Rounded to whole steps, at least one. The robot
+            keeps its control (or follows its velocity) in between.
+        stochastic: Whether its decisions may differ between seeds where everything else is equal. A benchmark runs a
+            deterministic policy only once in a scenario that leaves nothing to chance.
+        batch_invariant: Whether its decision for a robot has the same bits whatever other robots a call decides for.
+            Benchmarks then step many worlds at once; else one after another.
+        text: How it is written in commands, such as ``orca`` or ``model.npz``; None: only this program has it.
+        source: What opens it again in another folder, with the full path of its file; None as for ``text``.
+        digest: SHA-256 of the file that it was read from; None without one.
+    """
+
+    name: str
+    needs: Needs = Needs()
+    output: Output = "control"
+    drives: frozenset[str] | None = None
+    decision_dt: float | None = None
+    stochastic: bool = True
+    batch_invariant: bool = False
+    text: str | None = None
+    source: str | None = None
+    digest: str | None = None
+
+    def reset(self, episode: Episode, rng: np.random.Generator) -> None:  # noqa: B027 - most policies remember nothing
+        """Begin an episode in one world.
+
+        Args:
+            episode: The world and the robots in it.
+            rng: The policy's own random stream in this world and episode; the scenario never draws from it.
+        """
+
+    @abstractmethod
+    def act(self, observations: Observations) -> Floats:
+        """Decide for all robots that need a decision now.
+
+        Robots that stand still because of a collision, because they have arrived for good or because their start is
+        delayed, and those that the caller steers, are not among them.
+
+        Args:
+            observations: What these B robots observe.
+
+        Returns:
+            (B, 2) velocities in the world frame [m/s] for ``output = "velocity"``; else (B, C) controls in the command
+            frame of the drive, with at least as many columns as it has controls. Limits are applied by the simulation.
+        """

@@ -1,0 +1,1 @@
+"""Results of bundled suites, kept to notice when a change of the code changes a published number."""

@@ -1,0 +1,59 @@
+"""The kept results of suites: parts of them are run again, and every number must be the same."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.suite_files import suite_names
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.results.suite import SuiteResult
+from tests.benchmarks.reference.write import FOLDER, PAGES, lines_of
+
+KEPT = sorted(path.stem for path in FOLDER.glob("*.csv"))
+
+
+def rerun(suite: str, folder: Path, seeds: int) -> None:
+    """Run the first seeds of a suite again, and compare each episode with the kept one."""
+    result = run_plan(suite_plan(suite, seeds=seeds), folder)
+    assert isinstance(result, SuiteResult)
+    labels = {text: name for name, text in result.policies.items()}
+    kept = set((FOLDER / f"{suite}.csv").read_text(encoding="utf-8").splitlines())
+    found = lines_of(result.episodes, labels)
+    assert len(found) == len(result.scenarios) * len(result.behaviors) * seeds
+    assert [line for line in found if line not in kept] == []
+
+
+@pytest.mark.parametrize("suite", KEPT)
+def test_first_episodes_are_the_kept_ones(suite: str, tmp_path: Path) -> None:
+    rerun(suite, tmp_path / "again", 1)
+
+
+@pytest.mark.slow(15)
+@pytest.mark.parametrize("suite", KEPT)
+def test_many_episodes_are_the_kept_ones(suite: str, tmp_path: Path) -> None:
+    rerun(suite, tmp_path / "again", 12)
+
+
+@pytest.mark.parametrize("suite", KEPT)
+def test_the_table_counts_the_kept_episodes(suite: str) -> None:
+    page = (PAGES / f"{suite}.md").read_text(encoding="utf-8")
+    assert suite in suite_names()
+    assert f"content hash {suite_plan(suite).hash}, " in page
+    with (FOLDER / f"{suite}.csv").open(encoding="utf-8") as file:
+        outcomes: dict[tuple[str, str], Counter[str]] = {}
+        for row in csv.DictReader(file):
+            outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1
+    for (scenario, policy), count in outcomes.items():
+        [shares] = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
+        cells = shares.split(" | ")
+        n = int(cells[0])
+        found = [int(cell.split("%")[0]) for cell in cells[1:4]]
+        placed = sum(count.values()) - count["placement-crowded"]
+        wanted = [float(f"{100 * count[name] / n:.0f}") for name in ("success", "collision", "timeout")]
+        assert (n, found) == (placed, wanted), (scenario, policy)
