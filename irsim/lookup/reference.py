@@ -24,6 +24,8 @@ __all__ = ["SKILLS", "compatibility", "main", "out_of_date"]
 SCENARIO = "irsim-scenario"
 SKILLS: dict[str, Callable[[], dict[str, str]]] = {SCENARIO: pages, **PACKS}
 """Skill -> function that returns its pages."""
+_BY_HAND = {"irsim-benchmark": ("cluster.md",)}
+"""Skill -> pages in the same folder that people write."""
 
 
 def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
@@ -35,7 +37,8 @@ def out_of_date(folder: Path, skill: str = SCENARIO) -> list[Path]:
     """
     wanted = {folder / f"{name}.md": text for name, text in SKILLS[skill]().items()}
     stale = [path for path, text in wanted.items() if not path.is_file() or path.read_text(encoding="utf-8") != text]
-    return stale + sorted(set(folder.glob("*")) - set(wanted))
+    by_hand = {folder / name for name in _BY_HAND.get(skill, ())}
+    return stale + sorted(set(folder.glob("*")) - set(wanted) - by_hand)
 
 
 def compatibility() -> dict[Path, str]:

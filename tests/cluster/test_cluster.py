@@ -93,7 +93,7 @@ def test_a_node_that_is_killed_in_the_middle_changes_nothing(folder: Path, clust
         counts.append((done, total))
 
     found = files_of("run", cluster.address, then=kill)
-    cluster.nodes.append(cluster.cluster.add_node(num_cpus=1))
+    cluster.nodes.append(cluster.cluster.add_node(num_cpus=2))
     assert 0 < counts[0][0] < counts[-1][0] == 2 * SEEDS
     assert found == files_of("local", workers=1)
 

@@ -16,6 +16,7 @@ import pytest
 import yaml
 
 import irsim
+from irsim.benchmarks.suite_plan import suite_plan
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
 from irsim.metrics.statistics import wilson
 from tests.skills.conftest import ROOT, execute, fences, parts, spans
@@ -98,6 +99,27 @@ def test_the_table_of_seeds_is_wilsons() -> None:
         assert [round(100 * end) for end in wilson(n // 2, n)] == [int(low), int(high)]
         assert 100 * wilson(0, n)[1] == pytest.approx(float(most), abs=0.5 if float(most) > 10 else 0.06)
     assert [round(100 * end) for end in wilson(7, 10)] == [40, 89]
+
+
+def test_the_cost_of_suites_on_a_cluster_is_that_of_their_episodes() -> None:
+    page = (SKILL / "references" / "cluster.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| ([\d.]+) \| ([\d.]+) \| ([\d,]+) \| ([\d.]+) \|$", page, re.MULTILINE)
+    assert len(rows) >= 5
+    for name, seconds, hours, episodes, total in rows:
+        plan = suite_plan(name, full=True)
+        count = len(plan.scenarios) * len(plan.policies) * len(plan.seeds)
+        assert int(episodes.replace(",", "")) == count
+        assert float(hours) == pytest.approx(1000 * float(seconds) / 3600, abs=6e-4)
+        assert float(total) == pytest.approx(count * float(seconds) / 3600, abs=6e-3)
+
+
+def test_options_on_the_page_about_clusters_exist() -> None:
+    page = (SKILL / "references" / "cluster.md").read_text(encoding="utf-8")
+    known = execute(["irsim", "benchmark", "--help"], ROOT)
+    lines = [line.partition("irsim benchmark")[2] for line in page.splitlines() if "irsim benchmark" in line]
+    options = {word for line in lines for word in re.findall(r"--[a-z]+", line)}
+    assert {"--cluster", "--resume", "--full"} <= options
+    assert [option for option in options if option not in known] == []
 
 
 def test_the_example_of_what_to_say_is_the_one_of_the_examples() -> None:
