@@ -109,7 +109,8 @@ def logged(file: str | Path) -> BenchmarkResult:
 
 def as_log(result: BenchmarkResult) -> str:
     """The log of a finished benchmark, with its episodes in order."""
-    head = result.model_copy(update={"episodes": [], "rows": [], "notes": []})
+    fields = {name: getattr(result, name) for name in BenchmarkResult.model_fields}  # of a suite, too
+    head = BenchmarkResult.model_construct(**{**fields, "episodes": [], "rows": [], "notes": []})
     lines = [head.model_dump_json(), *(_line(number, row) for number, row in enumerate(result.episodes))]
     return "".join(f"{line}\n" for line in lines)
 

@@ -26,7 +26,17 @@ from irsim.results.suite import SuiteResult, SuiteScenarioFacts
 from irsim.runs.files import RunError
 from irsim.scenario.limits import Limits
 
-__all__ = ["EPISODES", "PLAN", "RESULTS", "TIMING", "default_folder", "last_folder", "resume_benchmark", "run_plan"]
+__all__ = [
+    "EPISODES",
+    "PLAN",
+    "RESULTS",
+    "TIMING",
+    "default_folder",
+    "last_folder",
+    "measure_plan",
+    "resume_benchmark",
+    "run_plan",
+]
 
 EPISODES, PLAN, RESULTS, TIMING = "episodes.jsonl", "plan.json", "results.json", "timing.json"
 """Files in the folder of a benchmark: its episodes, everything that decides its numbers, its result, and how long
@@ -86,30 +96,50 @@ def run_plan(
     with _alone_in(folder):
         _prepare(plan, folder, resume)
         timing: dict[str, Any] = {}
-        found = benchmark(
-            {scenario.name: scenario.document() for scenario in plan.scenarios},
-            plan.opened(),
-            plan.seeds,
-            perturb=plan.perturb,
-            steps=plan.steps,
-            strict=plan.strict,
-            imports=plan.imports,
+        result = measure_plan(
+            plan,
             workers=workers,
             cluster=cluster,
             limits=limits,
             progress=progress,
             log=folder / EPISODES,
             resume=resume,
-            until=plan.until,
             timing=timing,
         )
         _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
-        result = _result(plan, found)
-        _write(folder / EPISODES, as_log(found))
+        _write(folder / EPISODES, as_log(result))
         _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
         if finish is not None:
             finish(result, folder)
     return result
+
+
+def measure_plan(plan: Plan, **options: Any) -> BenchmarkResult:
+    """Run a plan; it is written nowhere.
+
+    Args:
+        plan: What is run.
+        **options: ``workers``, ``cluster``, ``limits``, ``progress``, ``log``, ``resume`` and ``timing`` of
+            :func:`irsim.benchmark`.
+
+    Returns:
+        The result; a :class:`irsim.results.suite.SuiteResult` of a suite.
+
+    Raises:
+        Others: as :func:`irsim.benchmark`.
+    """
+    found = benchmark(
+        {scenario.name: scenario.document() for scenario in plan.scenarios},
+        plan.opened(),
+        plan.seeds,
+        perturb=plan.perturb,
+        steps=plan.steps,
+        strict=plan.strict,
+        imports=plan.imports,
+        until=plan.until,
+        **options,
+    )
+    return _result(plan, found)
 
 
 def resume_benchmark(

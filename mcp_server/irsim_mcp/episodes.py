@@ -10,7 +10,7 @@ from irsim.common.text import clean
 from irsim.results.labels import CROWDED
 from irsim_mcp.errors import failure
 
-__all__ = ["call_to_repeat", "check_finished", "episodes_table"]
+__all__ = ["call_to_repeat", "check_finished", "episodes_table", "policy_names"]
 
 _COLUMNS = ("scenario", "behavior", "seed", "outcome", "time", "steps", "path_length", "min_clearance", "failed")
 _MAX_FAILURES = 3
@@ -42,12 +42,10 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
     Raises:
         ToolError: The cursor is invalid.
     """
-    from irsim.results.labels import labels_of
-
     result = state["result"]
     episodes = sorted(result["episodes"], key=lambda episode: episode["outcome"] == "success")
     start = _start(cursor, len(episodes))
-    labels = labels_of(result["behaviors"])
+    labels = policy_names(result)
     rows = [_row(episode, labels) for episode in episodes[start : start + limit]]
     lost = [episode for episode in episodes if episode["outcome"] not in ("success", CROWDED)]
     crowded = sum(episode["outcome"] == CROWDED for episode in episodes)
@@ -69,9 +67,17 @@ def episodes_table(state: Mapping[str, Any], limit: int, cursor: str | None) -> 
     }
 
 
+def policy_names(result: Mapping[str, Any]) -> dict[str, str]:
+    """Text of each policy → its short name, that of the suite if it has one."""
+    from irsim.results.labels import labels_of
+
+    return labels_of(result["behaviors"]) | {text: name for name, text in result.get("policies", {}).items()}
+
+
 def call_to_repeat(result: Mapping[str, Any], episode: Mapping[str, Any]) -> str:
     """The call that runs an episode again; a placeholder stands for a scenario that was given as text."""
     name, behavior = episode["scenario"], episode["behavior"]
+    name = f"{result['suite']}/{name}" if result.get("suite") else name
     steps = re.search(r" --steps (\d+)", result["reproduce"])
     text = re.fullmatch(r"\(text(?: (\d+))?\)", name)
     if text is None:

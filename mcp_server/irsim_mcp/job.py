@@ -217,6 +217,12 @@ def _benchmark(job: dict[str, Any], progress: _Progress) -> str:
     from irsim.benchmarks import benchmark
 
     arguments = job["arguments"]
+    if "plan" in arguments:
+        from irsim.benchmarks.plan import Plan
+        from irsim.benchmarks.stored import measure_plan
+
+        plan = Plan.model_validate(arguments["plan"])
+        return measure_plan(plan, log=arguments["log"], limits=_limits(job), progress=progress).model_dump_json()
     return benchmark(**arguments, strict=True, limits=_limits(job), progress=progress).model_dump_json()
 
 

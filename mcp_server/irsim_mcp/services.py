@@ -13,6 +13,7 @@ from irsim_mcp.jobs import Jobs
 from irsim_mcp.json_answer import Found
 from irsim_mcp.limits import MAX_SEED, ServerLimits
 from irsim_mcp.sandbox import Workspace
+from irsim_mcp.suites import scenario_of_suite
 from irsim_mcp.worker import Progress, Workers
 
 __all__ = ["RunId", "ScenarioPath", "ScenarioYaml", "Seed", "Services", "line_of"]
@@ -154,17 +155,20 @@ class Services:
             fix = "give scenario_yaml (the YAML text) or scenario_path (a file in the workspace), and only one of them"
             raise failure("bad-argument", f"{given} given", fix=fix)
         if scenario_path:
-            return {"path": self.workspace.scenario(scenario_path)}
+            text = scenario_of_suite(scenario_path, "scenario_path")
+            return {"path": self.workspace.scenario(scenario_path)} if text is None else {"text": text}
         assert scenario_yaml
         return {"text": self._text(scenario_yaml, "scenario_yaml")}
 
     def scenario_source(self, given: str, argument: str = "scenarios") -> str:
-        """Check a scenario given as a file of the workspace or, with a line break, as text.
+        """Check a scenario given as a file of the workspace, as ``SUITE/SCENARIO`` or, with a line break, as text.
 
         Raises:
             ToolError: The path is refused, or the text too large.
         """
-        return self._text(given, argument) if "\n" in given else self.workspace.scenario(given, argument)
+        if "\n" in given:
+            return self._text(given, argument)
+        return scenario_of_suite(given, argument) or self.workspace.scenario(given, argument)
 
     def _text(self, text: str, argument: str) -> str:
         size = len(text.encode("utf-8", "replace"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import anyio
 from mcp.server.mcpserver import Context
@@ -11,9 +11,10 @@ from mcp.types import CallToolResult, TextContent
 from pydantic import BaseModel, ConfigDict, Field
 
 from irsim.common.text import clean
-from irsim.results.labels import CROWDED, labels_of, seeds_of
+from irsim.diagnostics.errors import CodedError
+from irsim.results.labels import CROWDED, seeds_of
 from irsim.runs.store import RESULT
-from irsim_mcp.episodes import call_to_repeat
+from irsim_mcp.episodes import call_to_repeat, policy_names
 from irsim_mcp.errors import failure
 from irsim_mcp.jobs import PARTIAL
 from irsim_mcp.limits import (
@@ -27,7 +28,11 @@ from irsim_mcp.limits import (
 )
 from irsim_mcp.progress import reporter
 from irsim_mcp.services import Services, line_of
+from irsim_mcp.suites import plan_of
 from irsim_mcp.tool import StrictTool, strict
+
+if TYPE_CHECKING:
+    from irsim.benchmarks.plan import Plan
 
 __all__ = ["Benchmark", "answer", "tool"]
 
@@ -79,7 +84,8 @@ def tool(services: Services) -> StrictTool:
     async def benchmark(
         ctx: Context[Any, Any],
         scenarios: Annotated[
-            list[str], Field(description=f"1-{MAX_SCENARIOS} scenario files of the workspace, or YAML texts.")
+            list[str],
+            Field(description=f"1-{MAX_SCENARIOS} files of the workspace, YAML texts, or a suite (lookup suites)."),
         ],
         policies: Annotated[
             list[str] | None,
@@ -101,20 +107,10 @@ def tool(services: Services) -> StrictTool:
         max_steps: Annotated[int | None, Field(ge=1, le=MAX_STEPS, description="Default: the time limit.")] = None,
         wait_s: Annotated[int, Field(ge=0, le=MAX_WAIT_SECONDS)] = 45,
     ) -> Annotated[CallToolResult, Benchmark]:
-        chosen = policies or ["as-written"]
-        _check(scenarios, chosen, seeds, first_seed)
-        files = [services.scenario_source(item) for item in scenarios]
-        job = services.jobs.start(
-            "benchmark",
-            {
-                "files": files,
-                "policies": chosen,
-                "seeds": list(range(first_seed, first_seed + seeds)),
-                "perturb": perturb,
-                "steps": max_steps,
-            },
-            len(scenarios) * len(chosen) * seeds,
+        arguments, total = await anyio.to_thread.run_sync(
+            _work, services, scenarios, policies, seeds, first_seed, perturb, max_steps
         )
+        job = services.jobs.start("benchmark", arguments, total)
         try:
             state = await services.jobs.wait(job, wait_s, reporter(ctx, "episodes"))
         except anyio.get_cancelled_exc_class():
@@ -130,22 +126,71 @@ def tool(services: Services) -> StrictTool:
     )  # fmt: skip
 
 
+def _work(
+    services: Services,
+    scenarios: Sequence[str],
+    policies: Sequence[str] | None,
+    seeds: int,
+    first: int,
+    perturb: str | None,
+    steps: int | None,
+) -> tuple[dict[str, Any], int]:
+    """The arguments of the job, and its number of episodes."""
+    plan = _plan(services, scenarios, policies, seeds, first)
+    if plan is not None:
+        changes = {"perturb": [perturb]} if perturb else {}
+        if steps is not None:
+            what = "a suite has its own horizon"
+            raise failure("bad-argument", what, where="max_steps", fix="leave max_steps out")
+        total = len(plan.scenarios) * len(plan.policies) * seeds
+        return {"plan": plan.model_copy(update=changes).model_dump(mode="json")}, total
+    chosen = policies or ["as-written"]
+    _check(scenarios, chosen, seeds, first)
+    files = [services.scenario_source(item) for item in scenarios]
+    wanted = list(range(first, first + seeds))
+    arguments = {"files": files, "policies": chosen, "seeds": wanted, "perturb": perturb, "steps": steps}
+    return arguments, len(scenarios) * len(chosen) * seeds
+
+
+def _plan(
+    services: Services, scenarios: Sequence[str], policies: Sequence[str] | None, seeds: int, first: int
+) -> Plan | None:
+    """The plan of a suite; None for scenarios of the workspace.
+
+    Raises:
+        ToolError: See :func:`irsim_mcp.suites.plan_of`; or a policy is not valid, or there are too many episodes.
+    """
+    if not scenarios or seeds < 1:
+        return None
+    try:
+        plan = plan_of(scenarios, policies, seeds, first, services.workspace.root)
+    except CodedError as error:
+        raise failure(error.code, error.message, where="policies", fix=error.fix) from None
+    if plan is not None:
+        _check_size(len(plan.scenarios), len(plan.policies), seeds)
+    return plan
+
+
 def _check(scenarios: Sequence[str], policies: Sequence[str], seeds: int, first: int) -> None:
     if not scenarios or seeds < 1:
         what = "there must be at least one scenario" if not scenarios else f"seeds must be at least 1, got {seeds}"
         raise failure("bad-argument", what, where="scenarios" if not scenarios else "seeds", fix="give at least one")
-    total = len(scenarios) * len(policies) * seeds
-    within = len(scenarios) <= MAX_SCENARIOS and len(policies) <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
-    if not within or total > MAX_EPISODES:
-        raise failure(
-            "over-limit",
-            f"{len(scenarios)} scenarios x {len(policies)} policies x {seeds} seeds = {total:,} episodes; at most "
-            f"{MAX_SCENARIOS} x {MAX_BEHAVIORS} x {MAX_SEEDS}, and {MAX_EPISODES:,} in all",
-            fix="ask for fewer seeds, or split them over several calls",
-        )
+    _check_size(len(scenarios), len(policies), seeds)
     if first + seeds - 1 > MAX_SEED:
         what = f"the seeds {first} to {first + seeds - 1} exceed {MAX_SEED}, the largest that run_episode takes"
         raise failure("bad-argument", what, where="first_seed", fix=f"give at most {MAX_SEED - seeds + 1}")
+
+
+def _check_size(scenarios: int, policies: int, seeds: int) -> None:
+    total = scenarios * policies * seeds
+    within = scenarios <= MAX_SCENARIOS and policies <= MAX_BEHAVIORS and seeds <= MAX_SEEDS
+    if not within or total > MAX_EPISODES:
+        raise failure(
+            "over-limit",
+            f"{scenarios} scenarios x {policies} policies x {seeds} seeds = {total:,} episodes; at most "
+            f"{MAX_SCENARIOS} x {MAX_BEHAVIORS} x {MAX_SEEDS}, and {MAX_EPISODES:,} in all",
+            fix="ask for fewer seeds, or split them over several calls",
+        )
 
 
 def answer(state: dict[str, Any]) -> CallToolResult:
@@ -182,7 +227,7 @@ def answer(state: dict[str, Any]) -> CallToolResult:
 
 def _fill(found: Benchmark, result: dict[str, Any], file: str) -> None:
     extra = [key for key in _SOMETIMES if any(row["metrics"][key]["n"] for row in result["rows"])]
-    labels = labels_of(result["behaviors"])
+    labels = policy_names(result)
     found.rows = [_row(row, [*_METRICS, *extra], labels) for row in result["rows"][:_MAX_ROWS]]
     found.summary = _summary(result, labels)
     notes = [f"{label} is {text}" for text, label in labels.items() if label != text] + list(result["notes"])

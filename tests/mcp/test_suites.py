@@ -1,0 +1,72 @@
+"""Bundled suites in the tools: as benchmarks, and their scenarios wherever a scenario is expected."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from irsim.benchmarks.stored import measure_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.policies.networks import save_network
+from tests.mcp.conftest import connected, data_of, error_of, text_of
+from tests.policies.networks.examples import go_to_goal
+
+pytestmark = pytest.mark.anyio
+
+
+async def test_a_suite_is_a_benchmark_and_a_failed_episode_can_be_looked_at(workspace: Path) -> None:
+    async with connected(workspace) as client:
+        result = await client.call_tool(
+            "benchmark",
+            {"scenarios": ["random_polygons_v1/robots-5"], "policies": ["orca", "dash"], "seeds": 3},
+        )
+        found = data_of(result)
+        kept = json.loads((workspace / found["artifact"]).read_text())
+        same = measure_plan(suite_plan("random_polygons_v1", policies=["orca", "dash"], seeds=3, scenarios=["robots-5"]))
+        assert kept == json.loads(same.model_dump_json())
+        assert [row["behavior"] for row in found["rows"][:2]] == ["orca", "dash"]
+        assert found["reproduce"] == (
+            "irsim benchmark random_polygons_v1 --policies orca,dash --scenario robots-5 --seeds 3"
+        )
+        assert "scenario_path='random_polygons_v1/robots-5/freeze' seed=100 policy='dash'" in found["next"]
+        again = data_of(
+            await client.call_tool(
+                "run_episode", {"scenario_path": "random_polygons_v1/robots-5/freeze", "seed": 100, "policy": "dash"}
+            )
+        )
+        assert again["outcome"] == "collision"
+        listed = data_of(await client.call_tool("inspect_run", {"run_id": found["job_id"]}))
+        assert listed["rows"][0][1] == "dash"
+
+
+async def test_a_suite_runs_files_of_the_workspace(workspace: Path) -> None:
+    save_network(workspace / "goal.npz", go_to_goal())
+    async with connected(workspace) as client:
+        arguments = {"scenarios": ["random_polygons_v1/robots-5/yield"], "policies": ["orca", "goal.npz"], "seeds": 2}
+        found = data_of(await client.call_tool("benchmark", arguments))
+        assert [row["episodes"] for row in found["rows"]] == [2, 2]
+        outside = {**arguments, "policies": ["/etc/net.npz"]}
+        assert "workspace" in text_of(await client.call_tool("benchmark", outside))
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({"scenarios": ["random_polygons_v1/robot-5"]}, "did you mean random_polygons_v1/robots-5"),
+        ({"scenarios": ["random_polygons_v1", "circle_swap_v1"]}, "benchmarked without others"),
+        ({"scenarios": ["random_polygons_v1", "room.yaml"]}, "benchmarked without others"),
+        ({"first_seed": 5}, "a suite has its own seeds"),
+        ({"max_steps": 5}, "a suite has its own horizon"),
+        ({"policies": ["orcas"]}, "there is no policy 'orcas'"),
+        ({"seeds": 100}, "at most"),
+    ],
+)
+async def test_what_does_not_fit_a_suite_is_refused(workspace: Path, changes: dict[str, object], problem: str) -> None:
+    arguments = {"scenarios": ["random_polygons_v1"], "seeds": 2, **changes}
+    async with connected(workspace) as client:
+        error = error_of(await client.call_tool("benchmark", arguments))
+        assert problem in error
+        missing = await client.call_tool("run_episode", {"scenario_path": "random_polygons_v1/robots-5"})
+        assert "robots-5/" in error_of(missing)
