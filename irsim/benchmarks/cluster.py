@@ -214,7 +214,7 @@ def _shared(ray: Any, jobs: Sequence[Job]) -> dict[str, Any]:
     for job in jobs:
         if job.local is not None:
             what = f"policy {job.local.name!r} exists only in this program, so a cluster cannot run it"
-            raise ClusterError("cluster-failed", what, "make it a plug-in or a file, or run without the cluster")
+            raise ClusterError("cluster-differs", what, "make it a plug-in or a file, or run without the cluster")
         network = None if job.policy is None else file_of(job.policy)
         beside = [] if network is None else [path for path in files_beside(network) if path.is_file()]
         found.append(
