@@ -35,7 +35,7 @@ class Layout(Options):
         labels = [part.key for part in self.parts]
         twice = next((label for label in labels if labels.count(label) > 1), None)
         if twice is not None:
-            raise problem("repeated-value", f"two parts are called '{twice}'", fix="give one of them another label")
+            raise problem("invalid-value", f"two parts are called '{twice}'", fix="give one of them another label")
         if len({part.needs().static_neighbors for part in self.parts if part.needs().neighbors}) > 1:
             raise problem("policy-file", "'static' differs between two parts of neighbors", fix="give both the same")
         return self

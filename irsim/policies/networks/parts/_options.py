@@ -50,7 +50,7 @@ def unique(features: list[str]) -> list[str]:
     """Validator of lists of features: none twice."""
     if len(set(features)) < len(features):
         twice = next(name for name in features if features.count(name) > 1)
-        raise problem("repeated-value", f"'{twice}' is listed twice", fix="list each feature once")
+        raise problem("invalid-value", f"'{twice}' is listed twice", fix="list each feature once")
     return features
 
 
