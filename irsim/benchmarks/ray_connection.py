@@ -10,6 +10,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -119,6 +120,8 @@ def _probe(address: str) -> int:
             timeout=_JOIN_S,
         )  # fmt: skip
     except subprocess.TimeoutExpired:
+        if address == AUTO:  # Ray remembers a cluster that is gone
+            return _NO_CLUSTER
         raise _refused(address, f"it did not answer within {_JOIN_S:g} s") from None
     if done.returncode == 0 or (done.returncode == _NO_CLUSTER and address == AUTO):
         return done.returncode
@@ -159,14 +162,32 @@ def _quiet() -> Iterator[None]:
     logger = logging.getLogger("ray")
     level = logger.level
     logger.setLevel(logging.CRITICAL)
+    printers = [(owner, name, getattr(owner, name)) for owner, name in _printers()]
     try:
+        for owner, name, _ in printers:
+            setattr(owner, name, lambda *words, **options: None)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     finally:
+        for owner, name, plain in printers:
+            setattr(owner, name, plain)
         logger.setLevel(level)
         for name, value in kept.items():
             if value is None:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+def _printers() -> Iterator[tuple[Any, str]]:
+    """Owner and name of the functions with which Ray reports deaths of processes on standard output, come what may."""
+    for module, path, name in (
+        ("ray._private.worker", "", "print_to_stdstream"),
+        ("ray.util.client.logsclient", "LogstreamClient", "stdstream"),
+    ):
+        with suppress(ImportError, AttributeError):  # of another version, or installed without its client
+            owner: Any = import_module(module)
+            owner = getattr(owner, path) if path else owner
+            getattr(owner, name)
+            yield owner, name

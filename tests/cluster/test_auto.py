@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import os
-import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-
-from tests.skills.conftest import ROOT, fences
 
 pytestmark = pytest.mark.cluster
 SCENE = "robot: {kinematics: {name: diff}, shape: {name: circle, radius: 0.2}, distribution: {name: random}}\n"
@@ -28,15 +25,3 @@ def test_a_cluster_is_started_and_says_nothing(tmp_path: Path) -> None:
         outputs.append((done.returncode, done.stdout, done.stderr))
     assert outputs[1] == outputs[0]
     assert outputs[0][0] == 0
-
-
-def test_commands_of_the_page_work_as_written(tmp_path: Path) -> None:
-    page = (ROOT / "skills/irsim-benchmark/references/cluster.md").read_text(encoding="utf-8")
-    environment = {name: value for name, value in os.environ.items() if name != "RAY_ADDRESS"}
-    commands = [line for block in fences(page, "bash") for line in block.splitlines()]
-    assert len(commands) == 2
-    for command in commands:
-        words = [sys.executable, "-m", *shlex.split(command)]
-        done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        assert (tmp_path / "swap" / "results.html").exists()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shlex
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -19,6 +21,7 @@ from irsim.benchmarks.file_plan import file_plan
 from irsim.benchmarks.pool import WorkerError
 from irsim.benchmarks.stored import run_plan
 from tests.cluster.conftest import LocalCluster
+from tests.skills.conftest import ROOT, fences
 
 pytestmark = [
     pytest.mark.cluster,
@@ -34,7 +37,7 @@ SEEDS = 30
 FRAGILE = """\
 import os, signal
 from pathlib import Path
-from irsim.benchmarks import episode
+from irsim.benchmarks import episode, together
 
 def fragile(scenario, env, *rest, plain=episode.horizon_of):
     mark = Path({folder!r}, f"seed-{{env.seed}}")
@@ -45,7 +48,7 @@ def fragile(scenario, env, *rest, plain=episode.horizon_of):
     return plain(scenario, env, *rest)
 
 if os.getpid() != {mine}:
-    episode.horizon_of = fragile
+    episode.horizon_of = together.horizon_of = fragile
 """
 
 
@@ -98,13 +101,16 @@ def test_a_node_that_is_killed_in_the_middle_changes_nothing(folder: Path, clust
     assert found == files_of("local", workers=1)
 
 
-def test_processes_that_are_killed_in_the_middle_change_nothing(folder: Path, cluster: LocalCluster) -> None:
+def test_processes_that_are_killed_in_the_middle_change_nothing(
+    folder: Path, cluster: LocalCluster, capfd: pytest.CaptureFixture[str]
+) -> None:
     local = irsim.benchmark("scene.yaml", ["dash", "orca"], SEEDS, workers=1, steps=100)
     fragile(folder, "fragile", range(3, SEEDS, 9), always=False)
     found = irsim.benchmark(
         "scene.yaml", ["dash", "orca"], SEEDS, cluster=cluster.address, steps=100, imports=["fragile"]
     )
-    assert len(list(folder.glob("seed-*"))) == 3
+    assert list(folder.glob("seed-*"))
+    assert capfd.readouterr() == ("", "")  # Ray would print that they died
     assert (found.episodes, found.rows) == (local.episodes, local.rows)
 
 
@@ -191,6 +197,18 @@ def test_auto_takes_the_cluster_that_the_environment_names(
     assert found == irsim.benchmark("scene.yaml", "dash", 3, steps=20, workers=1)
     assert capfd.readouterr() == ("", "")  # Ray is quiet
     assert os.environ["RAY_ADDRESS"] == cluster.address
+
+
+def test_commands_of_the_skill_work_as_written(tmp_path: Path, cluster: LocalCluster) -> None:
+    page = (ROOT / "skills/irsim-benchmark/references/cluster.md").read_text(encoding="utf-8")
+    commands = [line for block in fences(page, "bash") for line in block.splitlines()]
+    assert len(commands) == 2
+    for command in commands:
+        words = [sys.executable, "-m", *shlex.split(command)]
+        environment = {**os.environ, "RAY_ADDRESS": cluster.address}
+        done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "swap" / "results.html").exists()
 
 
 def test_a_cluster_that_does_not_answer_is_an_error_soon(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
