@@ -258,6 +258,7 @@ def _result(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
         "suite": plan.suite.suite,
         "suite_version": plan.suite.version,
         "title": plan.suite.title,
+        "suite_hash": plan.suite_hash,
         "hash": plan.hash,
         "policies": plan.policies,
         "facts": [
