@@ -10,7 +10,7 @@ from irsim.episodes.episode import read_scenario
 from irsim.results.findings import Finding
 from irsim.scenario.resolve.resolved import ResolvedScenario
 
-__all__ = ["read_input"]
+__all__ = ["policy_of_suite", "read_input"]
 
 
 def read_input(path: str | Path | None, text: str | None, **options: Any) -> tuple[ResolvedScenario, list[Finding]]:
@@ -38,3 +38,20 @@ def read_input(path: str | Path | None, text: str | None, **options: Any) -> tup
 
             suite_scene(path)  # a suite is refused with a sentence of its own
         raise
+
+
+def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
+    """The policy that a name means for a scenario of a suite: that of the suite, if it has one of that name.
+
+    Args:
+        path: Path of the scenario, or ``SUITE/SCENARIO``.
+        policy: What :func:`irsim.run` takes as a policy.
+
+    Raises:
+        SuiteError: The suite is not valid.
+    """
+    if path is None or not isinstance(policy, str) or Path(path).is_file():
+        return policy
+    from irsim.benchmarks.suite_scene import suite_policy
+
+    return suite_policy(path, policy)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from irsim.api.read_input import read_input
+from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
@@ -102,6 +102,7 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
+    policy, behavior = policy_of_suite(path, policy), policy_of_suite(path, behavior)
     driver, behavior_text = _opened(policy, behavior, limits)
     perturbations = read_perturbations(perturb)
     try:

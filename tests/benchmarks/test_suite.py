@@ -222,7 +222,7 @@ def test_a_scenario_of_a_suite_is_run_alone(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     written(tmp_path, protocols=["freeze", "yield"])
     result = irsim.run("mine.yaml/one/yield", seed=3, policy="dash")
-    assert result.reproduce == "irsim run mine.yaml/one/yield --seed 3 --policy dash"
+    assert result.reproduce == "irsim run mine.yaml/one/yield --seed 3 --behavior dash"
     assert result.time_limit == 5.0
     [episode] = irsim.benchmark({"one": suite_scene("mine.yaml/one/yield").document()}, ["dash"], [3]).episodes
     assert (episode.outcome, episode.steps) == (result.outcome, result.steps)
@@ -244,3 +244,9 @@ def test_a_folder_that_a_plan_names_can_be_left(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert resume_benchmark(Path("../out")).episodes
+
+
+def test_policies_of_a_suite_have_their_options_when_one_scenario_is_run() -> None:
+    result = irsim.run("random_polygons_v1/robots-5/freeze", seed=142, policy="orca")
+    options = suite_plan("random_polygons_v1").policies["orca"]
+    assert (result.outcome, result.behavior) == ("collision", options)
