@@ -1,0 +1,69 @@
+"""Suite files with mistakes: each is named with its place and what was probably meant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from irsim.benchmarks.suite_files import read_suite
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.benchmarks.suite_problems import SuiteError
+
+FIELD = """\
+suite: field
+version: 1
+title: Robots among posts
+steps: 400
+scenarios:
+  - name: field
+    vary: {"robot[0].number": [2, 4]}
+    scenario:
+      world: {width: 10, height: 10}
+      robot: [{kinematics: {name: diff}, distribution: {name: random}}]
+policies: {dash: dash}
+"""
+
+
+def problem_of(tmp_path: Path, text: str) -> SuiteError:
+    """The error of a suite with this text."""
+    file = tmp_path / "field.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(SuiteError) as caught:
+        suite_plan(str(file))
+    return caught.value
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("].number", "].nummer", "line 7: scenario 'field' has no key robot[0].nummer, did you mean number?"),
+        ("width:", "widht:", "line 9: scenario 'field': world.widht: "),
+        ("number\": [2, 4]", "kinematics.name\": [diff, dif]", "line 7: scenario 'field': robot[0].kinematics.name: "),
+        ("version: 1", "steps: 500\nversion: 1", "line 5: steps: the key 'steps' is given a second time"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_a_scenario_is_named_with_its_line(old: str, new: str, problem: str, tmp_path: Path) -> None:
+    error = problem_of(tmp_path, FIELD.replace(old, new))
+    assert problem in error.message
+    assert error.diagnostics[0].line is not None
+
+
+@pytest.mark.parametrize(
+    ("scene", "problem"),
+    [
+        ("world: {width: 5}\nrobot:\n  - {nummer: 3}\n", "line 3: scenario 'field': robot[0].nummer: "),
+        ("world: {width: 5}\nworld: {width: 6}\n", "line 2: world: the key 'world' is given a second time"),
+    ],
+)  # fmt: skip
+def test_a_mistake_in_a_scenario_file_is_named_with_that_file(scene: str, problem: str, tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(scene, encoding="utf-8")
+    start, end = FIELD.index("    vary"), FIELD.index("policies")
+    error = problem_of(tmp_path, f"{FIELD[:start]}    file: scene.yaml\n{FIELD[end:]}")
+    assert f"{tmp_path / 'scene.yaml'}, {problem}" in error.message
+
+
+def test_the_file_without_a_mistake_is_valid(tmp_path: Path) -> None:
+    (tmp_path / "field.yaml").write_text(FIELD, encoding="utf-8")
+    assert read_suite(tmp_path / "field.yaml").suite == "field"
+    assert [one.name for one in suite_plan(str(tmp_path / "field.yaml")).scenarios] == ["field-2", "field-4"]
