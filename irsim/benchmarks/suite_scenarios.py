@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
@@ -34,7 +33,7 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
     """
     made: list[Expanded] = []
     for scenario in suite.scenarios:
-        for values in _combinations(scenario):
+        for values in scenario.variants():
             data = _data(scenario, values, file)
             name = "-".join([scenario.name, *(label_of(value) for value in values.values())])
             for protocol in suite.protocols:
@@ -42,19 +41,14 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
                 steps = scenario.steps or suite.steps
                 made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
-        if len(made) > MAX_SCENARIOS * len(suite.protocols):
-            raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
+            if len(made) > MAX_SCENARIOS * len(suite.protocols):
+                raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
     names = [one.name for one in made]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise SuiteError(f"two scenarios are called {twice!r}", "give other names, or values that read differently")
     check_scenarios(suite, [one for one in made if one.protocol == suite.protocols[0]], file)
     return sorted(made, key=lambda one: suite.protocols.index(one.protocol))
-
-
-def _combinations(scenario: SuiteScenario) -> Iterator[dict[str, Any]]:
-    for chosen in itertools.product(*scenario.vary.values()):
-        yield dict(zip(scenario.vary, chosen, strict=True))
 
 
 def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path) -> dict[str, Any]:

@@ -70,6 +70,12 @@ scenarios:
       world: {width: 10, height: 10}
       robot: [{number: 2, kinematics: {name: diff}, distribution: {name: random}}]
       obstacle: [{number: 5, shape: {name: circle, radius: 0.4}, distribution: {name: random}}]
+  - name: mixed
+    vary: [{"robot[0].number": 1, "obstacle[0].number": 2}, {"robot[0].number": 2, "obstacle[0].number": 4}]
+    scenario:
+      world: {width: 10, height: 10}
+      robot: [{number: 1, kinematics: {name: diff}, distribution: {name: random}}]
+      obstacle: [{number: 2, shape: {name: circle, radius: 0.4}, distribution: {name: random}}]
 seeds: {first: 0, count: 20}
 steps: 400
 protocols: [freeze]

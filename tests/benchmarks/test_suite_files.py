@@ -67,3 +67,15 @@ def test_the_file_without_a_mistake_is_valid(tmp_path: Path) -> None:
     (tmp_path / "field.yaml").write_text(FIELD, encoding="utf-8")
     assert read_suite(tmp_path / "field.yaml").suite == "field"
     assert [one.name for one in suite_plan(str(tmp_path / "field.yaml")).scenarios] == ["field-2", "field-4"]
+
+
+def test_values_of_a_list_of_mappings_change_together(tmp_path: Path) -> None:
+    file = tmp_path / "field.yaml"
+    old = '{"robot[0].number": [2, 4]}'
+    pairs = '[{"robot[0].number": 1, world.height: 20}, {"robot[0].number": 2, world.height: 40}]'
+    file.write_text(FIELD.replace(old, pairs) + "density: robot[0].number\n", encoding="utf-8")
+    plan = suite_plan(str(file))
+    assert [one.name for one in plan.scenarios] == ["field-1-20", "field-2-40"]
+    assert [one.document().data["world"]["height"] for one in plan.scenarios] == [20, 40]
+    error = problem_of(tmp_path, FIELD.replace(old, pairs.replace("t: 40", 't: 40, "robot[0].nummer": 3')))
+    assert "line 7: scenario 'field' has no key robot[0].nummer, did you mean number?" in error.message
