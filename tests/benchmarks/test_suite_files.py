@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from irsim.benchmarks.suite_files import read_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.suite_problems import SuiteError
+from irsim.cli.app import app
 
 FIELD = """\
 suite: field
@@ -79,3 +82,15 @@ def test_values_of_a_list_of_mappings_change_together(tmp_path: Path) -> None:
     assert [one.document().data["world"]["height"] for one in plan.scenarios] == [20, 40]
     error = problem_of(tmp_path, FIELD.replace(old, pairs.replace("t: 40", 't: 40, "robot[0].nummer": 3')))
     assert "line 7: scenario 'field' has no key robot[0].nummer, did you mean number?" in error.message
+
+
+def test_validate_checks_a_suite_as_a_suite(tmp_path: Path) -> None:
+    file = tmp_path / "field.yaml"
+    file.write_text(FIELD, encoding="utf-8")
+    good = CliRunner().invoke(app, ["validate", str(file)])
+    assert (good.exit_code, "valid: suite field, 2 scenarios x 1 policies x 100 seeds" in good.output) == (0, True)
+    file.write_text(FIELD.replace("].number", "].nummer").replace("steps: 400", "steps: 0"), encoding="utf-8")
+    bad = CliRunner().invoke(app, ["validate", str(file), "--json"])
+    [finding] = json.loads(bad.stdout)["findings"]
+    assert (bad.exit_code, finding["path"], finding["line"]) == (2, "steps", 4)
+    assert finding["message"] == "must be at least 1, got 0"
