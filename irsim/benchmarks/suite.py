@@ -123,7 +123,7 @@ class Suite(_Part):
     seeds: Seeds = Seeds()
     """Seeds of the episodes."""
     steps: Annotated[int, Field(ge=1)]
-    """Horizon in steps."""
+    """Horizon in steps; in seconds it is this number times the ``step_time`` of the scenario, 0.1 s by default."""
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
     """What robots do that have arrived: stand still (``freeze``), stay controlled so that they can make room
     (``yield``), or what the scenario says (``as-written``). Each protocol is run on its own."""

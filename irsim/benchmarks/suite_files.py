@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from irsim.benchmarks.suite import Suite
 from irsim.benchmarks.suite_problems import SuiteError, located, problems_of, suite_error
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import suggestion
+from irsim.diagnostics.diagnostic import is_slip_of, suggestion
 from irsim.scenario.yaml.document import load_path
 
 __all__ = ["SuiteError", "is_suite", "load_suite", "read_suite", "suite_names"]
@@ -24,10 +24,12 @@ def suite_names() -> list[str]:
 
 
 def is_suite(word: str) -> bool:
-    """Whether a word names a suite: a bundled one, or a YAML file with the key ``suite``."""
+    """Whether a word names a suite: a bundled one, perhaps misspelt, or a YAML file with the key ``suite``."""
     if word in suite_names():
         return True
     path = Path(word)
+    if not path.suffix and not path.exists():
+        return any(is_slip_of(word, name) for name in suite_names())
     if path.suffix not in (".yaml", ".yml") or not path.is_file():
         return False
     data = load_path(path).data

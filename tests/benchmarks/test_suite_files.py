@@ -12,6 +12,7 @@ from irsim.benchmarks.suite_files import read_suite
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.suite_problems import SuiteError
 from irsim.cli.app import app
+from irsim.lookup import lookup
 
 FIELD = """\
 suite: field
@@ -94,3 +95,39 @@ def test_validate_checks_a_suite_as_a_suite(tmp_path: Path) -> None:
     [finding] = json.loads(bad.stdout)["findings"]
     assert (bad.exit_code, finding["path"], finding["line"]) == (2, "steps", 4)
     assert finding["message"] == "must be at least 1, got 0"
+
+
+def test_a_misspelt_name_of_a_suite_is_named() -> None:
+    found = CliRunner().invoke(app, ["benchmark", "circle_swop_v1"])
+    assert (found.exit_code, "did you mean circle_swap_v1?" in found.output) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        ("seeds: 5", "line 12: seeds: must be a mapping (key: value), got 5"),
+        ("protocols: freeze", "line 12: protocols: must be a list, got 'freeze'"),
+        ("protocols: [freese]", "protocols[0]: must be one of as-written, freeze, yield, got 'freese', did you mean"),
+        ("until: collision", "did you mean first_collision?"),
+        ("seeds: {cuont: 5}", "line 12: seeds.cuont: there is no such key, did you mean count?"),
+        ("perturb: [{positoin: 1}]", "did you mean position?"),
+        ("perturb: {position: 1}", "perturb: must be a list"),
+    ],
+)  # fmt: skip
+def test_a_wrong_value_is_explained_in_plain_words(line: str, problem: str, tmp_path: Path) -> None:
+    message = problem_of(tmp_path, f"{FIELD}{line}\n").message
+    assert problem in message
+    assert "Input should" not in message
+    assert "pattern" not in message
+
+
+@pytest.mark.parametrize(
+    ("topic", "text"),
+    [
+        ("seeds", "Number of episodes of each scenario"), ("density", "charts"), ("protocols", "yield"),
+        ("until", "first_collision"), ("perturb", "Largest change of the start"), ("vary", "Or a list of mappings"),
+        ("scenarios.file", "relative to the suite file"),
+    ],
+)  # fmt: skip
+def test_every_key_of_a_suite_file_is_a_topic(topic: str, text: str) -> None:
+    assert text in lookup(f"suites.{topic}").model_dump_json()
