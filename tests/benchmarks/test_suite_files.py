@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from PIL import Image
 from typer.testing import CliRunner
 
 from irsim.benchmarks.suite_files import read_suite
@@ -131,3 +132,12 @@ def test_a_wrong_value_is_explained_in_plain_words(line: str, problem: str, tmp_
 )  # fmt: skip
 def test_every_key_of_a_suite_file_is_a_topic(topic: str, text: str) -> None:
     assert text in lookup(f"suites.{topic}").model_dump_json()
+
+
+def test_a_scenario_in_which_nothing_can_be_perturbed_is_named(tmp_path: Path) -> None:
+    Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
+    text = FIELD.replace("height: 10}", "height: 10, obstacle_map: hall.png}")
+    (tmp_path / "field.yaml").write_text(f"{text}perturb: [{{position: 0.1}}]\n", encoding="utf-8")
+    arguments = ["benchmark", str(tmp_path / "field.yaml"), "--seeds", "1", "-o", str(tmp_path / "out")]
+    found = CliRunner().invoke(app, arguments)
+    assert (found.exit_code, "nothing to perturb in 'field-2'" in found.output) == (2, True)
