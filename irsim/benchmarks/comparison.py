@@ -144,7 +144,7 @@ def benchmark(
     for name, source in zip(names, given, strict=True):
         document = _document(source, limits)
         scenario, warnings[name] = read_document(document, strict=strict)
-        scenario = perturbed(scenario, perturbations)
+        scenario = perturbed(scenario, perturbations, called=name if isinstance(source, Document) else None)
         periods[name], chances[name] = float(scenario.world.step_time), random_parts(scenario)
         if texts:
             changes[name] = perturbed_message(scenario)

@@ -8,7 +8,10 @@
     scenarios:
       - name: crossing
         template: crossing              # or scenario: {world: …, robot: …}, or file: scene.yaml
-        vary: {speed: [0.5, 1.0]}       # parameters of the template, or paths such as robot[0].number
+        vary: {courier_speed: [0.6, 0.9]}  # parameters of the template, or paths such as robot[0].number
+      - name: lidars                   # values that change together: a list of mappings
+        template: crossing
+        vary: [{beams: 91, range: 4}, {beams: 181, range: 8}]
     seeds: {first: 0, count: 100, full: 1000}
     steps: 500
     protocols: [freeze, yield]
@@ -19,7 +22,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -31,6 +36,8 @@ __all__ = ["Protocol", "Seeds", "Suite", "SuiteScenario"]
 Protocol = Literal["as-written", "freeze", "yield"]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_.-]{0,63}$")]
 Value = bool | int | float | str
+Combined = dict[str, Annotated[list[Any], Field(min_length=1)]]
+Listed = Annotated[list[Annotated[dict[str, Any], Field(min_length=1)]], Field(min_length=1)]
 MAX_SCENARIOS = 200
 """Largest number of scenarios that a suite expands to, without its protocols."""
 
@@ -52,11 +59,24 @@ class SuiteScenario(_Part):
     """The scenario itself, as in a scenario file."""
     file: str | None = None
     """A scenario file, relative to the suite file."""
-    vary: dict[str, Annotated[list[Any], Field(min_length=1)]] = {}
-    """Parameter of the template, or path of a key such as ``robot[0].number`` → values. Each combination is a
-    scenario."""
+    vary: Combined | Listed = {}
+    """Parameter of the template, or path of a key such as ``robot[0].number`` → values; each combination is a scenario.
+    Or a list of mappings of keys to one value each, such as ``[{"robot[0].number": 2, "robot[1].number": 4}]``; each
+    mapping is a scenario, so that values change together."""
     steps: Annotated[int, Field(ge=1)] | None = None
     """Horizon of these scenarios in steps; null is that of the suite."""
+
+    def variants(self) -> Iterator[dict[str, Any]]:
+        """The values of each scenario of the family, by key, in order."""
+        if isinstance(self.vary, list):
+            yield from (dict(values) for values in self.vary)
+        else:
+            for chosen in itertools.product(*self.vary.values()):
+                yield dict(zip(self.vary, chosen, strict=True))
+
+    def varied(self) -> set[str]:
+        """The keys whose values vary."""
+        return set(self.vary) if isinstance(self.vary, dict) else {key for values in self.vary for key in values}
 
     @model_validator(mode="after")
     def _has_one_source(self) -> SuiteScenario:
@@ -103,7 +123,7 @@ class Suite(_Part):
     seeds: Seeds = Seeds()
     """Seeds of the episodes."""
     steps: Annotated[int, Field(ge=1)]
-    """Horizon in steps."""
+    """Horizon in steps; in seconds it is this number times the ``step_time`` of the scenario, 0.1 s by default."""
     protocols: Annotated[list[Protocol], Field(min_length=1)] = ["as-written"]
     """What robots do that have arrived: stand still (``freeze``), stay controlled so that they can make room
     (``yield``), or what the scenario says (``as-written``). Each protocol is run on its own."""
@@ -128,7 +148,7 @@ class Suite(_Part):
             raise ValueError(f"two scenarios have the name {twice!r}")
         if len(set(self.protocols)) < len(self.protocols):
             raise ValueError("a protocol is listed twice")
-        if self.density is not None and not any(self.density in one.vary for one in self.scenarios):
+        if self.density is not None and not any(self.density in one.varied() for one in self.scenarios):
             raise ValueError(f"density is {self.density!r}, which no scenario varies")
         return self
 

@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 
 from irsim.benchmarks.suite import Suite
+from irsim.benchmarks.suite_problems import SuiteError, located, problems_of, suite_error
 from irsim.common.text import clean
-from irsim.diagnostics.diagnostic import format_path, nearest, suggestion
-from irsim.diagnostics.errors import CodedError
+from irsim.diagnostics.diagnostic import is_slip_of, suggestion
 from irsim.scenario.yaml.document import load_path
 
 __all__ = ["SuiteError", "is_suite", "load_suite", "read_suite", "suite_names"]
 
 _FOLDER = Path(__file__).with_name("suites")
-
-
-class SuiteError(CodedError, ValueError):
-    """A suite file cannot be used; the message lists every problem."""
-
-    def __init__(self, message: str, fix: str, code: str = "bad-suite") -> None:
-        super().__init__(code, message, fix)
 
 
 def suite_names() -> list[str]:
@@ -31,10 +24,12 @@ def suite_names() -> list[str]:
 
 
 def is_suite(word: str) -> bool:
-    """Whether a word names a suite: a bundled one, or a YAML file with the key ``suite``."""
+    """Whether a word names a suite: a bundled one, perhaps misspelt, or a YAML file with the key ``suite``."""
     if word in suite_names():
         return True
     path = Path(word)
+    if not path.suffix and not path.exists():
+        return any(is_slip_of(word, name) for name in suite_names())
     if path.suffix not in (".yaml", ".yml") or not path.is_file():
         return False
     data = load_path(path).data
@@ -68,32 +63,14 @@ def read_suite(path: Path) -> Suite:
         SuiteError: The file is not a valid suite; the message lists every problem with its place.
     """
     document = load_path(path)
-    if document.fatal or not isinstance(document.data, dict):
-        why = "; ".join(item.message for item in document.problems[:3]) or "it is not a mapping"
-        raise SuiteError(f"{path} is not a suite: {why}", "compare it with irsim describe random_polygons_v1")
+    found = [replace(item, file=str(path)) for item in document.problems if item.severity == "error"]
+    if found and (document.fatal or document.data is None):
+        raise suite_error(path, found)
     try:
-        return Suite.model_validate(document.data)
+        suite = Suite.model_validate(document.data)
     except ValidationError as error:
-        problems = [_words(item) for item in error.errors(include_url=False)]
-        raise SuiteError(
-            f"{path} is not a valid suite: {'; '.join(problems)}", "compare it with irsim describe random_polygons_v1"
-        ) from None
-
-
-def _words(item: Any) -> str:
-    """One problem, with its place and the key that was probably meant."""
-    where = format_path(item["loc"]) or "the suite"
-    if item["type"] == "extra_forbidden":
-        known = _keys_at(item["loc"][:-1])
-        near = nearest(str(item["loc"][-1]), known)
-        return f"{where}: there is no such key" + (f", did you mean {near}?" if near else "")
-    if item["type"] == "missing":
-        return f"{where}: this key is missing"
-    return f"{where}: {clean(str(item['msg']).removeprefix('Value error, '), 200)}"
-
-
-def _keys_at(place: tuple[Any, ...]) -> list[str]:
-    from irsim.benchmarks.suite import Seeds, SuiteScenario
-
-    model = Seeds if place[:1] == ("seeds",) else SuiteScenario if place[:1] == ("scenarios",) else Suite
-    return list(model.model_fields)
+        problems = problems_of(error.errors(include_url=False), document.data)
+        raise suite_error(path, [*found, *(located(item, document) for item in problems)]) from None
+    if found:
+        raise suite_error(path, found)
+    return suite

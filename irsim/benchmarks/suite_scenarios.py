@@ -2,46 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from irsim.benchmarks.suite import MAX_SCENARIOS, Protocol, Suite, SuiteScenario, label_of
-from irsim.benchmarks.suite_files import SuiteError
+from irsim.benchmarks.suite_check import Expanded, check_scenarios
+from irsim.benchmarks.suite_problems import SuiteError, suite_error
 from irsim.bundled.templates.fill import fill, parse_path
 from irsim.bundled.templates.metadata import TemplateError
 from irsim.bundled.templates.store import load
 from irsim.scenario.yaml.document import load_path
 
 __all__ = ["Expanded", "expand"]
-
-
-@dataclass(frozen=True)
-class Expanded:
-    """One scenario of a suite.
-
-    Attributes:
-        name: Name in the results.
-        family: Name in the suite.
-        protocol: What robots do that have arrived.
-        values: The values that vary in its family.
-        steps: Horizon in steps.
-        data: The scenario.
-        folder: Folder relative to which it names other files.
-    """
-
-    name: str
-    family: str
-    protocol: Protocol
-    values: Mapping[str, Any]
-    steps: int
-    data: dict[str, Any] = field(repr=False)
-    folder: Path = field(repr=False)
 
 
 def expand(suite: Suite, file: Path) -> list[Expanded]:
@@ -56,34 +33,31 @@ def expand(suite: Suite, file: Path) -> list[Expanded]:
     """
     made: list[Expanded] = []
     for scenario in suite.scenarios:
-        for values in _combinations(scenario):
-            data = _data(scenario, values, file.parent)
+        for values in scenario.variants():
+            data = _data(scenario, values, file)
             name = "-".join([scenario.name, *(label_of(value) for value in values.values())])
             for protocol in suite.protocols:
                 changed = _under(protocol, data)
                 full = name if len(suite.protocols) == 1 else f"{name}/{protocol}"
                 steps = scenario.steps or suite.steps
                 made.append(Expanded(full, scenario.name, protocol, values, steps, changed, file.parent))
-        if len(made) > MAX_SCENARIOS * len(suite.protocols):
-            raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
+            if len(made) > MAX_SCENARIOS * len(suite.protocols):
+                raise SuiteError(f"the suite has more than {MAX_SCENARIOS} scenarios", "vary fewer values")
     names = [one.name for one in made]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise SuiteError(f"two scenarios are called {twice!r}", "give other names, or values that read differently")
+    check_scenarios(suite, [one for one in made if one.protocol == suite.protocols[0]], file)
     return sorted(made, key=lambda one: suite.protocols.index(one.protocol))
 
 
-def _combinations(scenario: SuiteScenario) -> Iterator[dict[str, Any]]:
-    for chosen in itertools.product(*scenario.vary.values()):
-        yield dict(zip(scenario.vary, chosen, strict=True))
-
-
-def _data(scenario: SuiteScenario, values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+def _data(scenario: SuiteScenario, values: Mapping[str, Any], file: Path) -> dict[str, Any]:
     """A scenario as data.
 
     Raises:
         SuiteError: It cannot be made.
     """
+    folder = file.parent
     if scenario.template is not None:
         try:
             text = fill(load(scenario.template), {**scenario.parameters, **values})
@@ -92,10 +66,13 @@ def _data(scenario: SuiteScenario, values: Mapping[str, Any], folder: Path) -> d
         return dict(yaml.safe_load(text))
     if scenario.file is not None:
         document = load_path(folder / scenario.file)
+        problems = [item for item in document.problems if item.severity == "error"]
         if document.fatal or not isinstance(document.data, Mapping):
             raise SuiteError(
                 f"scenario {scenario.name!r}: {scenario.file} is not a scenario file", "give a path from the suite file"
             )
+        if problems:
+            raise suite_error(file, [replace(item, file=str(folder / scenario.file)) for item in problems])
         data: Any = dict(document.data)
     else:
         data = deepcopy(scenario.scenario)

@@ -22,7 +22,10 @@ __all__ = ["validate"]
 
 
 def validate(
-    files: Annotated[list[str], typer.Argument(metavar="FILE...", help="Scenario files; - is standard input.")],
+    files: Annotated[
+        list[str],
+        typer.Argument(metavar="FILE...", help="Scenario files or suites; - is a scenario from standard input."),
+    ],
     json_output: Annotated[
         bool, typer.Option("--json", help="Print only one JSON object per file, one per line.")
     ] = False,
@@ -48,7 +51,7 @@ def validate(
     imports: Imports = None,
     max_objects: MaxObjects = None,
 ) -> None:
-    """Check scenario files without running them; the exit code is 2 if any file is invalid."""
+    """Check scenario files and suites without running them; the exit code is 2 if any file is invalid."""
     from irsim.cli.findings import import_user_modules, limits_for, not_found
     from irsim.cli.output import print_json, progress
 
@@ -83,8 +86,15 @@ def _check_file(
 ) -> tuple[ValidationReport, str | None]:
     """Return the report on a file or a text from standard input, and the text; with ``fix``, on the repaired one."""
     from irsim import api
+    from irsim.benchmarks.suite_files import is_suite
+    from irsim.benchmarks.suite_report import suite_report
 
     path = None if file == "-" else file
+    if path is not None and is_suite(path):
+        if fix or simulate:
+            option = "--fix" if fix else "--simulate"
+            raise ArgumentError(f"{option} belongs to scenario files, and {file} is a suite", f"leave out {option}")
+        return suite_report(path), None
     fixes, fix_texts = [], {}
     if fix:
         mended, report = api.fix(path, text=text, strict=strict, limits=limits)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from irsim.benchmarks.suite_files import suite_names
 from irsim.bundled import templates
 from irsim.bundled.templates import Template
 from irsim.compat import DIFFERENCES
@@ -42,6 +43,7 @@ def index_answer() -> Answer:
             "templates": [Key(name="templates", text=", ".join(templates.names()))],
             "more": [
                 Key(name="guides", text=", ".join(GUIDES)),
+                Key(name="suites", text=f"benchmarks with a fixed protocol: {', '.join(suite_names())}"),
                 Key(name="metrics", text=f"the {len(METRIC_TOPICS)} numbers that measure how good an episode was"),
                 Key(name="codes", text=f"the {len(all_codes())} codes of errors and warnings"),
             ],

@@ -34,7 +34,7 @@ from irsim.lookup.schema_walk import (
     step,
 )
 from irsim.lookup.search import MAX_HITS, all_topics, near_topics, search_answer
-from irsim.lookup.suites import suite_answer, suite_names, suites_answer
+from irsim.lookup.suites import suite_answer, suite_key_answer, suite_names, suites_answer
 from irsim.lookup.synonyms import named
 from irsim.options.registry import REGISTRIES, Registry
 from irsim.scenario.model.json_schema import json_schema
@@ -89,6 +89,8 @@ def lookup(topic: str = "", *, schema: Node | None = None) -> Answer:
         return template_answer(templates.load(name))
     if topic.strip() in suite_names():
         return suite_answer(topic.strip())
+    if words[:1] == ["suites"] and (found_key := suite_key_answer(words[1:])) is not None:
+        return found_key
     if topic.strip() in DIFFERENCES:
         return difference_answer(topic.strip())
     schema = json_schema() if schema is None else schema

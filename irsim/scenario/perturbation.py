@@ -134,26 +134,30 @@ def perturbation_text(perturbation: Perturbation) -> str:
     return ",".join([*words, *([f"objects={','.join(objects)}"] if objects else [])])
 
 
-def perturbed(scenario: ResolvedScenario, perturbations: Sequence[Perturbation]) -> ResolvedScenario:
+def perturbed(
+    scenario: ResolvedScenario, perturbations: Sequence[Perturbation], *, called: str | None = None
+) -> ResolvedScenario:
     """The scenario with spreads for its objects; each seed then draws another start of it.
 
     Args:
         scenario: The scenario, which is not changed.
         perturbations: From :func:`read_perturbations`.
+        called: Name of the scenario in errors; default: its own.
 
     Raises:
         BenchmarkError: No object has a name, tag or role that is given, or there is nothing to perturb.
     """
     if not perturbations:
         return scenario
-    _check_names(scenario, perturbations)
+    name = clean(called or scenario.name)
+    _check_names(scenario, perturbations, name)
     placed = {number for placement in scenario.placements for number in placement.objects}
     objects = [_with_spreads(record, perturbations, record.id in placed) for record in scenario.objects]
     wanted = any(getattr(item, key) for item in perturbations for key in _SPREADS)
     if wanted and all(record.spreads is None for record in objects):
         why = "the chosen objects have no drive, never move, or are placed at random"
         raise BenchmarkError(
-            f"there is nothing to perturb in {clean(scenario.name)!r}: {why}",
+            f"there is nothing to perturb in {name!r}: {why}",
             "choose other spreads or objects",
             "perturb",
         )
@@ -241,7 +245,7 @@ def _is_plain(name: str) -> bool:
     return bool(name) and name == name.strip() and not any(mark in name for mark in ",;={") and name.isprintable()
 
 
-def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbation]) -> None:
+def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbation], called: str) -> None:
     names = [record.name for record in scenario.objects if not _is_scenery(record)]
     tags = {tag for record in scenario.objects for tag in record.tags}
     known = [*names, *sorted(tags), *_ROLES]
@@ -251,7 +255,7 @@ def _check_names(scenario: ResolvedScenario, perturbations: Sequence[Perturbatio
     near = nearest(unknown[0], known)
     words = listed([repr(clean(word, 40)) for word in unknown], _MAX_NAMED)
     raise BenchmarkError(
-        f"no object of {clean(scenario.name)!r} has the name, tag or role {words}",
+        f"no object of {called!r} has the name, tag or role {words}",
         f"did you mean {clean(near, 40)}?"
         if near
         else f"give one of {listed([clean(word, 40) for word in known], 10)}",
