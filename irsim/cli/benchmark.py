@@ -162,6 +162,7 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from irsim.benchmarks.summary import is_summary
     from irsim.common.text import clean
     from irsim.results.labels import labels_of, seeds_of
 
@@ -211,9 +212,13 @@ def show_benchmark(result: BenchmarkResult, out: Console) -> None:
     if any(heading == "human m" for _, heading, _ in columns):
         legend += "; human m: smallest distance to a human"
     out.print(Text(legend, "dim"))
+    summaries = {row.scenario for row in result.rows if is_summary(row.scenario)} or {
+        row.scenario for row in result.rows[-1:]
+    }
     for row in result.rows:
-        if row.paired and row.scenario == result.rows[-1].scenario:
-            out.print(_difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
+        if row.paired and row.scenario in summaries:
+            where = f"{row.scenario}: " if len(summaries) > 1 else ""
+            out.print(where + _difference_line(row, behaviors[row.behavior], behaviors[result.behaviors[0]]))
     for row in result.rows:
         if row.failed:
             failures = list(row.failures.items())[:MAX_FAILURES]

@@ -11,7 +11,7 @@ from irsim.results.benchmark import BenchmarkResult, BenchmarkRow
 from irsim.results.labels import labels_of
 from irsim.results.suite import SuiteResult
 
-__all__ = ["families", "policy_labels", "series"]
+__all__ = ["families", "policy_labels", "protocols", "series"]
 
 
 def policy_labels(result: BenchmarkResult) -> dict[str, str]:
@@ -42,6 +42,14 @@ def families(result: BenchmarkResult) -> Iterator[tuple[str, str, list[tuple[dic
         own = [(f.values, f.name) for f in result.facts if (f.family, f.protocol) == (family, protocol)]
         if len(own) > 1:
             yield family, protocol, own
+
+
+def protocols(result: BenchmarkResult) -> dict[str, set[str]]:
+    """Protocol → its scenarios, of a suite with several protocols; otherwise all scenarios without a name."""
+    found = dict[str, set[str]]()
+    for fact in result.facts if isinstance(result, SuiteResult) else ():
+        found.setdefault(fact.protocol, set()).add(fact.name)
+    return found if len(found) > 1 else {"": set(result.scenarios)}
 
 
 def series(result: BenchmarkResult, names: list[str], behavior: str) -> list[BenchmarkRow]:

@@ -1,0 +1,85 @@
+"""What the terminal, the page and the tables say of a benchmark: summaries by protocol, zones, facts of a suite."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from irsim.api.benchmark_report import MARKDOWN, PAGE, write_report
+from irsim.benchmarks.report.charts import charts
+from irsim.benchmarks.stored import run_plan
+from irsim.benchmarks.suite_plan import suite_plan
+from irsim.cli.benchmark import show_benchmark
+from irsim.results.suite import SuiteResult
+
+SUITE = """
+suite: small
+version: 3
+title: Robots in a square
+about: Two sizes of a group that crosses a door.
+sources: ["A. Author: Doors, 2020"]
+scenarios:
+  - name: square
+    vary: {"robot[0].number": [2, 3]}
+    scenario:
+      world: {width: 6, height: 6, zones: [{name: door, line: [[3, 0], [3, 6]]}]}
+      robot:
+        - {number: 2, kinematics: {name: diff}, shape: {name: circle, radius: 0.3}, distribution: {name: random}}
+seeds: {first: 5, count: 2}
+steps: 30
+until: first_collision
+protocols: [freeze, yield]
+policies: {orca: {name: orca, timeHorizon: 2}, dash: dash}
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, SuiteResult]:
+    """A folder with the report of a small suite, and its result."""
+    place = tmp_path_factory.mktemp("report")
+    (place / "small.yaml").write_text(SUITE, encoding="utf-8")
+    result = run_plan(suite_plan(str(place / "small.yaml")), place / "run", workers=1)
+    assert isinstance(result, SuiteResult)
+    write_report(result, place / "run")
+    return place / "run", result
+
+
+def shown(result: SuiteResult) -> str:
+    """The table as it is printed into a file."""
+    out = Console(width=140, force_terminal=False, markup=False, highlight=False)
+    with out.capture() as capture:
+        show_benchmark(result, out)
+    return capture.get()
+
+
+def test_each_protocol_is_summarised_on_its_own(made: tuple[Path, SuiteResult]) -> None:
+    place, result = made
+    summaries = [row for row in result.rows if row.scenario.startswith("(all)")]
+    names = [row.scenario for row in summaries]
+    assert names == ["(all)/freeze", "(all)/freeze", "(all)/yield", "(all)/yield"]
+    assert [row.episodes for row in summaries] == [4, 4, 4, 4]  # 2 scenarios with 2 seeds
+    assert [row.paired["success"].n for row in summaries if row.paired] == [4, 4]
+    for row in summaries:
+        protocol = row.scenario.partition("/")[2]
+        own = [r for r in result.rows if r.scenario.endswith(f"-2/{protocol}") or r.scenario.endswith(f"-3/{protocol}")]
+        assert row.timeout.count == sum(r.timeout.count for r in own if r.behavior == row.behavior)
+    text = shown(result)
+    for protocol in ("freeze", "yield"):
+        assert f"\n(all)/{protocol}: dash minus orca, same seeds: " in text
+        assert f"| (all)/{protocol} | dash | 4 |" in (place / MARKDOWN).read_text(encoding="utf-8")
+        assert f"<td>(all)/{protocol}</td>" in (place / PAGE).read_text(encoding="utf-8")
+    assert "| (all) |" not in (place / MARKDOWN).read_text(encoding="utf-8")
+
+
+def test_charts_of_all_episodes_are_of_one_protocol(made: tuple[Path, SuiteResult]) -> None:
+    captions = [caption for caption, _ in charts(made[1]) if caption.startswith("Episodes of all scenarios")]
+    assert len(captions) >= 2
+    assert all("under the protocol freeze: " in text or "under the protocol yield: " in text for text in captions)
+
+
+def test_one_protocol_needs_no_name(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
+    plan = suite_plan(str(tmp_path / "small.yaml"), protocols=["yield"], seeds=2, policies=["dash"])
+    assert run_plan(plan, tmp_path / "run", workers=1).rows[-1].scenario == "(all)"
