@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from irsim.api.benchmark_report import MARKDOWN, PAGE, write_report
+from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
@@ -83,3 +83,44 @@ def test_one_protocol_needs_no_name(tmp_path: Path) -> None:
     (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
     plan = suite_plan(str(tmp_path / "small.yaml"), protocols=["yield"], seeds=2, policies=["dash"])
     assert run_plan(plan, tmp_path / "run", workers=1).rows[-1].scenario == "(all)"
+
+
+def test_tables_of_zones_and_differences_and_what_the_suite_says(made: tuple[Path, SuiteResult]) -> None:
+    place, _ = made
+    text, html = (place / MARKDOWN).read_text(encoding="utf-8"), (place / PAGE).read_text(encoding="utf-8")
+    assert "| scenario | policy | zone | zone_crossings |" in text
+    assert "| square-2/freeze | orca | door | " in text
+    assert "Differences to orca with the same seeds:" in text
+    assert "| square-2/freeze | dash | 2 | " in text
+    for page in (text, html):
+        assert "Two sizes of a group that crosses a door." in page
+        assert "Sources: A. Author: Doors, 2020" in page
+        assert "The horizon is 3 s; an episode ends with the first collision." in page
+        assert "crossings of zones" in page
+        assert "human [m]" not in page  # there are no people
+    assert "<h2>Zones</h2>" in html
+    failed = sum(one.outcome != "success" for one in made[1].episodes)
+    assert f"<p>4 of {failed} are shown.</p>" in html
+
+
+def test_a_scenario_with_a_picture_as_map_has_replays(tmp_path: Path) -> None:
+    from PIL import Image
+
+    (tmp_path / "suites").mkdir()
+    Image.new("L", (20, 20), 255).save(tmp_path / "hall.png")
+    scene = "world: {width: 5, height: 5, obstacle_map: ../hall.png}\nrobot: {goal: [4, 4, 0]}\n"
+    (tmp_path / "suites" / "hall.yaml").write_text(scene, encoding="utf-8")
+    suite = """
+suite: halls
+version: 1
+title: One hall
+scenarios: [{name: hall, file: hall.yaml}]
+steps: 3
+policies: {dash: dash}
+"""
+    (tmp_path / "suites" / "halls.yaml").write_text(suite, encoding="utf-8")
+    plan = suite_plan(str(tmp_path / "suites" / "halls.yaml"), seeds=1)
+    report = write_report(run_plan(plan, tmp_path / "run", workers=1), tmp_path / "run")
+    assert not [note for note in report.notes if "replay" in note]
+    [replay] = (tmp_path / "run" / REPLAYS).iterdir()
+    assert f'href="{REPLAYS}/{replay.name}"' in report.page.read_text(encoding="utf-8")
