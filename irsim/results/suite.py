@@ -43,8 +43,10 @@ class SuiteResult(BenchmarkResult):
     until: Literal["done", "first_collision"] | None = None
     """When an episode ends before its horizon: when every robot has arrived or stopped (``done``), or already when one
     collides."""
+    suite_hash: str
+    """Hash of the suite, whatever part of it is run."""
     hash: str
-    """Hash of everything that decides the numbers: suite, scenarios, policies, seeds and version."""
+    """Hash of everything that decides the numbers of this run: scenarios, policies, seeds and version."""
     policies: dict[str, str]
     """Name in the suite → behavior as the rows have it."""
     facts: list[SuiteScenarioFacts]

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from pathlib import Path
 
 import pytest
 from rich.console import Console
+from typer.testing import CliRunner
 
 from irsim.api.benchmark_report import MARKDOWN, PAGE, REPLAYS, write_report
 from irsim.benchmarks.report.charts import charts
 from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
+from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
 from irsim.results.suite import SuiteResult
 
@@ -77,6 +81,27 @@ def test_charts_of_all_episodes_are_of_one_protocol(made: tuple[Path, SuiteResul
     captions = [caption for caption, _ in charts(made[1]) if caption.startswith("Episodes of all scenarios")]
     assert len(captions) >= 2
     assert all("under the protocol freeze: " in text or "under the protocol yield: " in text for text in captions)
+
+
+def test_a_suite_prints_few_lines_of_failures(made: tuple[Path, SuiteResult]) -> None:
+    lines = [line for line in shown(made[1]).splitlines() if line.startswith("failed: ")]
+    count = sum(bool(row.failed) for row in made[1].rows)
+    assert count > 5
+    assert len(lines) == 6
+    assert f"failed: {count - 5} more rows; rates are in results.md, seeds in results.json" == lines[-1]
+
+
+def test_csv_of_a_suite_names_policy_family_protocol_and_values(made: tuple[Path, SuiteResult], tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(SUITE, encoding="utf-8")
+    words = ["benchmark", str(tmp_path / "small.yaml"), "--csv", "-o", str(tmp_path / "run"), "--workers", "1"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0
+    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+    assert len(rows) == len(made[1].episodes)
+    row = next(row for row in rows if row["scenario"] == "square-3/yield" and row["behavior"] == "dash")
+    found = [row[key] for key in ("policy", "family", "protocol", "values.robot[0].number")]
+    assert found == ["dash", "square", "yield", "3"]
+    assert {row["policy"] for row in rows} == {"orca", "dash"}
 
 
 def test_one_protocol_needs_no_name(tmp_path: Path) -> None:
