@@ -16,6 +16,7 @@ from irsim.benchmarks.stored import run_plan
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.cli.app import app
 from irsim.cli.benchmark import show_benchmark
+from irsim.cli.output import progress
 from irsim.results.suite import SuiteResult
 
 SUITE = """
@@ -149,3 +150,15 @@ policies: {dash: dash}
     assert not [note for note in report.notes if "replay" in note]
     [replay] = (tmp_path / "run" / REPLAYS).iterdir()
     assert f'href="{REPLAYS}/{replay.name}"' in report.page.read_text(encoding="utf-8")
+
+
+def test_without_a_terminal_progress_is_a_line_from_time_to_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr("irsim.cli.output.time.monotonic", lambda: now[0])
+    with progress("simulating") as report:
+        for done in range(100):
+            now[0] = float(done)
+            report(done, 1000)
+    assert capsys.readouterr().err.splitlines() == [f"simulating: {done} of 1,000" for done in (30, 60, 90)]
