@@ -80,7 +80,11 @@ def open_policy(source: PolicySource, *, folder: str | Path | None = None, root:
     """
     given: Any = os.fspath(source) if isinstance(source, os.PathLike) else source
     if isinstance(given, Policy):
+        if not getattr(given, "name", ""):
+            given.name = type(given).__name__
         return given
+    if isinstance(given, type) and issubclass(given, Policy):
+        raise BenchmarkError(f"{given.__name__} is a class of policies", f"give an object: {given.__name__}(…)")
     if not isinstance(given, (str, Mapping)):
         if callable(given) and root is None:
             return FunctionPolicy(given)
@@ -195,6 +199,8 @@ def _from_file(
         fix = "put the file into the workspace and name it relative to that"
         raise PolicyError("path-outside-workspace", f"{clean(name)!r} {why}", fix, where="policy")
     path = Path(root if root is not None else folder or ".", name)
+    if path.is_dir():
+        raise UnknownPolicyError(f"{clean(name)!r} is a folder", "give the path of a file")
     if not path.is_file():
         beside = [one.name for one in sorted(path.parent.glob("*")) if one.suffix in SUFFIXES][:1000]
         near = nearest(path.name, beside)

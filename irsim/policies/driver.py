@@ -15,7 +15,7 @@ import irsim._core as core
 from irsim.common.arrays import Floats
 from irsim.diagnostics.errors import CodedError, PolicyError
 from irsim.policies.behavior import BehaviorPolicy
-from irsim.policies.fit import check_fit, drive_of
+from irsim.policies.fit import check_declaration, check_fit, drive_of
 from irsim.policies.observe import Observer
 from irsim.policies.policy import Episode, Policy
 from irsim.simulation.random_streams import generator
@@ -72,6 +72,7 @@ class PolicyDriver:
     """
 
     def __init__(self, simulation: Simulation, policy: Policy) -> None:
+        check_declaration(policy)
         self.policy = policy
         self.seconds: list[float] = []
         self.decided: list[int] = []

@@ -2,22 +2,46 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from irsim.common.arguments import as_given
+from irsim.diagnostics.diagnostic import nearest
 from irsim.diagnostics.errors import PolicyError
 from irsim.policies.observe import Beams, beams_of
+from irsim.policies.policy import Needs
 
 if TYPE_CHECKING:
     from irsim.policies.policy import Policy
     from irsim.simulation.simulation import Simulation
 
-__all__ = ["check_fit", "drive_of"]
+__all__ = ["check_declaration", "check_fit", "drive_of"]
 
 
 def drive_of(simulation: Simulation, robot: int) -> str:
     """Name of the drive of an object that has one."""
     return str(getattr(simulation.scenario.objects[robot].kinematics, "name", ""))
+
+
+def check_declaration(policy: Policy) -> None:
+    """Refuse a policy that declares what is not possible.
+
+    Raises:
+        PolicyError: ``output``, ``needs`` or ``decision_dt`` is not of its kind (``policy-failed``).
+    """
+    name, period = policy.name, policy.decision_dt
+    if policy.output not in ("control", "velocity"):
+        what = f"output of policy {name!r} must be 'control' or 'velocity', got {as_given(policy.output)}"
+        near = nearest(str(policy.output), ["control", "velocity"])
+        raise PolicyError("policy-failed", what, f"did you mean {near}?" if near else "choose one of them")
+    if not isinstance(policy.needs, Needs):
+        what = f"needs of policy {name!r} must be irsim.policies.Needs, got {as_given(policy.needs)}"
+        raise PolicyError("policy-failed", what, "write needs = Needs(neighbors=5)")
+    number = isinstance(period, (int, float)) and not isinstance(period, bool)
+    if period is not None and not (number and 0 < period < math.inf):
+        what = f"decision_dt of policy {name!r} must be a time [s] above 0, got {as_given(period)}"
+        raise PolicyError("policy-failed", what, "give a time such as 0.2, or None to decide in every step")
 
 
 def check_fit(policy: Policy, simulation: Simulation, robots: Sequence[int]) -> None:

@@ -6,7 +6,9 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from irsim.common.arguments import as_given, is_whole_number
 from irsim.common.arrays import Floats
+from irsim.diagnostics.errors import ArgumentError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,6 +19,8 @@ __all__ = ["Episode", "Needs", "Output", "Policy"]
 
 Output = Literal["control", "velocity"]
 """What a policy returns: controls of the drive, or velocities in the world frame, which every drive follows."""
+MAX_COUNT = 100_000
+"""Largest number of neighbors or beams."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,22 @@ class Needs:
     beams: int | None = None
     map: bool = False
     map_resolution: float = 0.1
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be observed.
+
+        Raises:
+            ArgumentError: A number is not of its kind, or out of range.
+        """
+        for name in ("neighbors", "beams"):
+            value = getattr(self, name)
+            if value is not None and not (is_whole_number(value) and 0 <= value <= MAX_COUNT):
+                what = f"{name} must be a whole number from 0 to {MAX_COUNT:,}, got {as_given(value)}"
+                raise ArgumentError(what, "give a number such as 5")
+        for name in ("neighbor_range", "map_resolution"):
+            value = getattr(self, name)
+            if not (isinstance(value, (int, float)) and not isinstance(value, bool) and value > 0):  # also refuses NaN
+                raise ArgumentError(f"{name} must be a distance [m] above 0, got {as_given(value)}", "give metres")
 
 
 @dataclass(frozen=True)

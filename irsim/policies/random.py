@@ -23,7 +23,7 @@ class RandomPolicy(Policy):
 
     def __init__(self, decision_dt: float | None = None) -> None:
         self.name = RANDOM
-        self.decision_dt = None if decision_dt is None else float(decision_dt)
+        self.decision_dt = decision_dt
         self._rng: dict[int, np.random.Generator] = {}
 
     def reset(self, episode: Episode, rng: np.random.Generator) -> None:

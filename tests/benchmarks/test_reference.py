@@ -51,7 +51,7 @@ def test_the_table_counts_the_kept_episodes(suite: str) -> None:
         for row in csv.DictReader(file):
             outcomes.setdefault((row["scenario"], row["policy"]), Counter())[row["outcome"]] += 1
     for (scenario, policy), count in outcomes.items():
-        [shares] = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
+        shares, *_ = re.findall(rf"^\| {re.escape(scenario)} \| {re.escape(policy)} \| (.*)$", page, re.MULTILINE)
         cells = shares.split(" | ")
         n = int(cells[0])
         found = [int(cell.split("%")[0]) for cell in cells[1:4]]

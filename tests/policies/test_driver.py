@@ -113,7 +113,7 @@ def test_controls_of_different_drives_are_asked_for_apart() -> None:
     assert [(one.world, one.robots, one.drive) for one in policy.episodes] == [
         (0, (0, 2), "diff"), (1, (0, 2), "diff"), (2, (1,), "omni"), (3, (1,), "omni"),
     ]  # fmt: skip
-    assert [one.world.tolist() for one in policy.asked] == [[0, 0, 2, 2], [1, 3]]
+    assert [one.world.tolist() for one in policy.asked] == [[0, 0, 1, 1], [2, 3]]
 
 
 def test_a_decision_is_kept_until_the_next_one() -> None:
