@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from irsim.api.read_input import policy_of_suite, read_input
 from irsim.api.take_snapshot import snapshot, snapshot_of
 from irsim.common.arguments import check_whole_number
 from irsim.common.files import check_suffix
@@ -69,7 +70,7 @@ def run(
     """Simulate one episode, until every robot has arrived or stopped, or the horizon is reached.
 
     Args:
-        path: Scenario file.
+        path: Scenario file, or ``SUITE/SCENARIO``.
         text: Text of the scenario, instead of ``path``.
         seed: Overrides the file's seed. Without either, a random seed is drawn and reported (0 if nothing is random).
         steps: Horizon in steps, which overrides ``world.time_limit``.
@@ -101,10 +102,11 @@ def run(
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
     import_modules(imports)
+    policy, behavior = policy_of_suite(path, policy), policy_of_suite(path, behavior)
     driver, behavior_text = _opened(policy, behavior, limits)
     perturbations = read_perturbations(perturb)
     try:
-        scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits, behavior=behavior_text)
+        scenario, warnings = read_input(path, text, strict=strict, limits=limits, behavior=behavior_text)
     except BenchmarkError as error:
         error.where = "behavior" if policy is None else "policy"
         raise
@@ -214,7 +216,7 @@ def render(
     as_snapshot = strip is not None or overlays is not None
     if as_snapshot:
         check_suffix(target, ["png"])
-    scenario, warnings = read_scenario(path, strict=strict, limits=limits)
+    scenario, warnings = read_input(path, None, strict=strict, limits=limits)
     if as_snapshot:
         sheet = snapshot_of(
             scenario,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Literal
 
 from irsim.api.film_strip import draw_strip, moments_of
 from irsim.api.overlays import OVERLAYS, Overlay, additions, overlays_from, plan_results, plot_keys, requested_plans
+from irsim.api.read_input import read_input
 from irsim.env import Env
-from irsim.episodes.episode import Progress, advance, horizon_of, read_scenario, seed_of
+from irsim.episodes.episode import Progress, advance, horizon_of, seed_of
 from irsim.episodes.reproduce import overlay_options, region_options, reproduce_command, strip_options
 from irsim.episodes.scene_summary import counts_of, in_words
 from irsim.results.findings import Finding
@@ -63,7 +64,7 @@ def snapshot(
         ValueError: Neither or both of ``path`` and ``text`` are given, the region is invalid, or there are too few or
             too many moments.
     """
-    scenario, warnings = read_scenario(path, text=text, strict=strict, limits=limits)
+    scenario, warnings = read_input(path, text, strict=strict, limits=limits)
     return snapshot_of(
         scenario,
         path,

@@ -20,7 +20,7 @@ from irsim.benchmarks.episode import Job, Task, Until, check_policy, scenario_of
 from irsim.benchmarks.log import Log, logged, with_episodes
 from irsim.benchmarks.policies import digests_of, job_keys, label_of, listed_policies, naming, opened_policies
 from irsim.benchmarks.pool import MAX_GROUP, cores, run_tasks
-from irsim.benchmarks.seeds import seeds_from
+from irsim.benchmarks.seeds import seeds_from, seeds_text
 from irsim.benchmarks.timing import timing_report
 from irsim.common.arguments import as_given, check_whole_number
 from irsim.common.version import version
@@ -318,7 +318,7 @@ def _command(
     words: list[Any] = ["irsim", "benchmark", *files]
     if behaviors != [AS_WRITTEN]:
         words += ["--policies", ",".join(behaviors)]
-    words += ["--seeds", _seeds_text(seeds)]
+    words += ["--seeds", seeds_text(seeds)]
     for text in perturb:
         words += ["--perturb", text]
     if steps is not None:
@@ -328,10 +328,3 @@ def _command(
     for name in imports:
         words += ["--import", name]
     return shlex.join(map(str, words))
-
-
-def _seeds_text(seeds: list[int]) -> str:
-    """The seeds as the command line takes them."""
-    if len(seeds) > 1 and seeds == list(range(seeds[0], seeds[0] + len(seeds))):
-        return str(len(seeds)) if seeds[0] == 0 else f"{seeds[0]}-{seeds[-1]}"
-    return ",".join(map(str, seeds)) if seeds != [0] else "1"

@@ -36,7 +36,7 @@ def file_plan(
     scenarios = [
         PlannedScenario(
             name=file, family=file, text=str(document.text), maps=maps,
-            folder=str(Path(document.path).parent) if maps and document.path is not None else None,
+            folder=str(Path(document.path).parent.resolve()) if maps and document.path is not None else None,
         )
         for file, document, maps in zip(files, documents, map_hashes(documents), strict=True)
     ]  # fmt: skip

@@ -18,7 +18,7 @@ from irsim.common.files import write_atomically
 from irsim.results.benchmark import BenchmarkResult, EpisodeRow
 from irsim.runs.files import RunError, refusal, unreadable
 
-__all__ = ["Log", "as_log", "logged", "with_episodes"]
+__all__ = ["Log", "in_order", "logged", "with_episodes"]
 
 _FLAGS = os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O_NOFOLLOW", 0)
 
@@ -107,12 +107,21 @@ def logged(file: str | Path) -> BenchmarkResult:
     return with_episodes(head, [episodes[number] for number in sorted(episodes)])
 
 
-def as_log(result: BenchmarkResult) -> str:
-    """The log of a finished benchmark, with its episodes in order."""
-    fields = {name: getattr(result, name) for name in BenchmarkResult.model_fields}  # of a suite, too
-    head = BenchmarkResult.model_construct(**{**fields, "episodes": [], "rows": [], "notes": []})
-    lines = [head.model_dump_json(), *(_line(number, row) for number, row in enumerate(result.episodes))]
-    return "".join(f"{line}\n" for line in lines)
+def in_order(file: str | Path, episodes: Sequence[EpisodeRow]) -> str:
+    """The text of the log of a finished benchmark, with its episodes in order.
+
+    Args:
+        file: The log.
+        episodes: All episodes, in order.
+
+    Raises:
+        RunError: The file cannot be read.
+    """
+    try:
+        head = Path(file).read_text(encoding="utf-8").partition("\n")[0]
+    except OSError as error:
+        raise refusal(file, error) from None
+    return "".join(f"{line}\n" for line in (head, *(_line(number, row) for number, row in enumerate(episodes))))
 
 
 def _read(file: str | Path) -> tuple[BenchmarkResult, dict[int, EpisodeRow]]:

@@ -19,7 +19,7 @@ from irsim.scenario.limits import DEFAULT_LIMITS
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import Document, load_text
 
-__all__ = ["Plan", "PlannedScenario", "map_hashes"]
+__all__ = ["Plan", "PlannedScenario", "map_hashes", "short_hash"]
 
 _HASH_LENGTH = 12
 
@@ -58,6 +58,7 @@ class Plan(BaseModel):
         name: Name of the suite, or ``benchmark``.
         version: Version of irsim that runs it.
         suite: The suite; None for a benchmark of files.
+        suite_hash: Hash of the suite, whatever part of it is run; empty without one.
         scenarios: The scenarios in order.
         policies: Name in the results → policy as text.
         sources: Name → text that opens a policy that is a file, with its full path.
@@ -76,6 +77,7 @@ class Plan(BaseModel):
     name: str
     version: str = this_version()
     suite: Suite | None = None
+    suite_hash: str = ""
     scenarios: list[PlannedScenario]
     policies: dict[str, str]
     sources: dict[str, str] = {}
@@ -100,10 +102,15 @@ class Plan(BaseModel):
     @property
     def hash(self) -> str:
         """Hash of everything that decides the numbers; folders and the command do not."""
-        where = {"reproduce": True, "sources": True, "scenarios": {"__all__": {"folder"}}}
+        where = {"reproduce": True, "sources": True, "suite_hash": True, "scenarios": {"__all__": {"folder"}}}
         where |= {} if self.digests else {"digests": True}
         text = self.model_dump_json(exclude=where)  # type: ignore[arg-type]
-        return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
+        return short_hash(text)
+
+
+def short_hash(text: str) -> str:
+    """The beginning of the SHA-256 of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:_HASH_LENGTH]
 
 
 def map_hashes(documents: Sequence[Document]) -> list[dict[str, str]]:

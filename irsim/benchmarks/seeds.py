@@ -9,7 +9,7 @@ from typing import Any
 from irsim.common.arguments import as_given, is_whole_number
 from irsim.scenario.behavior_override import BenchmarkError
 
-__all__ = ["seeds_from"]
+__all__ = ["seeds_from", "seeds_text"]
 
 _MAX_SEEDS = 1_000_000
 """Greatest number of seeds."""
@@ -69,3 +69,10 @@ def _checked_number(number: int) -> int:
 
 def _wrong(given: Any) -> BenchmarkError:
     return BenchmarkError(f"{as_given(given)} is not a valid seed or list of seeds", _FIX, "seeds")
+
+
+def seeds_text(seeds: list[int]) -> str:
+    """The seeds as the command line takes them."""
+    if len(seeds) > 1 and seeds == list(range(seeds[0], seeds[0] + len(seeds))):
+        return str(len(seeds)) if seeds[0] == 0 else f"{seeds[0]}-{seeds[-1]}"
+    return ",".join(map(str, seeds)) if seeds != [0] else "1"

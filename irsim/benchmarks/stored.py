@@ -16,7 +16,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from irsim.benchmarks.comparison import benchmark
-from irsim.benchmarks.log import as_log
+from irsim.benchmarks.log import in_order
 from irsim.benchmarks.plan import Plan, map_hashes
 from irsim.common.files import TEMPORARY, write_atomically
 from irsim.common.version import version
@@ -107,7 +107,7 @@ def run_plan(
             timing=timing,
         )
         _write(folder / TIMING, json.dumps(timing, indent=1) + "\n")
-        _write(folder / EPISODES, as_log(result))
+        _write(folder / EPISODES, in_order(folder / EPISODES, result.episodes))
         _write(folder / RESULTS, result.model_dump_json(indent=1) + "\n")
         if finish is not None:
             finish(result, folder)
@@ -258,6 +258,7 @@ def _result(plan: Plan, found: BenchmarkResult) -> BenchmarkResult:
         "suite": plan.suite.suite,
         "suite_version": plan.suite.version,
         "title": plan.suite.title,
+        "suite_hash": plan.suite_hash,
         "hash": plan.hash,
         "policies": plan.policies,
         "facts": [

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes
+from irsim.benchmarks.plan import Plan, PlannedScenario, map_hashes, short_hash
 from irsim.benchmarks.policies import files_of
 from irsim.benchmarks.suite import Protocol, Suite
 from irsim.benchmarks.suite_files import SuiteError, load_suite
@@ -25,7 +25,7 @@ def suite_plan(
     *,
     policies: Sequence[str] | None = None,
     protocols: Sequence[Protocol] | None = None,
-    seeds: int | None = None,
+    seeds: int | Sequence[int] | None = None,
     full: bool = False,
     scenarios: Sequence[str] | None = None,
     perturb: Sequence[str] = (),
@@ -36,7 +36,7 @@ def suite_plan(
         suite: Name of a bundled suite, path of a file, or a suite.
         policies: Names of policies of the suite, or other policies, instead of all policies of the suite.
         protocols: Some of its protocols; default: all.
-        seeds: Number of seeds, instead of that of the suite.
+        seeds: Number of seeds, instead of that of the suite, or the seeds, instead of those of the suite.
         full: Run the number of seeds that the suite calls full.
         scenarios: Names of scenarios, with or without their protocol, or of their families; default: all.
         perturb: Perturbations instead of those of the suite, as on the command line.
@@ -46,7 +46,8 @@ def suite_plan(
     """
     found, file = (suite, Path("suite.yaml")) if isinstance(suite, Suite) else load_suite(suite)
     kept = _chosen("protocol", protocols or found.protocols, found.protocols)
-    made = [one for one in expand(found, file) if one.protocol in kept]
+    every = expand(found, file)
+    made = [one for one in every if one.protocol in kept]
     words = ["irsim", "benchmark", suite if isinstance(suite, str) else found.suite]
     if policies is not None:
         words += ["--policies", ",".join(policies)]
@@ -60,8 +61,11 @@ def suite_plan(
     words += [word for item in perturb for word in ("--perturb", item)]
     texts = _policies(found, policies)
     sources, digests = files_of(texts, {name: file.parent for name in texts if name in found.policies})
-    count = seeds or (found.seeds.full if full and found.seeds.full else found.seeds.count)
-    words += ["--seeds", str(count)] if count != found.seeds.count else []
+    chosen = _seeds(found, seeds, full)
+    if isinstance(seeds, Sequence):
+        words += ["--seeds", _listed(chosen)]
+    elif len(chosen) != found.seeds.count:
+        words += ["--seeds", str(len(chosen))]
     return Plan(
         name=found.suite,
         suite=found,
@@ -69,11 +73,37 @@ def suite_plan(
         policies=texts,
         sources=sources,
         digests=digests,
-        seeds=[found.seeds.first + k for k in range(count)],
+        seeds=chosen,
+        suite_hash=_hash(found, every),
         until=found.until,
         perturb=[perturbation_text(item) for item in perturbations],
         reproduce=shlex.join(words),
     )
+
+
+def _seeds(suite: Suite, wanted: int | Sequence[int] | None, full: bool) -> list[int]:
+    """The seeds of a run: those of the suite, some more or fewer from its first one on, or others."""
+    if wanted is not None and full:
+        raise SuiteError("full and a number of seeds contradict each other", "give one of them")
+    if isinstance(wanted, Sequence):
+        return list(wanted)
+    if wanted is not None and wanted < 1:
+        raise SuiteError(f"there must be at least one seed, got {wanted}", "give a number such as 20")
+    count = wanted or (suite.seeds.full if full and suite.seeds.full else suite.seeds.count)
+    return [suite.seeds.first + k for k in range(count)]
+
+
+def _listed(seeds: Sequence[int]) -> str:
+    """Seeds as the command line takes them: never a plain number, which is a number of seeds."""
+    if len(seeds) > 1 and list(seeds) == list(range(seeds[0], seeds[0] + len(seeds))):
+        return f"{seeds[0]}-{seeds[-1]}"
+    return ",".join(map(str, seeds)) + ("," if len(seeds) == 1 else "")
+
+
+def _hash(suite: Suite, every: Sequence[Expanded]) -> str:
+    """Hash of a suite: everything that it says, with the files that it names, whatever part of it is run."""
+    planned = [scenario.model_dump_json(exclude={"folder"}) for scenario in _planned(every)]
+    return short_hash("\n".join([suite.model_dump_json(), *planned]))
 
 
 def _names(one: Expanded) -> set[str]:
@@ -100,8 +130,8 @@ def _policies(suite: Suite, wanted: Sequence[str] | None) -> dict[str, str]:
 def _planned(made: Sequence[Expanded]) -> list[PlannedScenario]:
     drafts = [
         PlannedScenario(
-            name=one.name, family=one.family, protocol=one.protocol, values=dict(one.values), folder=str(one.folder),
-            text=_with_limit(one),
+            name=one.name, family=one.family, protocol=one.protocol, values=dict(one.values),
+            folder=str(Path(one.folder).resolve()), text=_with_limit(one),
         )
         for one in made
     ]  # fmt: skip

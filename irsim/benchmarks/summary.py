@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from irsim.benchmarks.incidents import incident_counts, placed
 from irsim.common.text import listed
 from irsim.metrics.definitions import EPISODE_METRICS, METRICS
-from irsim.metrics.statistics import bootstrap, newcombe, spread, wilson
+from irsim.metrics.statistics import bootstraps, newcombe, spread, wilson
 from irsim.results.benchmark import BenchmarkRow, EpisodeRow, Estimate, Proportion
 
-__all__ = ["ALL", "KEYS", "estimate", "notes_of", "proportion", "rows_of"]
+__all__ = ["ALL", "KEYS", "estimates", "notes_of", "proportion", "rows_of"]
 
 ALL = "(all)"
 """Name of the rows over all scenarios."""
@@ -43,17 +43,22 @@ def proportion(count: int, n: int, *, certain: bool = False) -> Proportion:
     return Proportion(count=count, n=n, rate=count / n, low=low, high=high)
 
 
-def estimate(values: Sequence[float | None], *, share: bool = False) -> Estimate:
-    """Mean, standard deviation and interval of the values that are not None.
+def estimates(columns: Mapping[str, Sequence[float | None]], shares: Collection[str] = ()) -> dict[str, Estimate]:
+    """Mean, standard deviation and interval of the values of each column that are not None.
 
     Args:
-        values: The values.
-        share: All values are 0 or 1, so the interval is that of a proportion.
+        columns: Name → values.
+        shares: Names of columns whose values are all 0 or 1, so that the interval is that of a proportion.
     """
-    known = [value for value in values if value is not None]
-    n, mean, std = spread(known)
-    low, high = wilson(sum(value > 0 for value in known), n) if share else bootstrap(known)
-    return Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
+    known = {name: [value for value in values if value is not None] for name, values in columns.items()}
+    others = [name for name in known if name not in shares]
+    intervals = dict(zip(others, bootstraps([known[name] for name in others]), strict=True))
+    found = {}
+    for name, values in known.items():
+        n, mean, std = spread(values)
+        low, high = intervals[name] if name in intervals else wilson(sum(value > 0 for value in values), n)
+        found[name] = Estimate(n=n, mean=_known(mean), std=_known(std), low=_known(low), high=_known(high))
+    return found
 
 
 def rows_of(
@@ -135,21 +140,13 @@ def _row(
         for outcome in ("success", "collision", "timeout")
     }
     pairs = [(episode, first[_pair(episode)]) for episode in episodes if _pair(episode) in first]
+    shown_as_shares = frozenset() if certain else _PROPORTIONS
     return BenchmarkRow(
         scenario=name,
         behavior=behavior,
         episodes=len(episodes),
-        metrics={
-            key: estimate([episode.metrics[key] for episode in episodes], share=key in _PROPORTIONS and not certain)
-            for key in KEYS
-        },
-        paired={
-            key: _paired_difference(
-                [(a.metrics[key], b.metrics[key]) for a, b in pairs], key in _PROPORTIONS and not certain
-            )
-            for key in KEYS
-            if pairs
-        },
+        metrics=estimates({key: [episode.metrics[key] for episode in episodes] for key in KEYS}, shown_as_shares),
+        paired=_paired_differences(pairs, shown_as_shares) if pairs else {},
         zones={} if name == ALL else _zones(episodes),
         failed={
             outcome: [episode.seed for episode in episodes if episode.outcome == outcome]
@@ -166,7 +163,7 @@ def _zones(episodes: list[EpisodeRow]) -> dict[str, dict[str, Estimate]]:
     """Estimates of the metrics of each zone; episodes that were measured have the same zones."""
     measured = [episode.zones for episode in episodes if episode.zones]
     return {
-        zone: {key: estimate([zones[zone][key] for zones in measured]) for key in values}
+        zone: estimates({key: [zones[zone][key] for zones in measured] for key in values})
         for zone, values in (measured[0] if measured else {}).items()
     }
 
@@ -176,13 +173,15 @@ def _frequent_failures(episodes: Sequence[EpisodeRow]) -> dict[str, int]:
     return dict(count.most_common(_MAX_FAILURES))
 
 
-def _paired_difference(pairs: Sequence[tuple[float | None, float | None]], share: bool) -> Estimate:
-    """Estimate of the differences of pairs; for proportions with an interval that is not empty if all pairs agree."""
-    known = [(a, b) for a, b in pairs if a is not None and b is not None]
-    found = estimate([a - b for a, b in known])
-    if share and known:
-        count = Counter((a > 0, b > 0) for a, b in known)
-        found.low, found.high = newcombe(*(count[pair] for pair in _TABLE))
+def _paired_differences(pairs: Sequence[tuple[EpisodeRow, EpisodeRow]], shares: Collection[str]) -> dict[str, Estimate]:
+    """Estimates of the differences of pairs; for shares with an interval that is not empty if all pairs agree."""
+    values = {key: [(a.metrics[key], b.metrics[key]) for a, b in pairs] for key in KEYS}
+    known = {key: [(a, b) for a, b in both if a is not None and b is not None] for key, both in values.items()}
+    found = estimates({key: [a - b for a, b in both] for key, both in known.items()})
+    for key in shares:
+        if known[key]:
+            count = Counter((a > 0, b > 0) for a, b in known[key])
+            found[key].low, found[key].high = newcombe(*(count[pair] for pair in _TABLE))
     return found
 
 

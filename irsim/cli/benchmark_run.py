@@ -116,18 +116,26 @@ def _suite(name: str, wanted: Wanted) -> Plan:
 
     for option, value in (("--steps", wanted.steps), ("--import", wanted.imports)):
         if value:
-            raise ArgumentError(f"{option} belongs to scenario files", "copy the suite into a file and change it there")
-    if wanted.seeds and not wanted.seeds.isdecimal():
-        raise ArgumentError(f"--seeds of a suite is their number, got {wanted.seeds}", "give a number such as 20")
+            fix = "a suite states its horizon and its policies: change them in its file"
+            raise ArgumentError(f"{option} belongs to scenario files", fix)
     return suite_plan(
         name,
         policies=None if wanted.policies is None else split_behaviors(wanted.policies),
         protocols=wanted.protocols or None,  # type: ignore[arg-type]
-        seeds=int(wanted.seeds) if wanted.seeds else None,
+        seeds=_suite_seeds(wanted.seeds),
         full=wanted.full,
         scenarios=wanted.scenarios or None,
         perturb=wanted.perturb,
     )
+
+
+def _suite_seeds(text: str) -> int | list[int] | None:
+    """The seeds of a suite: their number, the seeds, or None for those of the suite."""
+    if not text or text.strip().isdecimal():
+        return int(text) if text else None
+    from irsim.benchmarks.seeds import seeds_from
+
+    return seeds_from(text)
 
 
 def _plan(wanted: Wanted) -> Plan:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from irsim.cli.output import has_colors
@@ -113,4 +114,9 @@ def _text_of(file: str) -> str | None:
     from irsim.scenario.locate import locate
     from irsim.scenario.yaml.document import load_path
 
+    if not Path(file).is_file():
+        from irsim.benchmarks.suite_scene import suite_scene
+
+        if (scene := suite_scene(file)) is not None:
+            return scene.text
     return load_path(locate(file)).text

@@ -77,7 +77,7 @@ def import_modules(names: Iterable[str]) -> None:
 
 
 def read_scenario(
-    path: str | Path | None = None,
+    path: str | Path | Document | None = None,
     *,
     text: str | None = None,
     strict: bool,
@@ -87,7 +87,7 @@ def read_scenario(
     """Read a scenario from a file or a text.
 
     Args:
-        path: Path of the file.
+        path: Path of the file, or a document.
         text: Text of the scenario, instead of ``path``.
         strict: Refuse what IR-SIM would ignore.
         limits: Limits of the loader.
@@ -101,7 +101,7 @@ def read_scenario(
         BenchmarkError: ``behavior`` is not a valid behavior.
         ValueError: Neither or both of ``path`` and ``text`` are given.
     """
-    source = source_of(path, text, limits)
+    source = path if isinstance(path, Document) else source_of(path, text, limits)
     if behavior is not None:
         from irsim.scenario.behavior_override import (
             BenchmarkError,

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["bootstrap", "newcombe", "spread", "wilson"]
+__all__ = ["bootstrap", "bootstraps", "newcombe", "spread", "wilson"]
 
 _Z = 1.959963984540054
 """Quantile of the normal distribution for a two-sided interval of 95 %."""
@@ -65,15 +65,29 @@ def bootstrap(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, flo
 
     NaN for fewer than two values.
     """
-    known = np.asarray(values, dtype=np.float64)
-    known = known[~np.isnan(known)]
-    if len(known) < 2:
-        return math.nan, math.nan
-    if (known == known[0]).all():
-        return float(known[0]), float(known[0])
-    means = np.concatenate([weights @ known for weights in _resamples(len(known))]) / len(known)
-    low, high = np.percentile(means, [2.5, 97.5])
-    return float(low), float(high)
+    return bootstraps([values])[0]
+
+
+def bootstraps(samples: Sequence[Sequence[float] | NDArray[np.float64]]) -> list[tuple[float, float]]:
+    """The intervals of :func:`bootstrap` of several samples; those with as many values share the draws."""
+    columns = [np.asarray(values, dtype=np.float64) for values in samples]
+    columns = [column[~np.isnan(column)] for column in columns]
+    found = [(math.nan, math.nan)] * len(columns)
+    by_count: dict[int, list[int]] = {}
+    for place, known in enumerate(columns):
+        if len(known) >= 2 and (known == known[0]).all():
+            found[place] = float(known[0]), float(known[0])
+        elif len(known) >= 2:
+            by_count.setdefault(len(known), []).append(place)
+    for count, places in by_count.items():
+        means: list[list[NDArray[np.float64]]] = [[] for _ in places]
+        for weights in _resamples(count):
+            for parts, place in zip(means, places, strict=True):
+                parts.append(weights @ columns[place])
+        for parts, place in zip(means, places, strict=True):
+            low, high = np.percentile(np.concatenate(parts) / count, [2.5, 97.5])
+            found[place] = float(low), float(high)
+    return found
 
 
 def _resamples(count: int) -> Iterator[NDArray[np.float64]]:

@@ -32,8 +32,10 @@ class SuiteResult(BenchmarkResult):
     """Version of the suite."""
     title: str
     """What it is about."""
+    suite_hash: str
+    """Hash of the suite, whatever part of it is run."""
     hash: str
-    """Hash of everything that decides the numbers: suite, scenarios, policies, seeds and version."""
+    """Hash of everything that decides the numbers of this run: scenarios, policies, seeds and version."""
     policies: dict[str, str]
     """Name in the suite → behavior as the rows have it."""
     facts: list[SuiteScenarioFacts]

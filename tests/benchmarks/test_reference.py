@@ -44,7 +44,8 @@ def test_many_episodes_are_the_kept_ones(suite: str, tmp_path: Path) -> None:
 def test_the_table_counts_the_kept_episodes(suite: str) -> None:
     page = (PAGES / f"{suite}.md").read_text(encoding="utf-8")
     assert suite in suite_names()
-    assert f"content hash {suite_plan(suite).hash}, " in page
+    plan = suite_plan(suite)
+    assert f"suite hash {plan.suite_hash}, run hash {plan.hash}, " in page
     with (FOLDER / f"{suite}.csv").open(encoding="utf-8") as file:
         outcomes: dict[tuple[str, str], Counter[str]] = {}
         for row in csv.DictReader(file):

@@ -9,9 +9,11 @@ import pytest
 import yaml
 
 import irsim
+from irsim.benchmarks.stored import resume_benchmark, run_plan
 from irsim.benchmarks.suite_files import SuiteError, is_suite, load_suite, read_suite, suite_names
 from irsim.benchmarks.suite_plan import suite_plan
 from irsim.benchmarks.suite_scenarios import expand
+from irsim.benchmarks.suite_scene import suite_scene
 from irsim.env import Env
 from irsim.scenario.read import read
 from irsim.scenario.yaml.document import load_text
@@ -199,3 +201,52 @@ def test_a_scenario_is_named_with_or_without_its_protocol(tmp_path: Path) -> Non
     suite = str(written(tmp_path, protocols=["freeze", "yield"]))
     for name, count in (("one", 2), ("one/yield", 1)):
         assert len(suite_plan(suite, scenarios=[name]).scenarios) == count
+
+
+def test_seeds_of_a_suite_are_a_number_of_its_own_or_others(tmp_path: Path) -> None:
+    suite = str(written(tmp_path, seeds={"first": 7, "count": 4, "full": 6}))
+    plan = suite_plan(suite)
+    assert (plan.seeds, suite_plan(suite, full=True).seeds) == ([7, 8, 9, 10], [7, 8, 9, 10, 11, 12])
+    few, others, one = (suite_plan(suite, seeds=seeds) for seeds in (2, [3, 4, 5], [9]))
+    assert (few.seeds, others.seeds) == ([7, 8], [3, 4, 5])
+    assert [p.reproduce.partition("--seeds ")[2] for p in (few, others, one)] == ["2", "3-5", "9,"]
+    assert len({p.suite_hash for p in (plan, few, others)}) == 1
+    assert len({p.hash for p in (plan, few, others)}) == 3
+    with pytest.raises(SuiteError, match="at least one seed"):
+        suite_plan(suite, seeds=0)
+    with pytest.raises(SuiteError, match="contradict"):
+        suite_plan(suite, seeds=3, full=True)
+
+
+def test_a_scenario_of_a_suite_is_run_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, protocols=["freeze", "yield"])
+    result = irsim.run("mine.yaml/one/yield", seed=3, policy="dash")
+    assert result.reproduce == "irsim run mine.yaml/one/yield --seed 3 --behavior dash"
+    assert result.time_limit == 5.0
+    [episode] = irsim.benchmark({"one": suite_scene("mine.yaml/one/yield").document()}, ["dash"], [3]).episodes
+    assert (episode.outcome, episode.steps) == (result.outcome, result.steps)
+    for name, fix in (("mine.yaml", "mine.yaml/one/freeze"), ("mine.yaml/on", "did you mean mine.yaml/one")):
+        with pytest.raises(SuiteError) as refused:
+            irsim.run(name)
+        assert fix in str(refused.value)
+
+
+def test_a_folder_that_a_plan_names_can_be_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from PIL import Image
+
+    Image.new("L", (20, 20), 255).save(tmp_path / "map.png")
+    robot = {"kinematics": {"name": "diff"}}
+    scenario = {"world": {"width": 4, "height": 4, "obstacle_map": "map.png"}, "robot": [robot]}
+    written(tmp_path, scenarios=[{"name": "one", "scenario": scenario}], steps=3)
+    monkeypatch.chdir(tmp_path)
+    run_plan(suite_plan("mine.yaml"), Path("out"))
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert resume_benchmark(Path("../out")).episodes
+
+
+def test_policies_of_a_suite_have_their_options_when_one_scenario_is_run() -> None:
+    result = irsim.run("random_polygons_v1/robots-5/freeze", seed=142, policy="orca")
+    options = suite_plan("random_polygons_v1").policies["orca"]
+    assert (result.outcome, result.behavior) == ("collision", options)

@@ -54,7 +54,8 @@ def facts_of(result: BenchmarkResult) -> list[str]:
     size = f"{len(result.scenarios)} scenarios, {len(result.behaviors)} policies, {count} seeds from {result.seeds[0]}"
     lines = [f"{size}; {len(result.episodes):,} episodes."]
     if isinstance(result, SuiteResult):
-        lines.append(f"Suite version {result.suite_version}, content hash {result.hash}, irsim {result.version}.")
+        hashes = f"suite hash {result.suite_hash}, run hash {result.hash}"
+        lines.append(f"Suite version {result.suite_version}, {hashes}, irsim {result.version}.")
     if result.incidents:
         lines.append(f"Besides outcomes: {'; '.join(result.incidents)}.")
     return lines

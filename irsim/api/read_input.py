@@ -1,0 +1,57 @@
+"""Reads what commands take as a scenario: a file, a text, or a scenario of a suite (``SUITE/SCENARIO``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from irsim.diagnostics.errors import ScenarioError
+from irsim.episodes.episode import read_scenario
+from irsim.results.findings import Finding
+from irsim.scenario.resolve.resolved import ResolvedScenario
+
+__all__ = ["policy_of_suite", "read_input"]
+
+
+def read_input(path: str | Path | None, text: str | None, **options: Any) -> tuple[ResolvedScenario, list[Finding]]:
+    """Read a scenario; see :func:`irsim.episodes.episode.read_scenario`.
+
+    Args:
+        path: Path of the file, or ``SUITE/SCENARIO``, where the suite is bundled or a file.
+        text: Text of the scenario, instead of ``path``.
+        **options: ``strict``, ``limits`` and ``behavior``.
+
+    Raises:
+        SuiteError: ``path`` is a suite, or begins with one that has no such scenario.
+        Others: as ``read_scenario``.
+    """
+    if path is not None and text is None and not Path(path).is_file():
+        from irsim.benchmarks.suite_scene import suite_scene
+
+        if (scene := suite_scene(path)) is not None:
+            return read_scenario(scene.document(), **options)
+    try:
+        return read_scenario(path, text=text, **options)
+    except ScenarioError:
+        if path is not None and text is None:
+            from irsim.benchmarks.suite_scene import suite_scene
+
+            suite_scene(path)  # a suite is refused with a sentence of its own
+        raise
+
+
+def policy_of_suite(path: str | Path | None, policy: Any) -> Any:
+    """The policy that a name means for a scenario of a suite: that of the suite, if it has one of that name.
+
+    Args:
+        path: Path of the scenario, or ``SUITE/SCENARIO``.
+        policy: What :func:`irsim.run` takes as a policy.
+
+    Raises:
+        SuiteError: The suite is not valid.
+    """
+    if path is None or not isinstance(policy, str) or Path(path).is_file():
+        return policy
+    from irsim.benchmarks.suite_scene import suite_policy
+
+    return suite_policy(path, policy)
